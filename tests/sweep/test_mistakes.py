@@ -93,6 +93,7 @@ at_fork      = false
 [sample.of."other.noise"]
 distribution = "norm"
 tolerance    = false
+also         = ["lag.noise"]
 
 [[quantity]]
 name        = "highest"
@@ -208,6 +209,7 @@ MISTAKES = [
     ("sample.of.name", 'name         = "sampled"', 'name = "level"', "'level' is a factor already", "of its own"),
     ("sample.of.at_fork", "at_fork      = false", "at_fork = 0", "at_fork = 0", "true or false"),
     ("sample.of.tolerance", "tolerance    = false", "tolerance = true", "either distribution or tolerance", "true"),
+    ("sample.of.also", 'also         = ["lag.noise"]', 'also = ["lag.nois"]', "'nois'", "noise"),
     (
         "sample.of.tolerance",
         'distribution = "norm"\ntolerance    = false',
@@ -244,6 +246,72 @@ MISTAKES = [
     ("tracks.signals", 'signals  = ["lag.y"]', 'signals = ["lag.z"]', "'z'", "u, y"),
     ("tracks.interval", 'interval = "0.2 s"', "interval = 0.0", "interval = 0.0", "greater than 0"),
 ]
+SEARCHED = """
+scenario = "filling"
+
+[tune]
+trials     = 8
+population = 4
+
+[tune.of."lag.u"]
+low  = "50 cm"
+high = 2.0
+log  = false
+name = "level"
+also = ["other.u"]
+
+[[tune.objective]]
+quantity  = "highest"
+direction = "maximise"
+statistic = "mean"
+
+[[tune.objective]]
+quantity  = "off"
+direction = "minimise"
+
+[[quantity]]
+name   = "highest"
+signal = "lag.y"
+reduce = "maximum"
+
+[[quantity]]
+name   = "off"
+signal = "lag.y"
+near   = 1.0
+reduce = "final"
+"""
+OF_A_LOOP = 'name = "margin"\nmargin = "phase"\npeak_period = "6 s"\n'
+MISTAKES_OF_SEARCHES = [
+    ("tune", "trials     = 8", "trils = 8", "unknown key 'trils'", "trials"),
+    ("tune", "[tune]", '[sample]\nruns = 2\nof."lag.noise".distribution = "norm"\n[tune]', "either [sample] or", ""),
+    ("tune.trials", "trials     = 8", "trials = 0", "trials = 0", "greater than or equal to 1"),
+    ("tune.population", "population = 4", "population = 1", "population = 1", "greater than or equal to 2"),
+    ("tune.of", '[tune.of."lag.u"]', '[tune.of."lag.w"]', "'w'", "u"),
+    ("tune.of.low", 'low  = "50 cm"', 'low = "50 kg"', "50 kg", "m"),
+    ("tune.of.low", 'low  = "50 cm"', "low = 3.0", "low = 3 and high = 2", "smaller"),
+    ("tune.of.high", "high = 2.0", "high = 0.9", "lag.u is 1 now", "Take a range that has it in"),
+    ("tune.of.log", "log  = false", "log = 1", "log = 1", "true or false"),
+    ("tune.of.name", 'name = "level"', 'name = "run"', "'run' is a column", "another name"),
+    ("tune.of.also", 'also = ["other.u"]', 'also = ["other.w"]', "'w'", "u"),
+    ("tune.objective.quantity", 'quantity  = "off"', 'quantity = "of"', "no quantity 'of'", "off"),
+    ("tune.objective.direction", '"minimise"', '"minimize"', 'direction = "minimize"', "'minimise'"),
+    ("tune.objective.statistic", '"mean"', '"median"', 'statistic = "median"', "'mean'"),
+    ("quantity.margin", 'reduce = "final"', f'reduce = "final"\n[[quantity]]\n{OF_A_LOOP}', "no DP controller", "none"),
+    (
+        "quantity.component",
+        'reduce = "final"',
+        'reduce = "final"\ncomponent = "lag"',
+        "component and peak_period belong to margin",
+        "Give margin",
+    ),
+    (
+        "quantity.peak_period",
+        'reduce = "final"',
+        'reduce = "final"\n[[quantity]]\nname = "m"\nmargin = "phase"',
+        "peak_period is missing",
+        '"6 s"',
+    ),
+]
 PARAMETER_SET = """<?xml version="1.0" encoding="UTF-8"?>
 <ssv:ParameterSet name="lags" version="1.0" xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues">
   <ssv:Parameters>
@@ -265,10 +333,13 @@ def complaints(project, study):
     return of
 
 
-@pytest.mark.parametrize(("key", "right", "wrong", "found", "remedy"), MISTAKES)
-def test_a_mistake_is_said_with_its_line(complaints, key, right, wrong, found, remedy):
-    assert WHOLE.count(right) >= 1
-    before, after = WHOLE.split(right, 1) if right else ("", WHOLE)
+@pytest.mark.parametrize(
+    ("whole", "key", "right", "wrong", "found", "remedy"),
+    [(WHOLE, *one) for one in MISTAKES] + [(SEARCHED, *one) for one in MISTAKES_OF_SEARCHES],
+)
+def test_a_mistake_is_said_with_its_line(complaints, whole, key, right, wrong, found, remedy):
+    assert whole.count(right) >= 1
+    before, after = whole.split(right, 1) if right else ("", whole)
     text = before + wrong + after
     first = complaints(text)[0]
     line = int(re.fullmatch(r"\S*own\.toml, line (\d+).*", first.where)[1])
@@ -281,10 +352,11 @@ def test_a_mistake_is_said_with_its_line(complaints, key, right, wrong, found, r
 
 def test_the_study_without_a_mistake_is_laid_out(complaints, study):
     assert len(plan_of(read_study(study(WHOLE)))) == 2 * 2 * 2 * 3 * 2 * 2 * 2
+    assert len(plan_of(read_study(study(SEARCHED)))) == 8
 
 
 def test_every_key_of_a_study_is_among_the_mistakes():
-    tried = {key for key, *_ in MISTAKES}
+    tried = {key for key, *_ in [*MISTAKES, *MISTAKES_OF_SEARCHES]}
     assert {key for key in keys_of(Study) if not any(one == key or one.startswith(f"{key}.") for one in tried)} == set()
 
 

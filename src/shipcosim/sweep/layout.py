@@ -18,6 +18,7 @@ from shipcosim.sweep.quantities import measures_of
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.records import Study
 from shipcosim.sweep.sampling import samples_of
+from shipcosim.sweep.tuning import ranges_of
 
 
 def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: bool = True) -> Plan:
@@ -54,7 +55,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     system = with_values(system, values, "--set")
     levels = Levels(study, scenario, system)
     found = [levels.of(number) for number in range(len(study.factor))]
-    samples = samples_of(study, levels, system)
+    samples = ranges_of(study, levels, system) if study.tune else samples_of(study, levels, system)
     happening = [event for one in found for level in one for event in level.events]
     measures, problems = measures_of(study, scenario, system, happening)
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
@@ -157,7 +158,7 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
 def _of_summaries(study: Study) -> Iterator[Problem]:
     """Summaries that name what is not there."""
     quantities = [one.name for one in study.quantity]
-    factors = [one.name for one in study.factor] + (["sample"] if study.sample else [])
+    factors = [one.name for one in study.factor] + (["sample"] if study.sample or study.tune else [])
     for number, one in enumerate(study.summary):
         if one.quantity not in quantities:
             found = f"There is no quantity '{one.quantity}'."

@@ -224,10 +224,10 @@ class Plan:
         facts = [
             __version__,
             engine,
-            self.study.model_dump(exclude=ignored),
+            self.study.model_dump(exclude=ignored, exclude_defaults=True),
             self.scenario.model_dump(exclude={"description"}),
             [[level.__dict__ for level in levels] for levels in self.levels],
-            None if self.samples is None else self.samples.numbers.tolist(),
+            None if self.samples is None else self.samples.facts,
             of_systems,
             of_inputs,
         ]

@@ -13,6 +13,7 @@ from shipcosim.scenario import Event, Expectation, Scenario, units_of
 from shipcosim.scenario.amounts import expectation_in_numbers
 from shipcosim.scenario.check import expectation_complaints
 from shipcosim.scenario.judge import rows_of, values_of, verdict_on
+from shipcosim.sweep.margin import UNITS, Margin, complaint_of_margin, margin_of
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.records import Quantity, Study
 from shipcosim.units import Unit
@@ -45,6 +46,8 @@ class Measure:
         Time, percentile or limit.
     since : float
         Where the run's time begins to count. [s]
+    margin : Margin or None
+        What follows from start values, not from a table.
     """
 
     name: str
@@ -55,6 +58,12 @@ class Measure:
     reduce: str = ""
     argument: float = np.nan
     since: float = 0.0
+    margin: Margin | None = None
+
+    @property
+    def is_truth(self) -> bool:
+        """Whether it is true or false."""
+        return not self.reduce and self.margin is None
 
     @property
     def may_never_be(self) -> bool:
@@ -63,7 +72,7 @@ class Measure:
 
     def of(self, table: xarray.Dataset) -> float | bool:
         """The quantity of a run by its table; NaN where it has no row, or never gets there."""
-        if not self.reduce:
+        if self.is_truth:
             return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
         rows = rows_of(table, self.expect[0])
         rows = rows[table["time"].values[rows] >= self.since - 1e-9] if self.since else rows
@@ -126,11 +135,15 @@ def measures_of(
     for signal in tracked:
         for _, found, remedy in expectation_complaints(Expectation(signal=[signal], at_most=0.0), system, changed):
             problems.append(problem_of(study, ("tracks", "signals"), found, remedy))
+    margins = [i for i, one in enumerate(study.quantity) if one.margin]
+    problems += filter(None, (complaint_of_margin(study, number, system) for number in margins))
     problems += _outside(study, scenario)
     return () if problems else tuple(_measure(one, scenario, system) for one in study.quantity), problems
 
 
 def _claims(quantity: Quantity, scenario: Scenario) -> list[Expectation]:
+    if quantity.margin:
+        return []
     if not quantity.judges:
         return [quantity.claim]
     within = [one for one in scenario.expect if not one.during or one.during[1] <= scenario.stop_time]
@@ -154,6 +167,10 @@ def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
 
 
 def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
+    if quantity.margin:
+        text = quantity.description or f"{quantity.margin} margin of {quantity.component}, the least of its axes"
+        margin = margin_of(quantity, system)
+        return Measure(quantity.name, text, UNITS[quantity.margin], (), {}, margin=margin)
     unit_of = units_of(system)
     expect = tuple(expectation_in_numbers(one, unit_of) for one in _claims(quantity, scenario))
     units = {signal: unit_of(signal) for one in expect for signal in one.signals}

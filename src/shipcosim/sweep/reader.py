@@ -162,6 +162,8 @@ def _repeated(study: Study) -> list[Problem]:
     of_sample = [] if study.sample is None else list(study.sample.of.items())
     columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
     columns += [(("sample", "of", signal), one.name or signal) for signal, one in of_sample]
+    of_search = [] if study.tune is None else list(study.tune.of.items())
+    columns += [(("tune", "of", signal), one.name or signal) for signal, one in of_search]
     columns += [(("quantity", i, "name"), one.name) for i, one in enumerate(study.quantity)]
     columns += [(("summary", i, "name"), one.name) for i, one in enumerate(study.summary)]
     for keys, name in columns:

@@ -121,6 +121,7 @@ class Distribution(Part):
     tolerance: bool = Field(default=False, description="normal, with the tolerance that the parameter set states")
     unit: str | None = Field(default=None, description="of the samples; that of the variable where it is not given")
     name: Column | None = Field(default=None, description="column; the name of the signal where it is not given")
+    also: ListOfNames = Field(default=[], description="further signals that get the same value")
     at_fork: bool = False
 
     @model_validator(mode="after")
@@ -176,9 +177,20 @@ class Quantity(Part):
     since: Seconds | None = Field(default=None, ge=0.0, description="from which the time beyond a limit is counted")
     expect: list[Expectation] = []
     scenario_expectations: bool = False
+    margin: Literal["phase", "gain", "delay"] | None = Field(default=None, description="of the DP loop, the least axis")
+    component: str = Field(default="controller", description="whose margin it is")
+    peak_period: Seconds | None = Field(default=None, gt=0.0, description="of the waves that its filter has adapted to")
 
     @model_validator(mode="after")
     def _is_one(self) -> Quantity:
+        if self.margin is not None:
+            if self.model_fields_set - {"name", "description", "margin", "component", "peak_period"}:
+                raise ValueError("margin follows from start values: beside it there are component and peak_period.")
+            if self.peak_period is None:
+                raise ValueError('peak_period is missing. Give that of the waves: peak_period = "6 s".')
+            return self
+        if self.peak_period is not None or "component" in self.model_fields_set:
+            raise ValueError("component and peak_period belong to margin. Give margin, too.")
         if self.judges == bool(self.signal):
             raise ValueError("A quantity has either signal and reduce, or expect or scenario_expectations = true.")
         others = ("near", "reduce", "during", "time", "percentile", "limit", "since")
@@ -238,6 +250,33 @@ class Summary(Part):
         return self
 
 
+class Range(Part):
+    """Values of a parameter among which a search looks."""
+
+    low: Amount
+    high: Amount
+    log: bool = Field(default=False, description="evenly spread in the logarithm")
+    name: Column | None = Field(default=None, description="column; the name of the signal where it is not given")
+    also: ListOfNames = Field(default=[], description="further signals that get the same value")
+
+
+class Objective(Part):
+    """What a search wants small or large: a quantity over the runs of a trial."""
+
+    quantity: str
+    direction: Literal["minimise", "maximise"]
+    statistic: Literal["mean", "maximum", "minimum"] = "mean"
+
+
+class Tune(Part):
+    """A search for values of parameters that no others beat in all objectives: NSGA-II, generation by generation."""
+
+    trials: Count
+    population: Annotated[int, Field(ge=2)]
+    of: dict[str, Range] = Field(min_length=1)
+    objective: list[Objective] = Field(min_length=2)
+
+
 class View(Part):
     """How the page shows something; its keys depend on its kind."""
 
@@ -271,12 +310,19 @@ class Study(Part):
     names: dict[str, Annotated[list[str], Field(min_length=1)]] = {}
     factor: list[Factor] = []
     sample: Sample | None = None
+    tune: Tune | None = None
     quantity: list[Quantity] = Field(min_length=1)
     summary: list[Summary] = []
     view: list[View] = []
     tracks: Tracks | None = None
     _path: Path | None = PrivateAttr(None)
     _source: Any = PrivateAttr(None)
+
+    @model_validator(mode="after")
+    def _draws_once(self) -> Study:
+        if self.sample is not None and self.tune is not None:
+            raise ValueError("A study has either [sample] or [tune]: take one out.")
+        return self
 
     @property
     def path(self) -> Path | None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,12 +14,14 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import units_of
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Distribution, Sample, Study
+from shipcosim.sweep.records import Distribution, Study
 from shipcosim.units import UnitError, number_in
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
 
+EVERY = ".*"
+"""Ends the name of all parameters of a component with a tolerance."""
 EDGE = 2.0**-53
 """Least probability that a sample has, so that a distribution without bounds gives numbers."""
 
@@ -56,15 +59,35 @@ class Samples:
     ----------
     columns : tuple of SampledColumn
     numbers : (samples, columns) array
-        In the units of the signals.
+        In the units of the signals; NaN where a search has not proposed them yet.
+    bounds : (columns, 3) array or None
+        Of a search: least, largest and present value.
+    library : str
+        Version of the library on which the proposals of a search depend.
     """
 
     columns: tuple[SampledColumn, ...]
     numbers: np.ndarray
+    bounds: np.ndarray | None = None
+    library: str = ""
+
+    @property
+    def facts(self) -> Any:
+        """What the values follow from, beside the study."""
+        return self.numbers.tolist() if self.bounds is None else [self.bounds.tolist(), self.library]
 
     def values(self, number: int) -> list[float | int]:
-        """Values of a sample, in the order of the columns."""
+        """Values of a sample, in the order of the columns.
+
+        Raises
+        ------
+        ShipcosimError
+            If it has not been proposed yet.
+        """
         row = self.numbers[number].tolist()
+        if any(map(isnan, row)):
+            remedy = "Run the study so far: each generation follows from the one before."
+            raise ShipcosimError(Problem(f"trial {number}", "It has not been proposed yet.", remedy))
         return [round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)]
 
 
@@ -80,14 +103,15 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     if sample is None:
         return None
     check_scipy()
-    quantiles = [_quantiles(study, levels, system, signal, one) for signal, one in sample.of.items()]
+    lines = [line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)]
+    quantiles = [_quantiles(study, levels, system, *line) for line in lines]
     usable = [one for one in quantiles if one is not None]
-    if len(usable) < len(quantiles):
+    if len(usable) < len(quantiles) or not usable:
         return None
-    spread = np.clip(SPREADS[sample.method](sample, study.seed), EDGE, 1.0 - EDGE)
+    spread = np.clip(SPREADS[sample.method](sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     found = Samples(tuple(column for column, _ in usable), numbers)
-    _check_ends(study, levels, found)
+    _check_ends(study, levels, found, [key for key, _, _ in lines])
     return found
 
 
@@ -100,11 +124,35 @@ def check_scipy() -> None:
         raise ShipcosimError(Problem("sample", "Samples come from SciPy, which is missing.", remedy)) from None
 
 
+def _lines(
+    study: Study, levels: Levels, system: System, key: str, one: Distribution
+) -> Iterator[tuple[str, str, Distribution]]:
+    """Key, name and distribution of each column of a line of [sample.of]; ``vessel.*`` is one for each tolerance."""
+    if not key.endswith(EVERY):
+        yield key, key, one
+        return
+    keys, group = ("sample", "of", key), key.removesuffix(EVERY)
+    if not one.tolerance or one.name or one.also:
+        found = f"'{key}' stands for each parameter with a tolerance."
+        levels.problems.append(problem_of(study, keys, found, "It takes tolerance = true, and neither name nor also."))
+        return
+    component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
+    names = [f"{group}.{name}" for name in component.tolerances] if component else []
+    if not names:
+        known = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
+        found = f"No parameter set states a tolerance of {key}."
+        levels.problems.append(problem_of(study, keys, found, suggestion(key, known)))
+    of = study.sample.of if study.sample else {}
+    own = {signal for line, said in of.items() for name in (line, *said.also) for signal in levels.signals_of(name)}
+    yield from ((key, name, one) for name in names if own.isdisjoint(levels.signals_of(name)))
+
+
 def _quantiles(
-    study: Study, levels: Levels, system: System, name: str, one: Distribution
+    study: Study, levels: Levels, system: System, key: str, name: str, one: Distribution
 ) -> tuple[SampledColumn, Callable[[np.ndarray], np.ndarray]] | None:
-    """Column of a line of [sample.of], and its values by their probabilities; None where something is wrong."""
-    keys, signals = ("sample", "of", name), levels.signals_of(name)
+    """Column of samples, and its values by their probabilities; None where something is wrong."""
+    keys = "sample", "of", key
+    signals = [signal for each in (name, *one.also) for signal in levels.signals_of(each)]
     try:
         component, variable = system.split(signals[0])
         for other in signals[1:]:
@@ -168,53 +216,62 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     return lambda shares: norm.ppf(shares, loc=start_value(system, signal), scale=tolerances[name])
 
 
-def _check_ends(study: Study, levels: Levels, found: Samples) -> None:
+def _check_ends(study: Study, levels: Levels, found: Samples, lines: Sequence[str]) -> None:
     """Check the least and the largest value of each column against bounds and types."""
-    for i, (name, column) in enumerate(zip(study.sample.of if study.sample else (), found.columns, strict=True)):
+    for i, (key, column) in enumerate(zip(lines, found.columns, strict=True)):
         for row in (int(np.argmin(found.numbers[:, i])), int(np.argmax(found.numbers[:, i]))):
-            value, keys = found.values(row)[i], ("sample", "of", name)
+            value, keys = found.values(row)[i], ("sample", "of", key)
             if column.at_fork:
                 levels.at_fork(column.signals, value, keys)
             else:
                 levels.checked(dict.fromkeys(column.signals, value), keys)
 
 
-def _sobol(sample: Sample, seed: int) -> np.ndarray:
+def _sobol(runs: int, parameters: int, seed: int) -> np.ndarray:
     from scipy.stats import qmc
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a number of runs that is no power of two: less even, not wrong
-        return qmc.Sobol(len(sample.of), rng=seed).random(sample.runs)
+        return qmc.Sobol(parameters, rng=seed).random(runs)
 
 
-def _latin_hypercube(sample: Sample, seed: int) -> np.ndarray:
+def _latin_hypercube(runs: int, parameters: int, seed: int) -> np.ndarray:
     from scipy.stats import qmc
 
-    return qmc.LatinHypercube(len(sample.of), rng=seed).random(sample.runs)
+    return qmc.LatinHypercube(parameters, rng=seed).random(runs)
 
 
-def _random(sample: Sample, seed: int) -> np.ndarray:
-    return np.random.default_rng(seed).random((sample.runs, len(sample.of)))
+def _random(runs: int, parameters: int, seed: int) -> np.ndarray:
+    return np.random.default_rng(seed).random((runs, parameters))
 
 
-def _saltelli(sample: Sample, seed: int) -> np.ndarray:
-    """Saltelli's design for Sobol indices of first order and in total: runs (parameters + 2) samples."""
+def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
+    """Saltelli's design for Sobol indices of first order and in total: a block of parameters + 2 samples for each run.
+
+    References
+    ----------
+    Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010.
+    """
     try:
         from SALib.sample import sobol
     except ImportError:
         remedy = "Install it: pip install 'shipcosim[sweep]'."
         raise ShipcosimError(Problem("sample.method", "saltelli comes from SALib, which is missing.", remedy)) from None
-    names = list(sample.of)
-    problem = {"num_vars": len(names), "names": names, "bounds": [[0.0, 1.0]] * len(names)}
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return sobol.sample(problem, sample.runs, calc_second_order=False, seed=seed)
+        warnings.simplefilter("ignore")  # of a number of runs that is no power of two: less even, not wrong
+        return sobol.sample(salib_problem(parameters), runs, calc_second_order=False, seed=seed)
 
 
-SPREADS: dict[str, Callable[[Sample, int], np.ndarray]] = {
+def salib_problem(parameters: int) -> dict[str, Any]:
+    """Parameters of the unit cube as SALib takes them."""
+    names = [str(number) for number in range(parameters)]
+    return {"num_vars": parameters, "names": names, "bounds": [[0.0, 1.0]] * parameters}
+
+
+SPREADS: dict[str, Callable[[int, int, int], np.ndarray]] = {
     "sobol": _sobol,
     "latin_hypercube": _latin_hypercube,
     "random": _random,
     "saltelli": _saltelli,
 }
-"""Points in the unit cube, (samples, parameters), of (sample, seed)."""
+"""Points in the unit cube, (samples, parameters), of (runs, parameters, seed)."""

@@ -7,7 +7,7 @@ import json
 import os
 import platform
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from time import monotonic
@@ -32,7 +32,19 @@ BETWEEN_PARTS, LARGEST_PART = 5.0, 10_000
 """How long rows wait until they are written [s], and how many of them."""
 GROUP = 10_000
 """Rows of the table that are made and written together."""
-FILES = ("runs.parquet", "runs.csv", "summary.csv", "study.json", "tracks.parquet", "report.html", "parts")
+FILES = (
+    *(
+        "runs.parquet",
+        "runs.csv",
+        "summary.csv",
+        "indices.csv",
+        "trials.csv",
+        "study.json",
+        "tracks.parquet",
+        "report.html",
+    ),
+    "parts",
+)
 
 
 def check_installed() -> None:
@@ -79,16 +91,12 @@ class Store:
             else:
                 set_aside(self.folder, [*FILES, *self._pages()], force)
                 self._clear()
-                self._write_about()
+                self.write_about()
             self._parts.mkdir(exist_ok=True)
 
     @property
     def _parts(self) -> Path:
         return self.folder / "parts"
-
-    def missing(self) -> Iterator[int]:
-        """Numbers of the runs that are not done, in order."""
-        yield from map(int, np.flatnonzero(~self.done))
 
     def add(self, rows: Iterable[Row]) -> None:
         """Keep rows; they are written soon."""
@@ -127,9 +135,14 @@ class Store:
             table = self._collected()
             self._write_runs(table)
             self._write_tracks()
-            self._write_about()
+            self.write_about()
             if self.done.all():
                 shutil.rmtree(self._parts)
+
+    def rows(self) -> pandas.DataFrame:
+        """Number, error and quantities of the runs that are done."""
+        self.flush()
+        return self._collected().to_pandas()
 
     def runs(self) -> pandas.DataFrame:
         """The table of runs."""
@@ -160,9 +173,11 @@ class Store:
             return None
         return found if isinstance(found, dict) else None
 
-    def _write_about(self) -> None:
-        text = json.dumps(self.about(), indent=1, ensure_ascii=False)
-        write_file(self.folder / "study.json", text.encode())
+    def write_about(self, **more: Any) -> dict[str, Any]:
+        """Write study.json, with more of what is known; what it holds."""
+        about = self.about() | {name: value for name, value in more.items() if value}
+        write_file(self.folder / "study.json", json.dumps(about, indent=1, ensure_ascii=False).encode())
+        return about
 
     def _pages(self) -> list[str]:
         """Folders of runs that were simulated again."""
@@ -187,7 +202,7 @@ class Store:
             "error": pyarrow.array([row.error for row in rows], pyarrow.string()),
         }
         for measure in self._plan.measures:
-            kind = pyarrow.float64() if measure.reduce else pyarrow.bool_()
+            kind = pyarrow.bool_() if measure.is_truth else pyarrow.float64()
             columns[measure.name] = pyarrow.array([row.quantities.get(measure.name) for row in rows], kind)
         return pyarrow.table(columns)
 

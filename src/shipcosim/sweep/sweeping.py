@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
+from shipcosim.sweep.indices import has_indices, indices_of
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.running import rows_of
 from shipcosim.sweep.storage import Store, check_installed
 from shipcosim.sweep.summary import summarised
+from shipcosim.sweep.tuning import Search
 from shipcosim.sweep.workers import Cluster, Processes, Workers
 
 if TYPE_CHECKING:
@@ -36,6 +39,8 @@ class Swept:
         What study.json holds.
     runs, summary : DataFrame
         A row a run that is done; a row for each combination of the factors that remain.
+    tables : dict of str to DataFrame
+        Others, by name: ``indices`` of samples of Saltelli's design, ``trials`` of a search.
     """
 
     plan: Plan
@@ -43,6 +48,7 @@ class Swept:
     about: dict
     runs: pandas.DataFrame
     summary: pandas.DataFrame
+    tables: dict[str, pandas.DataFrame]
 
 
 def run_study(
@@ -88,25 +94,69 @@ def run_study(
     if engine not in ENGINES:
         raise ShipcosimError(Problem("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'."))
     store = Store(folder, plan, engine, force, again)
-    left = store.missing() if at_most is None else islice(store.missing(), at_most)
-    if not store.done.all() and at_most != 0:
-        _run(plan, left, store, lambda: _workers(plan, engine, scheduler, workers), progress)
+    search = Search(plan) if plan.study.tune else None
+    _run(
+        plan, _parts(plan, store, search), store, lambda: _workers(plan, engine, scheduler, workers), at_most, progress
+    )
     store.finish()
     runs = store.runs()
     summary = summarised(plan, runs)
-    write_file(folder / "summary.csv", summary.to_csv(index=False).encode())
-    return Swept(plan, folder, store.about(), runs, summary)
+    tables, remarks = _further(plan, runs, search)
+    for name, table in {"summary": summary, **tables}.items():
+        write_file(folder / f"{name}.csv", table.to_csv(index=False).encode())
+    about = store.write_about(tables=list(tables), remarks=remarks)
+    return Swept(plan, folder, about, runs, summary, tables)
 
 
-def _run(plan, numbers, store: Store, make: Callable[[], Workers], progress: Progress | None) -> None:
-    workers = make()
+def _further(
+    plan: Plan, runs: pandas.DataFrame, search: Search | None
+) -> tuple[dict[str, pandas.DataFrame], list[str]]:
+    """Tables beside the summary, and what must be known of them."""
+    if search is not None:
+        return {"trials": search.table(runs)}, []
+    if not has_indices(plan):
+        return {}, []
+    indices, remarks = indices_of(plan, runs)
+    return {"indices": indices}, remarks
+
+
+def _parts(plan: Plan, store: Store, search: Search | None) -> Iterator[np.ndarray]:
+    """Numbers of runs that are to be done, in parts of which each follows from the one before."""
+    if search is None:
+        yield np.flatnonzero(~store.done)
+        return
+    every = np.arange(len(plan)).reshape(plan.shape)
+    for trials in search.generations():
+        numbers = every[..., trials.start : trials.stop].ravel()
+        yield numbers[~store.done[numbers]]
+        if not store.done[numbers].all():
+            return
+        search.tell(store.rows())
+
+
+def _run(
+    plan: Plan,
+    parts: Iterable[np.ndarray],
+    store: Store,
+    make: Callable[[], Workers],
+    at_most: int | None,
+    progress: Progress | None,
+) -> None:
+    workers, room = None, at_most
     try:
-        for rows in rows_of(plan, numbers, workers):
-            store.add(rows)
-            if progress is not None:
-                progress(int(store.done.sum()), len(plan))
+        for numbers in parts:
+            now = numbers[:room]
+            room = None if room is None else room - len(now)
+            if not len(now):
+                continue
+            workers = workers or make()
+            for rows in rows_of(plan, map(int, now), workers):
+                store.add(rows)
+                if progress is not None:
+                    progress(int(store.done.sum()), len(plan))
     finally:
-        workers.close()
+        if workers is not None:
+            workers.close()
         store.flush()
 
 

@@ -170,7 +170,10 @@ class _Bench:
         if done.error:
             return Row(run.number, error=done.error)
         tracks = {name: done.kept[f"track {name}"][1] for name in ("time", *self._tracked) if self._tracked}
-        return Row(run.number, {m.name: done.kept[m.name][1].item() for m in self._plan.measures}, tracks=tracks)
+        quantities = {
+            m.name: m.margin.of(run.values) if m.margin else done.kept[m.name][1].item() for m in self._plan.measures
+        }
+        return Row(run.number, quantities, tracks=tracks)
 
     def close(self) -> None:
         """Free the FMUs and remove what was unpacked."""
@@ -182,7 +185,7 @@ class _Bench:
         return [name for name in names if name in self._signals]
 
     def _reduced(self, table: Any) -> dict[str, Any]:
-        found = {measure.name: measure.of(table) for measure in self._plan.measures}
+        found = {measure.name: measure.of(table) for measure in self._plan.measures if measure.margin is None}
         every = slice(None, None, self._plan.rows_per_track_row)
         tracks = {f"track {name}": table[name].values[every] for name in ("time", *self._tracked) if self._tracked}
         return found | tracks

@@ -44,6 +44,8 @@ def run_again(plan: Plan, number: int, out: Path, engine: str, command: str) -> 
     if not 0 <= number < len(plan):
         remedy = f"Runs are numbered from 0 to {len(plan) - 1}."
         raise ShipcosimError(Problem("--run", f"There is no run {number} in {plan.study.name}.", remedy))
+    if plan.study.tune and _is_of(plan, out, engine):
+        run_study(plan, out, engine=engine, at_most=0)  # what a search proposed follows from what is done
     token = REPLACING.set(True)  # what it replaces is the same run
     try:
         passed = _simulate(plan, number, out, engine)

@@ -17,6 +17,7 @@ from shipcosim.cli.exits import INTERRUPTED
 from shipcosim.sweep import Plan, Swept, run_study
 
 SHOWN = 20  # rows of the summary on the terminal
+MOST_IMPORTANT = 10  # parameters of each quantity on the terminal
 
 
 def sweep_and_save(plan: Plan, out: Path, command: str, **options: Any) -> Swept:
@@ -113,6 +114,12 @@ def _say(swept: Swept) -> None:
     if 0 < len(swept.summary) <= SHOWN:
         text = swept.summary.to_string(index=False, na_rep="", float_format=lambda value: f"{value:.4g}")
         console.print(text, markup=False)
+    if "indices" in swept.tables:
+        _say_indices(console, swept)
+    if "trials" in swept.tables:
+        _say_trials(console, swept)
+    for remark in swept.about.get("remarks", ()):
+        console.print(remark, markup=False)
     counts = swept.about["runs"]
     errors = swept.runs.loc[swept.runs["error"] != "", "error"]
     if len(errors):
@@ -121,3 +128,35 @@ def _say(swept: Swept) -> None:
     open_ = f"; {left:,} are left, which the same command does" if left else ""
     console.print(f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False)
     console.print(f"Page: {shown_path(swept.folder / 'report.html')}", markup=False)
+
+
+def _say_indices(console: Console, swept: Swept) -> None:
+    """Sobol indices of each quantity, those of the most important parameters."""
+    indices = swept.tables["indices"]
+    factors = [one.name for one in swept.plan.study.factor]
+    for key, part in indices.groupby(["quantity", *factors], sort=False):
+        quantity, *levels = key if isinstance(key, tuple) else (key,)
+        of = ", ".join([str(quantity), *(f"{name} {level}" for name, level in zip(factors, levels, strict=True))])
+        more = f", {MOST_IMPORTANT} of {len(part)} parameters" if len(part) > MOST_IMPORTANT else ""
+        console.print(f"Sobol indices of {of}{more}:", markup=False)
+        shown = part.head(MOST_IMPORTANT)
+        columns = {"parameter": shown["parameter"].tolist()}
+        for name in ("total", "first_order"):
+            ends = zip(*(shown[f"{name}{end}"] for end in ("", "_low", "_high")), strict=True)
+            columns[name] = [f"{value:.2f} ({low:.2f} to {high:.2f})" for value, low, high in ends]
+        console.print(type(shown)(columns).to_string(index=False), markup=False)
+
+
+def _say_trials(console: Console, swept: Swept) -> None:
+    """Trials of a search that no other beats, and the one as shipped."""
+    trials, tune = swept.tables["trials"], swept.plan.study.tune
+    assert tune is not None
+    names = [one.quantity for one in tune.objective]
+    front = trials[trials["pareto"]].sort_values(names[0])
+    said = f"of {len(trials)} trials no other beats {len(front)}; trial 0 is as shipped."
+    console.print(f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}", markup=False)
+    shown = front.iloc[:: max(-(-len(front) // SHOWN), 1)]
+    ours = trials[trials["as_shipped"] & ~trials["trial"].isin(shown["trial"])]
+    columns = ["trial", *names, *(one.name for one in swept.plan.samples.columns)] if swept.plan.samples else []
+    text = type(trials)({name: [*shown[name], *ours[name]] for name in columns})
+    console.print(text.to_string(index=False, float_format=lambda value: f"{value:.4g}"), markup=False)

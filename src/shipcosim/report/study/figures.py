@@ -159,7 +159,8 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     values = [str(asked)] if isinstance(asked, str) else [str(one) for one in asked or ()]
     frame = frame_of(tables, view, [by, *values])
     category = frame.column(by)
-    levels = category.levels or tuple(np.unique(category.values[np.isfinite(category.values)]).tolist())
+    every = category.levels or tuple(np.unique(category.values[np.isfinite(category.values)]).tolist())
+    levels = every[: int(view.get("most") or len(every))]
     series = series_of(frame, {"series": False} | dict(view) if len(values) > 1 else view, [by])
     names = [category.text(at) for at in levels]
     is_upright = sum(map(len, names)) <= MOST_LETTERS
@@ -172,7 +173,8 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
             label = ", ".join(filter(None, (name if len(values) > 1 else "", one.label)))
             traces.append(_bar(label or name, names, points, next(colours, palette.INK), is_upright))
     unit = frame.column(values[0]).unit if values else ""
-    notes = [str(view.get("note") or ""), how_gathered(frame, values[0], groups), left_out(frame, series)]
+    fewer = f"The first {len(levels)} of {len(every)}." if len(levels) < len(every) else ""
+    notes = [str(view.get("note") or ""), fewer, how_gathered(frame, values[0], groups), left_out(frame, series)]
     title = f"{', '.join(values)} by {by}"
     height = TALL if is_upright else max(TALL, BAR * len(levels) * len(traces))
     return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, height)
@@ -212,11 +214,23 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     third = columns[2] if len(columns) == 3 else None
     look = {"size": 9, "color": palette.VERMILLION, "opacity": 0.95, "line": {"color": palette.INK, "width": 1}}
     traces = [
-        _dots("other runs", frame, tables, columns, _even(rows["others"]), third, {"size": 5, "color": palette.FAINT}),
+        _dots(
+            "other runs" if frame.name == RUNS else "others",
+            frame,
+            tables,
+            columns,
+            _even(rows["others"]),
+            third,
+            {"size": 5, "color": palette.FAINT},
+        ),
         _dots("not beaten", frame, tables, columns, rows["front"], third, look),
     ]
     if third is None:
         traces[1] |= {"mode": "lines+markers", "line": {"color": palette.VERMILLION, "width": 1, "dash": "dot"}}
+    if name := view.get("marked"):
+        rows["marked"] = np.flatnonzero(frame.column(name).values == 1.0)
+        mark = {"size": 14, "symbol": "star", "color": palette.BLUE, "line": {"color": palette.INK, "width": 1}}
+        traces.append(_dots(str(name).replace("_", " "), frame, tables, columns, rows["marked"], None, mark))
     better = ", ".join(f"{c.name} {'large' if c.name in larger else 'small'}" for c in columns)
     notes = [
         str(view.get("note") or f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."),

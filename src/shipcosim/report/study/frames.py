@@ -81,11 +81,12 @@ def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
     only = {str(name): value if isinstance(value, list) else [value] for name, value in asked}
     runs, summary, others = tables.runs, tables.summary, dict(tables.tables)
     for name, values in only.items():
-        if name not in runs:
+        having = [table for table in (runs, summary, *others.values()) if name in table]
+        if not having:
             raise Lacking(f"only: there is no column '{name}'. There is: {', '.join(map(str, runs.columns))}.")
         wanted = {label(value) for value in values}
-        if missing := wanted - {label(value) for value in runs[name]}:
-            raise Lacking(f"only: no run has {name} = {', '.join(sorted(missing))}.")
+        if missing := wanted - {label(value) for table in having for value in table[name]}:
+            raise Lacking(f"only: no row has {name} = {', '.join(sorted(missing))}.")
         runs, summary = (_with(table, name, wanted) for table in (runs, summary))
         others = {key: _with(table, name, wanted) for key, table in others.items()}
     return replace(tables, runs=runs, summary=summary, tables=others) if only else tables
@@ -108,7 +109,8 @@ def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]
         every = {"runs": tables.runs, "summary": tables.summary, **tables.tables}
         if name not in every:
             raise Lacking(f"There is no table '{name}'. There is: {', '.join(every)}.")
-        return Frame(f"the table '{name}'" if name in tables.tables else f"the {name}", columns_of(every[name], said))
+        title = f"the table '{name}'" if name in tables.tables else f"the {name}"
+        return Frame(title, columns_of(every[name], said))
     if not {*needed} <= {*map(str, tables.summary.columns)}:
         return Frame(RUNS, columns_of(tables.runs, said))
     rows = tables.summary.dropna(subset=list(needed))  # summaries over other factors have rows of their own

@@ -86,7 +86,7 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
         runs=swept.runs,
         summary=swept.summary,
         tracks=pandas.read_parquet(tracks) if tracks.is_file() else None,
-        tables={str(name): pandas.read_csv(folder / f"{name}.csv") for name in swept.about.get("tables") or ()},
+        tables=swept.tables,
         pages=sorted(int(match[1]) for match in found if match),
         command=command,
     )

@@ -161,8 +161,16 @@ def varied_table(study: Mapping[str, Any]) -> Table:
     rows = [(str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")]
     sampled = _given(_given(study).get("sample") or {}).get("of") or {}
     for signal, how in sampled.items():
-        rows.append((str(_given(how).get("name") or signal), str(signal), _distribution(_given(how))))
+        rows.append((str(_given(how).get("name") or signal), _with_others(signal, how), _distribution(_given(how))))
+    for signal, how in (_given(_given(study).get("tune") or {}).get("of") or {}).items():
+        ends = f"sought from {how['low']} to {how['high']}{' in the logarithm' if how.get('log') else ''}"
+        rows.append((str(how.get("name") or signal), _with_others(signal, how), ends))
     return Table(tuple(rows), ("name", "what it sets", "values"), tight=(0,))
+
+
+def _with_others(signal: str, how: Mapping[str, Any]) -> str:
+    """A signal and those that get the same value."""
+    return ", ".join([str(signal), *how.get("also", ())])
 
 
 def _given(part: Mapping[str, Any]) -> dict[str, Any]:
@@ -213,7 +221,7 @@ def _distribution(how: Mapping[str, Any]) -> str:
     later = " (at the fork)" if how.get("at_fork") else ""
     if how.get("tolerance"):
         return f"normal about the start value, standard deviation: the tolerance of the parameter set{later}"
-    others = ("distribution", "unit", "name", "at_fork", "tolerance")
+    others = ("distribution", "unit", "name", "at_fork", "tolerance", "also")
     numbers = ", ".join(f"{name} {value}" for name, value in how.items() if name not in others)
     unit = f" {how['unit']}" if how.get("unit") else ""
     return f"{how.get('distribution', '')}: {numbers}{unit}{later}"
@@ -231,6 +239,9 @@ def _quantity(one: Mapping[str, Any]) -> str:
         return "whether all that the scenario expects holds"
     if wanted := one.get("expect"):
         return f"whether all holds: {'; '.join(_plain(_given(claim)) for claim in wanted)}"
+    if "margin" in one:
+        waves = f"wave filter adapted to waves of {one.get('peak_period')} s"
+        return f"{one['margin']} margin of {one.get('component', 'controller')}, the least of its axes, {waves}"
     of = _plain(one.get("signal", ""))
     if "near" in one:
         of = f"the distance of {of} from {_plain(one['near'])}"
@@ -257,13 +268,17 @@ def _plain(value: Any) -> str:
 def setup_table(tables: StudyTables) -> Table:
     """Scenario, start values, sampling, seed, engine and versions."""
     about, study = tables.about, _given(tables.study)
-    sample = _given(study.get("sample") or {})
+    sample, tune = (_given(study.get(name) or {}) for name in ("sample", "tune"))
+    sought = [f"{one['quantity']} {one['direction']}d" for one in tune.get("objective", ())]
     known: dict[str, Any] = {
         "scenario": study.get("scenario"),
         "start values of all runs": _plain(study["set"]) if study.get("set") else None,
         "stop time": study.get("stop_time"),
         "runs share the time before": study.get("fork_at"),
         "sampling": f"{sample['method']}, {sample.get('runs')} points" if sample.get("method") else None,
+        "search": f"NSGA-II, {tune['trials']} trials, {tune['population']} a generation: {', '.join(sought)}"
+        if tune
+        else None,
         "seed": study.get("seed", about.get("seed")),
         "engine": about.get("engine"),
         "plan": about.get("plan"),

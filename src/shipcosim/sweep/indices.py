@@ -1,0 +1,129 @@
+"""Sobol indices: how much of a quantity's variance each sampled parameter accounts for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.sweep.plan import Plan
+from shipcosim.sweep.sampling import salib_problem
+from shipcosim.sweep.summary import CONFIDENCE
+
+if TYPE_CHECKING:
+    import pandas
+
+RESAMPLES = 1000
+"""Of the bootstrap."""
+FEWEST = 4
+"""Blocks of the design from which indices are estimated at all."""
+
+
+def has_indices(plan: Plan) -> bool:
+    """Whether the samples of a plan are those of Sobol indices."""
+    sample = plan.study.sample
+    return plan.samples is not None and sample is not None and sample.method == "saltelli"
+
+
+def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, list[str]]:
+    """Sobol indices of each quantity to each sampled parameter, the largest first.
+
+    A failed run, or one in which the quantity has no value, takes its block with it: without one of its runs the
+    others of a block say nothing.
+
+    Parameters
+    ----------
+    plan : Plan
+        Sampled by `saltelli`.
+    runs : DataFrame
+        The table of runs, as far as they are done.
+
+    Returns
+    -------
+    DataFrame
+        Levels of the other factors, `quantity`, `parameter`, `first_order` and `total` each with ``_low`` and
+        ``_high`` of the 95 % interval by the bootstrap, `blocks` of the design that it was estimated from. [1]
+    list of str
+        What was left out.
+
+    References
+    ----------
+    Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010.
+    """
+    import pandas
+
+    columns = [one.name for one in plan.samples.columns] if plan.samples else []
+    factors = [one.name for one in plan.study.factor]
+    rows, said = [], []
+    for levels, part in _parts(runs, factors):
+        for measure in plan.measures:
+            values = _by_sample(plan, part, measure.name)
+            blocks = values.reshape(-1, len(columns) + 2)
+            known = np.asarray(np.isfinite(blocks).all(axis=1))
+            if not known.all():
+                said.append(_left_out(measure.name, levels, known, _done(plan, part).reshape(blocks.shape)))
+            if known.sum() >= FEWEST and np.ptp(blocks[known]) > 0.0:
+                rows += _rows(levels, measure.name, columns, blocks[known], plan.study.seed)
+            else:
+                said.append(
+                    f"{_of(measure.name, levels)}: no indices, it is the same in all runs, or too few are done."
+                )
+    head = [*factors, "quantity", "parameter", "first_order", "first_order_low", "first_order_high"]
+    return pandas.DataFrame(rows, columns=[*head, "total", "total_low", "total_high", "blocks"]), said
+
+
+def _parts(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], Any]]:
+    """Runs that are alike but for their samples, with the levels of their factors."""
+    grouped = runs.groupby(list(factors), sort=False, dropna=False) if factors else [((), runs)]
+    for key, part in grouped:
+        yield dict(zip(factors, key, strict=True)), part
+
+
+def _by_sample(plan: Plan, part: Any, quantity: str) -> np.ndarray:
+    """A quantity by the number of the sample; NaN where it has no value."""
+    values = np.full(plan.shape[-1], np.nan)
+    sound = part[part["error"] == ""]
+    values[sound["sample"].to_numpy(int)] = sound[quantity].to_numpy(float)
+    return values
+
+
+def _done(plan: Plan, part: Any) -> np.ndarray:
+    done = np.zeros(plan.shape[-1], bool)
+    done[part["sample"].to_numpy(int)] = True
+    return done
+
+
+def _rows(levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarray, seed: int) -> list[dict[str, Any]]:
+    """Rows of a quantity, the largest total index first."""
+    from SALib.analyze import sobol
+
+    found = sobol.analyze(
+        salib_problem(len(columns)),
+        blocks.ravel(),
+        calc_second_order=False,
+        num_resamples=RESAMPLES,
+        conf_level=CONFIDENCE,
+        seed=seed + 1,  # SALib takes 0 for none
+    )
+    rows = []
+    for k in np.argsort(-found["ST"], kind="stable"):
+        row = levels | {"quantity": quantity, "parameter": columns[k]}
+        for name, short in (("first_order", "S1"), ("total", "ST")):
+            value, half = float(found[short][k]), float(found[f"{short}_conf"][k])
+            row |= {name: value, f"{name}_low": value - half, f"{name}_high": value + half}
+        rows.append(row | {"blocks": len(blocks)})
+    return rows
+
+
+def _of(quantity: str, levels: dict[str, Any]) -> str:
+    return ", ".join([quantity, *(f"{name} {level}" for name, level in levels.items())])
+
+
+def _left_out(quantity: str, levels: dict[str, Any], known: np.ndarray, done: np.ndarray) -> str:
+    """A sentence on blocks that are not used."""
+    open_ = int((~done.all(axis=1)).sum())
+    bad = int((~known).sum()) - open_
+    why = [f"{bad} since a run of it failed or has no value"] if bad else []
+    why += [f"{open_} since not all of it is done"] if open_ else []
+    return f"{_of(quantity, levels)}: indices without {int((~known).sum())} of {len(known)} blocks, {', '.join(why)}."

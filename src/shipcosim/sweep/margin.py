@@ -1,0 +1,85 @@
+"""Stability margins of the DP loop of a run: a quantity that follows from start values alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from functools import lru_cache
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+from shipcosim.errors import Problem
+from shipcosim.models.control import margins as loops
+from shipcosim.models.control.observer import DpShip, ObserverParameters
+from shipcosim.models.control.pid import ControlParameters
+from shipcosim.sweep.reader import problem_of
+from shipcosim.sweep.records import Quantity, Study
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
+
+PARTS: tuple[Any, ...] = (DpShip, ObserverParameters, ControlParameters)
+UNITS = {"phase": "rad", "gain": "1", "delay": "s"}
+NONE = {"phase": 0.0, "gain": 1.0, "delay": 0.0}
+"""Of a loop that is not stable."""
+
+
+@dataclass(frozen=True)
+class Margin:
+    """Least margin of surge, sway and yaw.
+
+    Parameters
+    ----------
+    kind : str
+        ``"phase"``, ``"gain"`` or ``"delay"``.
+    component : str
+        The controller.
+    wave_frequency : float
+        That the wave filter has adapted to. [rad/s]
+    values : mapping of str to float
+        Its parameters in all runs, in the units of its variables.
+    """
+
+    kind: str
+    component: str
+    wave_frequency: float
+    values: Mapping[str, float]
+
+    def of(self, values: Mapping[str, Any]) -> float:
+        """The margin of a run by its start values. [rad, 1 or s]"""
+        own = tuple(float(values.get(f"{self.component}.{name}", value)) for name, value in self.values.items())
+        return _least(tuple(self.values), own, self.wave_frequency)[self.kind]
+
+
+def margin_of(quantity: Quantity, system: System) -> Margin:
+    """Margin of a quantity, of a system that `complaint_of_margin` says nothing against."""
+    component: Any = system.components[quantity.component]
+    values = {name: float(component.start_value(name)) for name in _names()}
+    return Margin(str(quantity.margin), quantity.component, 2.0 * pi / float(quantity.peak_period or 0.0), values)
+
+
+def complaint_of_margin(study: Study, number: int, system: System) -> Problem | None:
+    """What is wrong with the component of a margin."""
+    name = study.quantity[number].component
+    having = [c.name for c in system.components.values() if all(one in c.fmu.variables for one in _names())]
+    if name in having:
+        return None
+    found = f"'{name}' is no DP controller: it lacks parameters of observer and control law."
+    known = f"Those of {', '.join(having)} are there." if having else "The system has none."
+    return problem_of(study, ("quantity", number, "component" if name != "controller" else "margin"), found, known)
+
+
+def _names() -> list[str]:
+    return [one.name for part in PARTS for one in fields(part)]
+
+
+@lru_cache(maxsize=64)
+def _least(names: tuple[str, ...], values: tuple[float, ...], wave_frequency: float) -> dict[str, float]:
+    """Least margins over the axes; kept, since runs differ in seeds more often than in gains."""
+    given = dict(zip(names, values, strict=True))
+    ship, noise, law = (part(**{one.name: given[one.name] for one in fields(part)}) for part in PARTS)
+    loop = loops.linear_loop(ship, noise, law, loops.Delays(), wave_frequency)
+    if not loops.is_stable(loop):
+        return NONE
+    found = [loops.margins(loop, axis) for axis in range(len(loops.AXES))]
+    return {kind: min(getattr(one, kind) for one in found) for kind in UNITS}

@@ -1,0 +1,198 @@
+"""Search for parameters that no others beat in several quantities: Optuna's NSGA-II, a generation at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.scenario import units_of
+from shipcosim.sweep.levels import Levels, start_value
+from shipcosim.sweep.plan import Plan
+from shipcosim.sweep.reader import problem_of
+from shipcosim.sweep.records import Objective, Range, Study
+from shipcosim.sweep.sampling import SampledColumn, Samples
+
+if TYPE_CHECKING:
+    import pandas
+
+    from shipcosim.ssp import System
+
+STATISTICS = {"mean": np.mean, "maximum": np.max, "minimum": np.min}
+
+
+def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
+    """Samples of a search, of which none is proposed yet; None where something is wrong, which is said.
+
+    Parameters
+    ----------
+    study : Study
+        With [tune].
+    levels : Levels
+        Whose problems take what is wrong.
+    system : System
+        Of all runs: its start values are the first trial.
+
+    Raises
+    ------
+    ShipcosimError
+        If Optuna is missing.
+    """
+    assert study.tune is not None
+    version = optuna_version()
+    made = [_range(study, levels, system, key, one) for key, one in study.tune.of.items()]
+    columns = [one[0] for one in made if one is not None]
+    names = [one.name for one in study.quantity]
+    for number, one in enumerate(study.tune.objective):
+        if one.quantity not in names:
+            keys, found = ("tune", "objective", number, "quantity"), f"There is no quantity '{one.quantity}'."
+            levels.problems.append(problem_of(study, keys, found, suggestion(one.quantity, names)))
+    if len(columns) < len(made):
+        return None
+    bounds = np.array([one[1] for one in made if one is not None])
+    return Samples(tuple(columns), np.full((study.tune.trials, len(columns)), np.nan), bounds, version)
+
+
+def optuna_version() -> str:
+    """Version of Optuna, on which its proposals depend.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is missing.
+    """
+    try:
+        import optuna
+    except ImportError:
+        found, remedy = "The search comes from Optuna, which is missing.", "pip install 'shipcosim[sweep]'"
+        raise ShipcosimError(Problem("tune", found, f"Install it: {remedy}.")) from None
+    return optuna.__version__
+
+
+def _range(
+    study: Study, levels: Levels, system: System, key: str, one: Range
+) -> tuple[SampledColumn, tuple[float, float, float]] | None:
+    """Column of a line of [tune.of], with its least, largest and present value; None where something is wrong."""
+    signals, ends = levels.signals_of(key), {}
+    others = [signal for name in one.also for signal in levels.signals_of(name)]
+    for end, value in (("low", one.low), ("high", one.high)):
+        checked = levels.checked(dict.fromkeys(signals, value), ("tune", "of", key, end))
+        ends[end] = next(iter(checked.values()), None)
+        levels.checked(dict.fromkeys(others, value), ("tune", "of", key, "also"))
+    if None in ends.values():
+        return None
+    low, high, now = (float(value) for value in (ends["low"], ends["high"], start_value(system, signals[0])))
+    if not low < high or (one.log and low <= 0.0):
+        found = f"low = {low:g} and high = {high:g}."
+        remedy = "low is the smaller one, and with log above 0."
+    elif not low <= now <= high:
+        found, remedy = f"{signals[0]} is {now:g} now, which is not among them.", "Take a range that has it in."
+    else:
+        unit, is_whole = units_of(system)(signals[0]), isinstance(start_value(system, signals[0]), int)
+        column = SampledColumn(one.name or key, (*signals, *others), unit.name if unit else None, is_whole, False)
+        return column, (low, high, now)
+    levels.problems.append(problem_of(study, ("tune", "of", key), found, remedy))
+    return None
+
+
+class Search:
+    """A search of a plan: proposes a generation, is told how it went, proposes the next one.
+
+    It follows from the study's seed and from what it is told, so that one that is told again what is on disk goes on
+    as if it had not stopped.
+
+    Parameters
+    ----------
+    plan : Plan
+        With [tune]; its samples are filled in as they are proposed.
+    """
+
+    def __init__(self, plan: Plan):
+        import optuna
+        from optuna.distributions import FloatDistribution, IntDistribution
+
+        assert plan.study.tune is not None and plan.samples is not None and plan.samples.bounds is not None
+        self._plan, self._tune, self._samples = plan, plan.study.tune, plan.samples
+        kinds = [IntDistribution if one.is_whole else FloatDistribution for one in plan.samples.columns]
+        every = zip(plan.samples.columns, kinds, plan.samples.bounds.tolist(), self._tune.of.values(), strict=True)
+        self._among: dict[str, Any] = {c.name: kind(low, high, log=one.log) for c, kind, (low, high, _), one in every}
+        sampler = optuna.samplers.NSGAIISampler(population_size=self._tune.population, seed=plan.study.seed)
+        verbosity = optuna.logging.get_verbosity()
+        optuna.logging.set_verbosity(optuna.logging.WARNING)
+        try:
+            spelling: Any = {"maximise": "maximize", "minimise": "minimize"}
+            directions = [spelling[one.direction] for one in self._tune.objective]
+            self._search = optuna.create_study(directions=directions, sampler=sampler)
+        finally:
+            optuna.logging.set_verbosity(verbosity)
+        now = zip(plan.samples.columns, plan.samples.bounds[:, 2].tolist(), strict=True)
+        self._search.enqueue_trial({one.name: round(value) if one.is_whole else value for one, value in now})
+
+    def generations(self) -> Iterator[range]:
+        """Numbers of the trials of each generation, proposed; it has to be told before the next one."""
+        size, trials = self._tune.population, self._tune.trials
+        for first in range(0, trials, size):
+            numbers = range(first, min(first + size, trials))
+            self._asked = [self._search.ask(self._among) for _ in numbers]
+            for number, trial in zip(numbers, self._asked, strict=True):
+                self._samples.numbers[number] = [trial.params[name] for name in self._among]
+            yield numbers
+
+    def tell(self, runs: Any) -> None:
+        """Tell how the generation went.
+
+        Parameters
+        ----------
+        runs : DataFrame
+            Runs that are done, with `run`, `error` and quantities. A trial of which one failed, or has no value, is
+            worse than any other.
+        """
+        for trial in self._asked:
+            found = _objectives(self._tune.objective, runs[self._samples_of(runs) == trial.number])
+            worst = [-np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective]
+            self._search.tell(trial, worst if found is None else found)
+
+    def _samples_of(self, runs: Any) -> np.ndarray:
+        return np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
+
+    def table(self, runs: Any) -> pandas.DataFrame:
+        """Trials that are done.
+
+        Parameters
+        ----------
+        runs : DataFrame
+            The table of runs.
+
+        Returns
+        -------
+        DataFrame
+            `trial`, `generation`, parameters, quantities over the runs of the trial (as the objective says, else the
+            mean), `runs`, `failed`; `pareto`: no other trial beats it in all objectives; `as_shipped`: the first one.
+        """
+        import pandas
+
+        statistics = {one.quantity: STATISTICS[one.statistic] for one in self._tune.objective}
+        best = {trial.number for trial in self._search.best_trials}
+        rows = []
+        for number, part in runs.groupby("sample", sort=True):
+            sound = part[part["error"] == ""]
+            row = {"trial": number, "generation": number // self._tune.population}
+            row |= dict(zip(self._among, self._samples.numbers[number].tolist(), strict=True))
+            for measure in self._plan.measures:
+                values = sound[measure.name].to_numpy(float)
+                is_whole = len(sound) == len(part) and np.isfinite(values).all()
+                row[measure.name] = float(statistics.get(measure.name, np.mean)(values)) if is_whole else np.nan
+            is_best = number in best and not any(np.isnan(row[name]) for name in statistics)
+            row |= {"runs": len(part), "failed": len(part) - len(sound), "pareto": is_best, "as_shipped": number == 0}
+            rows.append(row)
+        return pandas.DataFrame(rows)
+
+
+def _objectives(objectives: list[Objective], runs: Any) -> list[float] | None:
+    """Objectives of a trial; None where one of its runs failed or has no value."""
+    if (runs["error"] != "").any():
+        return None
+    found = [float(STATISTICS[one.statistic](runs[one.quantity].to_numpy(float))) for one in objectives]
+    return found if np.isfinite(found).all() else None
