@@ -283,7 +283,13 @@ reduce = "final"
 OF_A_LOOP = 'name = "margin"\nmargin = "phase"\npeak_period = "6 s"\n'
 MISTAKES_OF_SEARCHES = [
     ("tune", "trials     = 8", "trils = 8", "unknown key 'trils'", "trials"),
-    ("tune", "[tune]", '[sample]\nruns = 2\nof."lag.noise".distribution = "norm"\n[tune]', "either [sample] or", ""),
+    (
+        "tune",
+        "[tune]",
+        '[sample]\nruns = 2\nof."lag.noise".distribution = "norm"\n[tune]',
+        "either [sample] or",
+        "Take one out",
+    ),
     ("tune.trials", "trials     = 8", "trials = 0", "trials = 0", "greater than or equal to 1"),
     ("tune.population", "population = 4", "population = 1", "population = 1", "greater than or equal to 2"),
     ("tune.of", '[tune.of."lag.u"]', '[tune.of."lag.w"]', "'w'", "u"),
@@ -343,9 +349,9 @@ def test_a_mistake_is_said_with_its_line(complaints, whole, key, right, wrong, f
     text = before + wrong + after
     first = complaints(text)[0]
     line = int(re.fullmatch(r"\S*own\.toml, line (\d+).*", first.where)[1])
-    own = (before + wrong).count("\n") + 1
+    own, last = before.count("\n") + 1, (before + wrong).count("\n") + 1
     head = max((n for n, one in enumerate(text.split("\n")[:own], 1) if one.startswith("[")), default=own)
-    assert line in (own, head), f"line {own} of {key}: {first}"
+    assert own <= line <= last or line == head, f"line {own} of {key}: {first}"
     assert found in first.found, first
     assert remedy in f"{first.found} {first.remedy}".split(found, 1)[1], first
 

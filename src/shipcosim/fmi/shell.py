@@ -45,6 +45,11 @@ def _guarded(method: Callable) -> Callable:
     return call
 
 
+def _differ(slave: Any, found: Found, values: Sequence) -> bool:
+    """Whether values are others than the slave's own: `start` follows from the variables alone."""
+    return found.values(slave.__dict__) != tuple(values)
+
+
 class Fmi2Slave:
     """FMI 2.0 co-simulation on an object that keeps its variables and its state as plain attributes.
 
@@ -67,9 +72,7 @@ class Fmi2Slave:
 
     variables: ClassVar[tuple[Variable, ...]] = ()
     groups: ClassVar[tuple[Parameters, ...]] = ()
-    newest: ClassVar[Any] = (
-        None  # refers to the instance that the binary made last: a master in this process can call it directly
-    )
+    newest: ClassVar[Any] = None  # refers to the instance that the binary made last, for a master in this process
 
     def start(self) -> None:
         """Set state and outputs for the start; see `Fmu`."""
@@ -179,7 +182,7 @@ class Fmi2Slave:
             if fixed and self._initialised:
                 self._refuse(found)
             if self._initialising:
-                self._stale = self._stale or self._changes(found, values)
+                self._stale = self._stale or _differ(self, found, values)
             put(zip(names, values, strict=True))
 
         return set_values
@@ -205,12 +208,8 @@ class Fmi2Slave:
     def _set(self, found: Found, values: Sequence) -> None:
         if found.fixed and self._initialised:
             self._refuse(found)
-        self._stale = self._initialising and (self._stale or self._changes(found, values))
+        self._stale = self._initialising and (self._stale or _differ(self, found, values))
         self.__dict__.update(zip(found.names, values, strict=True))
-
-    def _changes(self, found: Found, values: Sequence) -> bool:
-        """Whether values differ from those that are there: `start` follows from the variables alone."""
-        return found.values(self.__dict__) != tuple(values)
 
     def _refuse(self, found: Found) -> None:
         raise FmuError(f"parameter '{found.fixed}' is fixed, it can only be set before the run")

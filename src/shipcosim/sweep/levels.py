@@ -80,7 +80,7 @@ class Levels:
         if factor.seeds is not None:
             return self._of_seeds(factor, ("factor", number, "seeds"))
         key = "values" if factor.values is not None else "from"
-        signals = self._expanded(factor.signal, ("factor", number, "signal"))
+        signals = self.existing(factor.signal, ("factor", number, "signal"))
         if not signals:
             return []
         values = factor.values or self._spaced(factor, signals[0], number)
@@ -148,7 +148,7 @@ class Levels:
                 return [component + name[len(group) :] for component in components]
         return [name]
 
-    def _expanded(self, names: Iterable[str], keys: Sequence[str | int]) -> list[str]:
+    def existing(self, names: Iterable[str], keys: Sequence[str | int]) -> list[str]:
         """Signals that names mean; none where one does not exist, which is said."""
         signals = [signal for name in names for signal in self.signals_of(name)]
         problems = []
@@ -229,9 +229,7 @@ class Levels:
 
     def _of_seeds(self, factor: Factor, keys: Sequence[str | int]) -> list[Level]:
         """Levels of seeds: each signal gets its own number, drawn from the study's seed, the level and its name."""
-        signals = (
-            self._expanded(factor.signal, (*keys[:2], "signal")) if factor.signal else list(seeds_of(self._system))
-        )
+        signals = self.existing(factor.signal, (*keys[:2], "signal")) if factor.signal else list(seeds_of(self._system))
         if not signals and not self.problems:
             found = "Nothing in the system has a seed: it has no parameter named seed."
             self.problems.append(problem_of(self._study, keys, found, "Name the signals: signal = [...]."))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -76,12 +76,12 @@ def study_of(source: Source) -> Study:
         study = Study.model_validate(source.content)
     except ValidationError as error:
         problems = {}
-        for finding in error.errors():
+        for finding in sorted(error.errors(), key=lambda one: one["type"] == "missing"):  # perhaps it is misspelt
             keys = finding["loc"]
             problems.setdefault(keys[:3], Problem(source.location(keys), *complaint_of(finding, Study)))
         raise ShipcosimError(list(problems.values())) from None
     study._path, study._source = source.files[0][0], source
-    if problems := [*_repeated(study)]:
+    if problems := [*_repeated(study), *_drawn_twice(study)]:
         raise ShipcosimError(problems)
     return study
 
@@ -154,6 +154,12 @@ def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
 
 def _are_tables(*values: Any) -> bool:
     return all(isinstance(value, dict) for value in values)
+
+
+def _drawn_twice(study: Study) -> Iterator[Problem]:
+    """A study that samples and searches."""
+    if study.sample is not None and study.tune is not None:
+        yield problem_of(study, ("tune",), "A study has either [sample] or [tune].", "Take one out.")
 
 
 def _repeated(study: Study) -> list[Problem]:

@@ -318,12 +318,6 @@ class Study(Part):
     _path: Path | None = PrivateAttr(None)
     _source: Any = PrivateAttr(None)
 
-    @model_validator(mode="after")
-    def _draws_once(self) -> Study:
-        if self.sample is not None and self.tune is not None:
-            raise ValueError("A study has either [sample] or [tune]: take one out.")
-        return self
-
     @property
     def path(self) -> Path | None:
         """File that it was read from."""

@@ -75,8 +75,10 @@ def _range(
     study: Study, levels: Levels, system: System, key: str, one: Range
 ) -> tuple[SampledColumn, tuple[float, float, float]] | None:
     """Column of a line of [tune.of], with its least, largest and present value; None where something is wrong."""
-    signals, ends = levels.signals_of(key), {}
-    others = [signal for name in one.also for signal in levels.signals_of(name)]
+    signals, ends = levels.existing([key], ("tune", "of", key)), {}
+    others = levels.existing(one.also, ("tune", "of", key, "also"))
+    if not signals:
+        return None
     for end, value in (("low", one.low), ("high", one.high)):
         checked = levels.checked(dict.fromkeys(signals, value), ("tune", "of", key, end))
         ends[end] = next(iter(checked.values()), None)

@@ -152,7 +152,7 @@ def _say_trials(console: Console, swept: Swept) -> None:
     trials, tune = swept.tables["trials"], swept.plan.study.tune
     assert tune is not None
     names = [one.quantity for one in tune.objective]
-    front = trials[trials["pareto"]].sort_values(names[0])
+    front = trials.loc[trials["pareto"]].sort_values(by=names[0])
     said = f"of {len(trials)} trials no other beats {len(front)}; trial 0 is as shipped."
     console.print(f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}", markup=False)
     shown = front.iloc[:: max(-(-len(front) // SHOWN), 1)]
