@@ -53,6 +53,7 @@ from shipcosim.models.prediction import (
     known,
     motion_filter,
     outage,
+    own_model,
     own_record,
     regions,
     surroundings,
@@ -709,8 +710,9 @@ def test_every_function_that_promises_tensors_is_among_the_cases():
     covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them
     covered |= {neural.taken, neural.kept_shares, neural.completed, neural.power}
     # vectors and records: test_own_record compares them
-    covered |= {own_record.begin, own_record.step, own_record.predict, own_record.thrust_told, own_record.delivered}
-    covered |= {own_record.residual_load, own_record.member}
+    covered |= {own_record.begin, own_record.step, own_record.predict, own_record.member}
+    covered |= {own_record.weights, own_record.mixed}
+    covered |= {own_model.thrust_told, own_model.delivered, own_model.residual_load, own_model.moved}
     covered |= {drive.drive_step}  # by the steps of both thrusters
     covered |= {propeller.loads_at}  # by propeller_loads
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}

@@ -22,7 +22,7 @@ from shipcosim.fmi.export.builder import build_fmu  # noqa: E402
 from shipcosim.learn.prediction import paper_iv, rollouts, training  # noqa: E402
 from shipcosim.learn.prediction.worlds import KNOWN, World, draw, scenario  # noqa: E402
 from shipcosim.models.core.networks import read_arrays  # noqa: E402
-from shipcosim.models.prediction import drift_off, own_record  # noqa: E402
+from shipcosim.models.prediction import drift_off, own_model, own_record  # noqa: E402
 from shipcosim.models.ship.hull import HullParameters  # noqa: E402
 from shipcosim.scenario import Event  # noqa: E402
 
@@ -95,15 +95,16 @@ HULL = tuple(field.name for field in fields(HullParameters))
 
 
 def own_coefficients(rows: np.ndarray, ship) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients of the residual load at the end of a record and their standard deviations, means over members."""
+    """Coefficients of the residual load at the end of a record and their standard deviations, means over filters."""
     arrays = read_arrays(ROOT / "fmus" / "drift_predictor" / "weights" / "ours.npz")
     learned = drift_off.trained_of(arrays).learned
     everything = [rollouts.known_of(row[None], ship) for row in rows]
     record = own_record.begin(everything[0], learned=learned, hull=ship.hull)
     for now in everything[1:]:
         record = own_record.step(record, now, 1.0, learned=learned, hull=ship.hull, wind=ship.wind)
-    spread = np.sqrt(np.diagonal(record.covariance, axis1=-2, axis2=-1))[..., 8:]
-    return record.mean[..., 8:].mean(axis=0), spread.mean(axis=0)
+    spread = np.sqrt(np.diagonal(record.covariance, axis1=-2, axis2=-1))
+    mean, std = np.tensordot(own_record.weights(record)[:, 0], np.stack([record.mean[:, 0], spread[:, 0]], axis=1), 1)
+    return mean[own_model.COEFFICIENT], std[own_model.COEFFICIENT]
 
 
 def networks(rows: np.ndarray, ship) -> dict[str, np.ndarray]:
@@ -142,7 +143,7 @@ def main():
     args = parser.parse_args()
     ship, model = training.ship(), plan(args.seed, {})
     for name, right in RIGHT.items():
-        force = {"coefficients": np.array([right.get(one, 0.0) for one in own_record.COEFFICIENTS])}
+        force = {"coefficients": np.array([right.get(one, 0.0) for one in own_model.COEFFICIENTS])}
         print(name, "| the right force |", said(sailed(model, force_of(force, FOLDER / "right"))), flush=True)
     for name, effect in HIDDEN.items():
         place = FOLDER / name.replace(" ", "-")
@@ -159,7 +160,7 @@ def main():
 
 def shown(mean: np.ndarray, std: np.ndarray) -> str:
     """Coefficients that are off nought by more than two standard deviations."""
-    sure = [(name, m, s) for name, m, s in zip(own_record.COEFFICIENTS, mean, std, strict=True) if abs(m) > 2.0 * s]
+    sure = [(name, m, s) for name, m, s in zip(own_model.COEFFICIENTS, mean, std, strict=True) if abs(m) > 2.0 * s]
     return ", ".join(f"{name} {m:.2f} +- {s:.2f}" for name, m, s in sure) or "none is sure"
 
 

@@ -7,7 +7,7 @@ from prediction import learned, measuring, pages
 from prediction.rivals import PREDICTORS, there
 from shipcosim.learn.prediction.worlds import HELD_OUT, KNOWN, Record
 from shipcosim.models.core.kinematics import to_ned
-from shipcosim.models.prediction import own_record
+from shipcosim.models.prediction import own_model
 
 WORLDS = range(300, 308)  # of those to choose by
 
@@ -101,8 +101,8 @@ def test_all_predictors_in_worlds_to_choose_by(capsys):
 
 
 def test_a_learned_force_is_what_its_coefficients_say(tmp_path):
-    share = np.zeros(len(own_record.COEFFICIENTS))
-    share[own_record.COEFFICIENTS.index("wind_Y")] = 0.4
+    share = np.zeros(len(own_model.COEFFICIENTS))
+    share[own_model.COEFFICIENTS.index("wind_Y")] = 0.4
     run = learned.sailed(learned.plan(301, {}), learned.force_of({"coefficients": share}, tmp_path), until=5.0)
     wind, force = run.table["vessel.tau_wind_Y"].values, run.table["learned.tau_Y"].values
     np.testing.assert_allclose(force[1:], 0.4 * wind[1:], rtol=0.05)

@@ -13,7 +13,7 @@ from shipcosim.learn.results import markdown
 from shipcosim.models.core.networks import read_arrays
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction import paper_iv as law
-from shipcosim.models.prediction.own_record import Learned
+from shipcosim.models.prediction.own_model import Learned
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.mast import MastParameters, wind_at_mast
@@ -44,8 +44,8 @@ def test_worlds_to_train_on_are_those_and_no_others():
     for recipe in (training.OURS, training.PAPER_IV):
         assert set(recipe.seeds) <= set(worlds.TRAINING)
         assert not set(recipe.seeds) & {*worlds.CALIBRATION, *worlds.TUNING, *worlds.HELD_OUT}
-    with pytest.raises(ValueError, match="8400"):
-        training.sail([1, 8400], lambda done, total: None)
+    with pytest.raises(ValueError, match="8700"):
+        training.sail([1, 8700], lambda done, total: None)
 
 
 def test_torch_and_numpy_follow_and_predict_alike():
@@ -63,19 +63,18 @@ def test_the_gradient_is_that_of_differences():
     data, at = sailed(), 0.1 * np.random.default_rng(3).normal(size=drift.SIZE)
     numbers = torch.from_numpy(at.copy()).requires_grad_()
     drift.loss(numbers, data, SHIP, training.OURS).backward()
-    for k in (2, 16, 20, 52, 54):
+    for k in (16, 49, 59):
         step = 1e-4 * np.eye(drift.SIZE)[k]
         ends = [float(drift.loss(torch.from_numpy(at + d), data, SHIP, training.OURS)) for d in (step, -step)]
         assert float(numbers.grad[k]) == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-3, abs=1e-7)
 
 
 def test_a_few_steps_go_down_and_repeat_bit_by_bit():
-    recipe, data = replace(training.OURS, common=3, members=2, own=1, learning_rate=0.02), sailed()
+    recipe, data = replace(training.OURS, steps=3, learning_rate=0.02), sailed()
     one, history = drift.fit(data, SHIP, recipe, lambda done, total: None)
     other, _ = drift.fit(data, SHIP, recipe, lambda done, total: None)
     assert one.tobytes() == other.tobytes()
     assert history[-1]["all worlds"] < history[0]["all worlds"]
-    assert (one[0] != one[1]).any()
 
 
 def test_networks_of_paper_iv_learn_and_repeat_bit_by_bit():
@@ -142,6 +141,6 @@ def test_weights_in_the_repository_are_of_their_recipe(root, kind):
     arrays = read_arrays(root / WEIGHTS / f"{kind}.npz")
     if kind == "ours":
         assert set(arrays) == {*Learned._fields, "limits"}
-        assert arrays["mean"].shape == (recipe.members, 18) and (arrays["std"] > 0.0).all()
+        assert arrays["mean"].shape == (18,) and (arrays["std"] > 0.0).all()
     else:
         assert law.ensemble_of(arrays).layers[0][0].shape == (recipe.members, 9, recipe.width)

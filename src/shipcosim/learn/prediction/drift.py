@@ -5,7 +5,6 @@ whole prediction, and through the Kalman filter over the minutes before, to the 
 The targets are the ship's own later estimates of place and heading: nothing that a real ship has not.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 
@@ -15,16 +14,16 @@ import torch
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, errors, followed
 from shipcosim.learn.training import Progress
 from shipcosim.models.core.maths import Arithmetic
-from shipcosim.models.prediction.own_record import COEFFICIENTS, STATES, Learned
+from shipcosim.models.prediction.own_model import COEFFICIENT, COEFFICIENTS, STATES, Learned
 
 STD = np.array(
-    [0.05, 0.05, 0.002, 0.4, 0.4, 800.0, 800.0, 4e3]
+    [0.3, 0.3, 0.01, 0.05, 0.05, 0.002, 0.2, 0.2, 600.0, 600.0, 3e3]
     + [0.5, 0.5, 0.25, 0.25, 0.05, 0.05, 0.1, 0.05, 0.05]
     + [0.15, 0.15, 0.15, 0.3]
     + [0.1, 0.1, 0.1, 1.0, 1.0]
 )
 """Standard deviations of the states where training begins: assumed. [units of `STATES`]"""
-REST = np.array([0.004, 0.0003, 0.01, 0.0006, 0.003, 100.0, 60.0, 30.0, 1.0, 3.0, 1.6])
+REST = np.array([0.003, 0.0003, 0.07, 0.003, 0.1, 0.006, 0.003, 100.0, 60.0, 60.0, 1.0, 3.0, 1.6, 0.3, 0.3, 1000.0])
 """The other fields of `Learned` where training begins: assumed. [their units]"""
 SCALES = np.array([[0.15, 0.15, 0.0087], [0.7, 0.7, 0.035], [2.0, 2.0, 0.07]])
 """Errors that count alike, north, east and in heading, by horizon: larger ones count in proportion. [m, m, rad]"""
@@ -42,12 +41,10 @@ class Recipe:
         One line for users.
     seeds : tuple of int
         Worlds to train on.
-    common : int
-        Steps of the optimiser on all worlds.
-    members, own : int
-        Members of the ensemble, and steps of each on worlds drawn for it with replacement.
+    steps : int
+        Steps of the optimiser.
     seed : int
-        Of these draws.
+        Of the random numbers, of which none are drawn.
     before : int
         Seconds before the loss that are used. [s]
     learning_rate : float
@@ -62,9 +59,7 @@ class Recipe:
 
     description: str
     seeds: tuple[int, ...]
-    common: int = 24
-    members: int = 5
-    own: int = 2
+    steps: int = 10
     seed: int = 1
     before: int = 170
     learning_rate: float = 0.15
@@ -78,7 +73,7 @@ def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
 
     Parameters
     ----------
-    numbers : (..., 55) array or tensor
+    numbers : (..., 61) array or tensor
         Zero where training begins. [1]
     library : module
         numpy or torch.
@@ -91,8 +86,8 @@ def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
     first, second = len(COEFFICIENTS), len(COEFFICIENTS) + len(STATES)
     std, rest = (library.asarray(one, dtype=numbers.dtype) for one in (STD, REST))
     rest = rest * library.exp(numbers[..., second:])
-    mean, std = numbers[..., :first] * std[8:], std * library.exp(numbers[..., first:second])
-    return Learned(mean, std, rest[..., 0:2], rest[..., 2:4], *(rest[..., k] for k in range(4, 11)))
+    mean, std = numbers[..., :first] * std[COEFFICIENT], std * library.exp(numbers[..., first:second])
+    return Learned(mean, std, rest[..., 0:2], rest[..., 2:6], *(rest[..., k] for k in range(6, 16)))
 
 
 SIZE = len(COEFFICIENTS) + len(STATES) + len(REST)
@@ -103,7 +98,7 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: Recipe) -> t
 
     Parameters
     ----------
-    numbers : (55,) tensor
+    numbers : (61,) tensor
         As `learned_of` takes them.
     sailed : Sailed
         Records.
@@ -123,56 +118,8 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: Recipe) -> t
     return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (numbers * numbers).sum()
 
 
-def descend(
-    numbers: np.ndarray,
-    sailed: Sailed,
-    ship: Ship,
-    recipe: Recipe,
-    steps: int,
-    rate: float,
-    tell: Callable[[], None],
-) -> tuple[np.ndarray, list[float]]:
-    """Steps of Adam down the loss.
-
-    Parameters
-    ----------
-    numbers : (55,) array
-        Where to begin.
-    sailed : Sailed
-        Records.
-    ship : Ship
-        The ship's own model.
-    recipe : Recipe
-        How.
-    steps : int
-        How many.
-    rate : float
-        Learning rate at the start.
-    tell : callable
-        Is called after each step.
-
-    Returns
-    -------
-    (55,) array, list of float
-        Where it ended; the loss before each step.
-    """
-    at, history = torch.tensor(numbers, requires_grad=True), []
-    optimiser = torch.optim.Adam([at], lr=rate)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
-    for _ in range(steps):
-        optimiser.zero_grad()
-        value = loss(at, sailed, ship, recipe)
-        value.backward()
-        torch.nn.utils.clip_grad_norm_([at], 1.0)
-        optimiser.step()
-        schedule.step()
-        history.append(float(value.detach()))
-        tell()
-    return at.detach().numpy().copy(), history
-
-
 def fit(sailed: Sailed, ship: Ship, recipe: Recipe, progress: Progress) -> tuple[np.ndarray, list[dict[str, float]]]:
-    """Train the ensemble.
+    """Steps of Adam down the loss.
 
     Parameters
     ----------
@@ -187,21 +134,19 @@ def fit(sailed: Sailed, ship: Ship, recipe: Recipe, progress: Progress) -> tuple
 
     Returns
     -------
-    (members, 55) array, list of dict
-        Numbers as `learned_of` takes them; losses of each step.
+    (61,) array, list of dict
+        Numbers as `learned_of` takes them; loss before each step.
     """
-    total, done = recipe.common + recipe.members * recipe.own, 0
-
-    def tell():
-        nonlocal done
-        done += 1
-        progress(done, total)
-
-    common, history = descend(np.zeros(SIZE), sailed, ship, recipe, recipe.common, recipe.learning_rate, tell)
-    rng, worlds = np.random.default_rng(recipe.seed), sailed.known.shape[1]
-    epochs, members = [{"all worlds": value} for value in history], []
-    for _ in range(recipe.members):
-        drawn = Sailed(sailed.known[:, rng.integers(worlds, size=worlds)], sailed.lost)
-        numbers, _ = descend(common, drawn, ship, recipe, recipe.own, recipe.learning_rate / 3.0, tell)
-        members.append(numbers)
-    return np.array(members), epochs
+    at, history = torch.zeros(SIZE, dtype=torch.float64, requires_grad=True), []
+    optimiser = torch.optim.Adam([at], lr=recipe.learning_rate)
+    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.steps)
+    for done in range(1, recipe.steps + 1):
+        optimiser.zero_grad()
+        value = loss(at, sailed, ship, recipe)
+        value.backward()
+        torch.nn.utils.clip_grad_norm_([at], 1.0)
+        optimiser.step()
+        schedule.step()
+        history.append({"all worlds": float(value.detach())})
+        progress(done, recipe.steps)
+    return at.detach().numpy().copy(), history

@@ -8,7 +8,7 @@ import torch
 
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
-from shipcosim.models.prediction import drift_off, own_record
+from shipcosim.models.prediction import drift_off, own_model, own_record
 from shipcosim.models.prediction.known import Known
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
@@ -89,7 +89,7 @@ def stacked(records: Sequence[Any], library: Any) -> Any:
 
 
 def followed(
-    learned: own_record.Learned, sailed: Sailed, starts: Sequence[int], ship: Ship, library: Any, grid: int = 1
+    learned: own_model.Learned, sailed: Sailed, starts: Sequence[int], ship: Ship, library: Any, grid: int = 1
 ) -> tuple[own_record.Record, Known]:
     """What the records of all worlds say at some rows after the loss.
 
@@ -111,7 +111,7 @@ def followed(
     Returns
     -------
     tuple of Record and Known
-        With starts along their first axis.
+        With starts along their first axis, of what filters have along the second.
     """
     lost, last = sailed.lost, sailed.lost + max(starts)
     rows = [*range(lost % grid, lost, grid), *range(lost, last + 1)]
@@ -125,10 +125,12 @@ def followed(
         record = own_record.step(record, now, float(row - before), learned=learned, hull=ship.hull, wind=ship.wind)
         if row - lost in starts:
             found.append((record, now))
-    return stacked([one for one, _ in found], library), stacked([one for _, one in found], library)
+    record = stacked([one for one, _ in found], library)
+    first = {name: library.moveaxis(getattr(record, name), 1, 0) for name in ("mean", "covariance", "likelihood")}
+    return record._replace(**first), stacked([one for _, one in found], library)
 
 
-def ahead(learned: own_record.Learned, record: own_record.Record, known: Known, ship: Ship) -> tuple[Motion, ...]:
+def ahead(learned: own_model.Learned, record: own_record.Record, known: Known, ship: Ship) -> tuple[Motion, ...]:
     """Motions at `HORIZONS`.
 
     Parameters
@@ -145,9 +147,10 @@ def ahead(learned: own_record.Learned, record: own_record.Record, known: Known, 
     tuple of Motion
         One per horizon.
     """
-    return own_record.predict(
+    motions = own_record.predict(
         record, known, horizons=HORIZONS, steps=drift_off.STEPS, learned=learned, hull=ship.hull, wind=ship.wind
     )
+    return tuple(own_record.mixed(record, motion) for motion in motions)
 
 
 def errors(motions: Sequence[Motion], sailed: Sailed, starts: Sequence[int]) -> torch.Tensor:

@@ -1,12 +1,12 @@
-"""Our drift predictor: an ensemble that learns from the ship's own record, and the equations of motion to fall back on.
+"""Our drift predictor: filters that learn from the ship's own record, and the equations of motion to fall back on.
 
-Where the ship is unlike those on which the ensemble was trained, or its members disagree, the prediction goes over to
-that of the kinetic predictor, `dead_reckoning` with `surroundings`, and beyond that is exactly it.
+Where the ship is unlike those over which was learned, or the filters disagree, the prediction goes over to that of the
+kinetic predictor, `dead_reckoning` with `surroundings`, and beyond that is exactly it.
 
 References
 ----------
-Definition. Ensembles and their spread as a sign of what was not learned: Lakshminarayanan et al., Simple and
-scalable predictive uncertainty estimation using deep ensembles, NeurIPS, 2017.
+Definition. The spread of an ensemble as a sign of what was not learned: Lakshminarayanan et al., Simple and scalable
+predictive uncertainty estimation using deep ensembles, NeurIPS, 2017.
 """
 
 from collections.abc import Mapping
@@ -16,18 +16,19 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.control.observer import DpShip
-from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin, sqrt, where
+from shipcosim.models.core.maths import Arithmetic, clip, hypot, sqrt, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import dead_reckoning, own_record, surroundings
 from shipcosim.models.prediction.known import Known
-from shipcosim.models.prediction.own_record import Learned, Record
+from shipcosim.models.prediction.own_model import COEFFICIENT, CURRENT, FORCE, MOMENT, Learned
+from shipcosim.models.prediction.own_record import Record
 from shipcosim.models.prediction.surroundings import Surroundings, SurroundingsParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import through_water
 
 STEPS = (5, 5, 8)
-"""Steps of the ensemble's integration up to 10, 30 and 60 s, from the one before. [1]"""
+"""Steps of the filters' integration up to 10, 30 and 60 s, from the one before. [1]"""
 OUT = 1.5
 """Share of the limits of what was learned at which nothing learned is left. [1]"""
 MEASURES = ("speed ahead", "speed across", "yaw rate", "wind", "current", "force", "moment", "coefficients", "spread")
@@ -40,7 +41,7 @@ class Trained(NamedTuple):
     Parameters
     ----------
     learned : Learned
-        Of the members of the ensemble, along the first axis of its arrays. [units of its fields]
+        What is believed before the record. [units of its fields]
     limits : (9,) array
         Of each of `MEASURES` the largest value in training. [their units]
     """
@@ -57,7 +58,7 @@ class Hybrid(NamedTuple):
     kinetic : Surroundings
         Of the kinetic predictor.
     own : Record
-        Of the members, along the first axis of its arrays.
+        Of the filters.
     """
 
     kinetic: Surroundings
@@ -77,7 +78,8 @@ def trained_of(arrays: Mapping[str, np.ndarray]) -> Trained:
     Trained
         [as in arrays]
     """
-    return Trained(Learned(*(arrays[name] for name in Learned._fields)), arrays["limits"])
+    values = (arrays[name] if arrays[name].ndim else float(arrays[name]) for name in Learned._fields)
+    return Trained(Learned(*values), arrays["limits"])
 
 
 def begin(known: Known, *, trained: Trained, hull: HullParameters, parameters: SurroundingsParameters) -> Hybrid:
@@ -86,7 +88,7 @@ def begin(known: Known, *, trained: Trained, hull: HullParameters, parameters: S
     Parameters
     ----------
     known : Known
-        What is known now, in floats or arrays that broadcast with the members.
+        What is known now; floats or (...) arrays.
     trained : Trained
         The ensemble.
     hull : HullParameters
@@ -173,43 +175,22 @@ def predict(
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
     )
-    members = _ahead(
-        state.own, known, trained.learned, {"horizons": horizons, "steps": STEPS, "hull": hull, "wind": wind}
-    )
-    share = trust(measures(state.own, known, members[-1], trained.learned), trained.limits) * known.wind_believed
-    return tuple(blended(a, mean(b), share) for a, b in zip(alone, members, strict=True)), share
+    options = {"horizons": horizons, "steps": STEPS, "learned": trained.learned, "hull": hull, "wind": wind}
+    found = _ahead(state.own, known, options)
+    share = trust(measures(state.own, known, found[-1], trained.learned), trained.limits) * known.wind_believed
+    mixed = (own_record.mixed(state.own, one) for one in found)
+    return tuple(blended(a, b, share) for a, b in zip(alone, mixed, strict=True)), share
 
 
-def _ahead(own, known, learned, options):
-    """Predictions of all members; one after another in floats where there is one ship, which is quicker."""
+def _ahead(own, known, options):
+    """Predictions of all filters; one after another in floats where there is one ship, which is quicker."""
     if own.mean.ndim > 2:
-        return own_record.predict(own, known, learned=learned, **options)
-    found = []
+        return own_record.predict(own, known, **options)
     try:
-        for index in range(len(own.mean)):
-            record, believed = own_record.member(own, learned, index)
-            found.append(own_record.predict(record, known, learned=believed, **options))
+        found = [own_record.predict(own_record.member(own, k), known, **options) for k in range(len(own.mean))]
     except (ValueError, IndexError, OverflowError):  # what is no number stops floats; in arrays it goes on as NaN
-        return own_record.predict(own, known, learned=learned, **options)
+        return own_record.predict(own, known, **options)
     return [Motion(*np.array(motions).T) for motions in zip(*found, strict=True)]
-
-
-def mean(members: Motion) -> Motion:
-    """Mean of the members of an ensemble, along their first axis; of headings that of their directions.
-
-    Parameters
-    ----------
-    members : Motion
-        (m, ...) arrays.
-
-    Returns
-    -------
-    Motion
-        (...) arrays.
-    """
-    x, y, psi, u, v, r = (np.asarray(one) for one in members)
-    heading = np.arctan2(sin(psi).mean(axis=0), cos(psi).mean(axis=0))
-    return Motion(x.mean(axis=0), y.mean(axis=0), heading, u.mean(axis=0), v.mean(axis=0), r.mean(axis=0))
 
 
 def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.ndarray:
@@ -218,7 +199,7 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     Parameters
     ----------
     own : Record
-        Of the members.
+        Of the filters.
     known : Known
         What is known now.
     last : Motion
@@ -231,15 +212,20 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     (9, ...) array
         [units of `MEASURES`]
     """
-    states = own.mean.mean(axis=0)
-    u_r, v_r = through_water(known.ship.psi, known.ship.u, known.ship.v, states[..., 3], states[..., 4])
-    std = learned.std.mean(axis=0)
-    off = ((own.mean[..., 8:] - learned.mean) / learned.std[..., 8:]).mean(axis=0)
-    found = [u_r, v_r, known.ship.r, hypot(own.wind_north, own.wind_east).mean(axis=0)]
-    found += [hypot(states[..., 3], states[..., 4]), hypot(states[..., 5] / std[..., 5], states[..., 6] / std[..., 6])]
-    found += [states[..., 7] / std[..., 7], sqrt((off * off).mean(axis=-1))]
-    found += [hypot(np.asarray(last.x).std(axis=0), np.asarray(last.y).std(axis=0))]
+    share, (x, y) = own_record.weights(own), last[:2]
+    states = (share[..., None] * own.mean).sum(axis=0)
+    u_r, v_r = through_water(known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0))
+    off = (states[..., COEFFICIENT] - learned.mean) / learned.std[..., COEFFICIENT]
+    force = states[..., FORCE] / learned.std[..., FORCE]
+    apart = share * ((x - (share * x).sum(axis=0)) ** 2 + (y - (share * y).sum(axis=0)) ** 2)
+    found = [u_r, v_r, known.ship.r, hypot(own.wind_north, own.wind_east), _size(states[..., CURRENT]), _size(force)]
+    found += [states[..., MOMENT] / learned.std[..., MOMENT], sqrt((off * off).mean(axis=-1)), sqrt(apart.sum(axis=0))]
     return np.abs(np.stack(np.broadcast_arrays(*found)))
+
+
+def _size(vectors):
+    """Length of vectors along the last axis."""
+    return hypot(vectors[..., 0], vectors[..., 1])
 
 
 def trust(found: np.ndarray, limits: np.ndarray) -> Arithmetic:

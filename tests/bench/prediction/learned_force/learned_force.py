@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
 from shipcosim.models.core.networks import read_arrays
-from shipcosim.models.prediction import own_record, paper_iv
+from shipcosim.models.prediction import own_model, paper_iv
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
 
@@ -60,8 +60,8 @@ class LearnedForce(Fmu):
 
     def _own_record(self):
         stern = self.port_X + self.starboard_X, self.port_Y + self.starboard_Y
-        wind, thrust = (self.wind_X, self.wind_Y, self.wind_N), own_record.Thrust(self.tunnel_Y, *stern)
-        return own_record.residual_load(
+        wind, thrust = (self.wind_X, self.wind_Y, self.wind_N), own_model.Thrust(self.tunnel_Y, *stern)
+        return own_model.residual_load(
             tuple(self.learned["coefficients"].tolist()), self.u_r, self.v_r, self.r, wind, thrust, hull=self.hull
         )
 

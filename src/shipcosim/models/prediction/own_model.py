@@ -1,0 +1,271 @@
+"""Equations of motion of a ship with what her own model lacks: a residual load, and thrust that runs down.
+
+Current, remaining load and the coefficients of a residual load that is linear in them (`residual_load`) are states
+beside the motion; `own_record` estimates them all.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from shipcosim.models.core.kinematics import to_body, to_ned
+from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, sqrt, where
+from shipcosim.models.core.motion import Load
+from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.models.ship.vessel import accelerations
+
+COEFFICIENTS = (
+    *("surge_square", "surge_linear", "sway_square", "sway_linear"),
+    *("yaw_by_sway_square", "yaw_by_sway_linear", "yaw_by_surge_sway", "yaw_square", "yaw_linear"),
+    *("wind_X", "wind_Y", "wind_N", "wind_lever"),
+    *("thrust_stern_X", "thrust_stern_Y", "thrust_bow", "wash_X", "wash_Y"),
+)
+"""Coefficients of the residual load, in their order in the state."""
+MEASURED = ("x", "y", "psi", "u", "v", "r")
+"""States that the observer of the DP controller gives. [m, m, rad, m/s, m/s, rad/s]"""
+STATES = (*MEASURED, "current_north", "current_east", "force_north", "force_east", "moment", *COEFFICIENTS)
+"""States of the filter. [as `MEASURED`, m/s, m/s, N, N, N.m, 1]"""
+CURRENT, FORCE, MOMENT, COEFFICIENT = slice(6, 8), slice(8, 10), 10, slice(11, None)
+"""Where they are among the states. [1]"""
+ARM = 0.42  # of the length, bow and stern thrusters from midships: assumed
+SLOW = 0.2  # m/s, where linear and quadratic damping of one coefficient are alike
+HELD = 1e4  # N, thrust at which run-down and wash are given
+FASTEST = (20.0, 20.0, 1.0)
+"""Surge, sway and yaw rate that no ship reaches here: there motion ends. [m/s, m/s, rad/s]"""
+_TINY = 1e-6
+
+
+class Learned(NamedTuple):
+    """What is learned over many ships, and believed before the record of this one.
+
+    Parameters
+    ----------
+    mean : (..., 18) array or tensor
+        Expected coefficients. [1]
+    std : (..., 29) array or tensor
+        Standard deviations of all states at the start; of remaining force and moment at all times. [units of `STATES`]
+    disturbance : (..., 2) array or tensor
+        Random walk of the velocities u and v, and of r, in a second. [m/s, rad/s]
+    noise : (..., 4) array or tensor
+        Standard deviations of the observer's x and y, its heading, its u and v, and its r, each averaged over a second.
+        [m, rad, m/s, rad/s]
+    current_walk : (...) array or tensor
+        Random walk of the current in a second. [m/s]
+    force_time, moment_time, wind_time : like current_walk
+        Correlation times of remaining force and moment, time constant of the mean of the wind. [s]
+    lag : like current_walk
+        Time constant with which thrust follows what it is told. [s]
+    run_down_bow, run_down_stern : like current_walk
+        Time in which thrust of 10 kN falls to a quarter when power is lost. [s]
+    current_away : like current_walk
+        Speed of the current in the four hypotheses that begin with one. [m/s]
+    evidence : like current_walk
+        Share of the likelihood of a second that tells hypotheses apart: errors of the observer last. [1]
+    evidence_time : like current_walk
+        Time in which it is forgotten. [s]
+    """
+
+    mean: Arithmetic
+    std: Arithmetic
+    disturbance: Arithmetic
+    noise: Arithmetic
+    current_walk: Arithmetic
+    force_time: Arithmetic
+    moment_time: Arithmetic
+    wind_time: Arithmetic
+    lag: Arithmetic
+    run_down_bow: Arithmetic
+    run_down_stern: Arithmetic
+    current_away: Arithmetic
+    evidence: Arithmetic
+    evidence_time: Arithmetic
+
+
+class Thrust(NamedTuple):
+    """Thrust as it is delivered: across at the bow, along and across at the stern.
+
+    Parameters
+    ----------
+    bow, stern_X, stern_Y : float or (...) array or tensor
+        [N, N, N]
+    """
+
+    bow: Arithmetic
+    stern_X: Arithmetic
+    stern_Y: Arithmetic
+
+
+def thrust_told(thrusters: Load, hull: HullParameters) -> Thrust:
+    """The thrust at bow and stern that gives a load.
+
+    Parameters
+    ----------
+    thrusters : tuple of three floats or (...) arrays or tensors
+        Load of all thrusters. [N, N, N.m]
+    hull : HullParameters
+        Whose length says where bow and stern are.
+
+    Returns
+    -------
+    Thrust
+        [N]
+
+    References
+    ----------
+    Statics; port and starboard units are taken together.
+    """
+    X, Y, N = thrusters
+    turning = N / (ARM * hull.length)
+    return Thrust(0.5 * (Y + turning), X, 0.5 * (Y - turning))
+
+
+def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Thrust:
+    """Thrust a step later: it follows what it is told; told nothing at all, power is lost and the propellers run down.
+
+    Parameters
+    ----------
+    thrust : Thrust
+        Delivered now; floats, (...) arrays or tensors.
+    told : Thrust
+        What is told.
+    h : float
+        Step. [s]
+    learned : Learned
+        Lag and times of running down.
+
+    Returns
+    -------
+    Thrust
+        Delivered then.
+
+    Notes
+    -----
+    A free propeller is braked by its torque, which like its thrust goes with the square of its speed: 1/n grows evenly,
+    and the thrust is that of now over (1 + h/T)², T in proportion to 1/n.
+
+    References
+    ----------
+    Newton's law for a shaft with quadratic torque.
+    """
+    lost = (abs(told.bow) + abs(told.stern_X) + abs(told.stern_Y)) == 0.0
+    share = 1.0 - exp(-h / learned.lag)
+    stern = sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
+    bow = sqrt((abs(thrust.bow) + _TINY) / HELD)
+    slowed_stern, slowed_bow = 1.0 + h * stern / learned.run_down_stern, 1.0 + h * bow / learned.run_down_bow
+    factors = slowed_bow**-2, slowed_stern**-2, slowed_stern**-2
+    values = zip(thrust, told, factors, strict=True)
+    return Thrust(*[where(lost, now * factor, now + share * (then - now)) for now, then, factor in values])
+
+
+def residual_load(
+    coefficients: tuple,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    wind: Load,
+    thrust: Thrust,
+    hull: HullParameters,
+) -> Load:
+    """Load that the ship's own model lacks, linear in its coefficients.
+
+    Parameters
+    ----------
+    coefficients : tuple of 18 floats or (...) arrays or tensors
+        In the order of `COEFFICIENTS`: of resistance, cross flow and turning over sizes that hulls have (of the
+        length, draught and density), of wind load and thrust over those that the model has, and of the wash of
+        thrusters that run, as a damping. [1]
+    u_r, v_r, r : float or (...) array or tensor
+        Velocity through the water and yaw rate. [m/s, m/s, rad/s]
+    wind : tuple of three, like u_r
+        Wind load by the model. [N, N, N.m]
+    thrust : Thrust
+        Delivered, by the model. [N]
+    hull : HullParameters
+        Length, draught, density.
+
+    Returns
+    -------
+    tuple of three, like u_r
+        [N, N, N.m]
+
+    References
+    ----------
+    Forms of the terms: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6;
+    momentum drag of running thrusters in proportion to their speed, as `propulsion.azimuth`.
+    """
+    c, length = coefficients, hull.length
+    size, arm = 0.5 * hull.water_density * length * hull.draught, ARM * length
+    wash = HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
+    drag = -c[17] * wash * (v_r - arm * r)
+    turn = length * r
+    X = -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r + c[9] * wind[0] + c[13] * thrust.stern_X
+    Y = -size * (c[2] * abs(v_r) + c[3] * SLOW) * v_r + c[10] * wind[1] + drag
+    N = (c[4] * abs(v_r) + c[5] * SLOW + c[6] * u_r) * v_r + (c[7] * abs(turn) + c[8] * SLOW) * turn
+    N = -size * length * N + c[11] * wind[2] + 0.1 * length * c[12] * wind[1] - arm * drag
+    stern, bow = c[14] * thrust.stern_Y, c[15] * thrust.bow
+    return X - c[16] * wash * u_r, Y + stern + bow, N + arm * (bow - stern)
+
+
+def moved(
+    states: Sequence[Arithmetic],
+    air: tuple[Arithmetic, Arithmetic],
+    thrust: Thrust,
+    h: float,
+    *,
+    learned: Learned,
+    hull: HullParameters,
+    wind: WindParameters,
+) -> list[Arithmetic]:
+    """States a step later.
+
+    Parameters
+    ----------
+    states : sequence of 29 floats or (...) arrays or tensors
+        `STATES`. [their units]
+    air : tuple of two, like states
+        Velocity of the air, north and east. [m/s]
+    thrust : Thrust
+        Delivered in the middle of the step. [N]
+    h : float
+        Step. [s]
+    learned : Learned
+        Times in which remaining force and moment fade.
+    hull, wind : HullParameters, WindParameters
+        The ship's own model.
+
+    Returns
+    -------
+    list of 29, like states
+        [units of `STATES`]
+
+    Notes
+    -----
+    Midpoint rule; all that turns with the ship is taken at half the turn.
+
+    References
+    ----------
+    Equations of motion as `ship.vessel`.
+    """
+    half, (x, y, psi, u, v, r) = 0.5 * h, states[:6]
+    middle = psi + half * r
+    u_c, v_c = to_body(middle, *states[CURRENT])
+    load = wind_loads(*apparent_wind(middle, u, v, *air), wind=wind)
+    force_X, force_Y = to_body(middle, *states[FORCE])
+    X, Y = load[0] + thrust.stern_X + force_X, load[1] + thrust.stern_Y + thrust.bow + force_Y
+    N = load[2] + ARM * hull.length * (thrust.bow - thrust.stern_Y) + states[MOMENT]
+    coefficients = tuple(states[COEFFICIENT])
+
+    def rates(u, v, r):
+        more = residual_load(coefficients, u - u_c, v - v_c, r, load, thrust, hull)
+        u_dot, v_dot, r_dot = accelerations(u - u_c, v - v_c, r, X + more[0], Y + more[1], N + more[2], hull=hull)
+        return u_dot + r * v_c, v_dot - r * u_c, r_dot
+
+    first = rates(u, v, r)
+    u_m, v_m, r_m = u + half * first[0], v + half * first[1], r + half * first[2]
+    second = rates(u_m, v_m, r_m)
+    north, east = to_ned(psi + half * r_m, u_m, v_m)
+    place = x + h * north, y + h * east, psi + h * r_m
+    speeds = [clip(now + h * rate, -most, most) for now, rate, most in zip((u, v, r), second, FASTEST, strict=True)]
+    force, moment = exp(-h / learned.force_time), exp(-h / learned.moment_time)
+    faded = [force * one for one in states[FORCE]]
+    return [*place, *speeds, *states[CURRENT], *faded, moment * states[MOMENT], *coefficients]
