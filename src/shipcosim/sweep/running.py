@@ -83,7 +83,14 @@ class _Dispatch:
 
     def _submit(self, numbers: list[int], alone: bool = False) -> None:
         runs = [self._plan.run(number) for number in numbers]
-        self._in_flight[self._workers.submit(runs)] = numbers, alone
+        try:
+            future = self._workers.submit(runs)
+        except Exception as error:  # a worker may have ended since its last answer
+            if not self._workers.is_lost(error):
+                raise
+            future = Future()
+            future.set_exception(error)
+        self._in_flight[future] = numbers, alone
 
     def _taken(self, chunk: Chunk) -> list[Row]:
         """Rows of a chunk; how long it took says how large the next ones are."""

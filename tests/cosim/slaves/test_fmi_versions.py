@@ -198,7 +198,7 @@ def scalars(echo):
 def test_a_value_that_a_type_cannot_hold_ends_the_run_instead_of_wrapping(echo, kind, to, value):
     parts = {n: Component(n, scalars(echo), {f"u{kind}": value} if n == "a" else {}) for n in "ab"}
     lines = (Connection(("a", f"y{kind}"), ("b", f"u{to}")),)
-    with pytest.raises(RunError, match=f"b: failed at the start.*u{to} cannot be {value}"):
+    with pytest.raises(RunError, match=f"b: failed at the end of the initialisation.*u{to} cannot be {value}"):
         simulate(System("two", "two.ssd", parts, lines), SCENARIO)
 
 
