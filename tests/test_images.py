@@ -26,7 +26,7 @@ def images(root, needs):
         yield module
 
 
-@pytest.mark.parametrize("name", ["four_corner", "capability", "diagnosis", "dp-loop", "dp-sensors"])
+@pytest.mark.parametrize("name", ["four_corner", "capability", "diagnosis", "study", "dp-loop", "dp-sensors"])
 def test_picture_is_as_its_command_makes_it_now(images, name, tmp_path):
     kept = images.path_of(name).read_bytes()
     assert images.difference(kept, images.fresh(name, tmp_path)) <= MOST, "run docs/generators/write_images.py"

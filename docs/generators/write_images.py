@@ -26,9 +26,10 @@ PAGES = {
     "four_corner": ["run", "scenarios/four_corner.toml"],
     "diagnosis": ["diagnose", "docs/examples/gunnerus_log.csv.gz"],
     "capability": ["capability"],
+    "study": ["sweep", "studies/drift_off_small.toml"],
 }
 TIMES = {"four_corner": "#t=330"}  # s: under way, with set point and reference apart
-HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030}
+HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030, "study": 850}
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
 SQUARE, CLEARLY = 20, 12  # px; of 255 shades of grey: a letter more or less is not
