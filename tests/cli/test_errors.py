@@ -491,7 +491,8 @@ def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(gunnerus,
 
 
 @needs_posix
-def test_full_disk_for_temporary_files_is_named(gunnerus):
+def test_full_disk_for_temporary_files_is_named(gunnerus, tmp_path, monkeypatch):
+    monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path / "nothing unpacked yet"))
     done = command("run", "short", preexec_fn=partial(limit_file_size, 20_000))
     assert done.returncode == 2 and not results()
     assert re.search(r"error: .*\.fmu:\nCannot be unpacked into .*: File too large\. Make room there", done.stderr)
