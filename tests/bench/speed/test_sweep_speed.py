@@ -62,7 +62,7 @@ def test_a_run_of_a_study_costs_less_than_ten_milliseconds_on_top(plan, tmp_path
         scenario = shipcosim.read_scenario("stationkeeping").model_copy(
             update={"stop_time": length, "expect": [], "events": []}
         )
-        kept = shipcosim.simulate_many(None, scenario, seeds, record=["vessel.x", "vessel.y"], threads=1)
+        kept = shipcosim.simulate_many(None, scenario, seeds, record=["vessel.x", "vessel.y"])
         assert not any(kept.error.values)
 
     swept(plan(few, length), tmp_path / "first")
