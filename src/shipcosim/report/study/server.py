@@ -10,11 +10,13 @@ from __future__ import annotations
 import json
 import mimetypes
 import re
+import sys
 import threading
 from collections.abc import Callable, Collection
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from shipcosim.errors import Problem, ShipcosimError
@@ -56,6 +58,11 @@ class StudyServer(ThreadingHTTPServer):
         self.folder, self.runs, self.simulate = folder.resolve(), frozenset(runs), simulate
         self.at_work = threading.Lock()
         super().__init__((ADDRESS, port), _Handler)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say what went wrong, but for a browser that did not wait for its answer."""
+        if not isinstance(sys.exception(), ConnectionError):
+            super().handle_error(request, client_address)
 
     @property
     def url(self) -> str:
