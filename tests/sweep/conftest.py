@@ -3,8 +3,7 @@
 from pathlib import Path
 
 import pytest
-
-from shipcosim.library import build_stale
+from sweep.projects import built_project, work_in
 
 FMU = '''
 """Lag that can fail, and end its process, on demand."""
@@ -102,28 +101,21 @@ statistic = "share"
 
 @pytest.fixture(scope="session")
 def built(tmp_path_factory):
-    project = tmp_path_factory.mktemp("studies")
-    for path, text in {
+    files = {
         "fmus/lag/lag.py": FMU,
         "ssp/tank/SystemStructure.ssd": SSD,
         "scenarios/filling.toml": SCENARIO,
         "studies/levels.toml": STUDY,
-    }.items():
-        (project / path).parent.mkdir(parents=True, exist_ok=True)
-        (project / path).write_text(text)
-    build_stale(project)
-    return project
+    }
+    return built_project(tmp_path_factory.mktemp("studies"), files)
 
 
 @pytest.fixture
 def project(built, tmp_path, monkeypatch):
     """Folder of the project, as the working folder; studies and results are those of the test alone."""
-    for name in ("fmus", "ssp", "scenarios", "build"):
-        (tmp_path / name).symlink_to(built / name)
     (tmp_path / "studies").mkdir()
     (tmp_path / "studies" / "levels.toml").write_text(STUDY)
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+    return work_in(tmp_path, built, monkeypatch)
 
 
 @pytest.fixture

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pandas
 import pytest
+from sweep.projects import built_project, work_in
 from typer.testing import CliRunner
 
 import shipcosim
 from shipcosim.cli import app
 from shipcosim.errors import ShipcosimError
-from shipcosim.library import build_stale
 from shipcosim.sweep import plan_of, read_study
 
 FMU = '''
@@ -92,29 +92,22 @@ value    = ["total", "first_order"]
 
 @pytest.fixture(scope="module")
 def sums(tmp_path_factory):
-    project = tmp_path_factory.mktemp("sums")
     stated = "".join(STATED.replace("NAME", n).replace("TOLERANCE", str(t)) for n, t in TOLERANCES.items())
-    for path, text in {
+    files = {
         "fmus/sum/sum.py": FMU,
         "ssp/sums/SystemStructure.ssd": SSD,
         "ssp/sums/resources/stated.ssv": SSV.replace("PARAMETERS", stated),
         "scenarios/one_step.toml": 'system = "sums"\nparameters = "stated"\nstop_time = 0.1\nstep_size = 0.1\n',
         "studies/sensitivity.toml": STUDY,
-    }.items():
-        (project / path).parent.mkdir(parents=True, exist_ok=True)
-        (project / path).write_text(text)
-    build_stale(project)
-    return project
+    }
+    return built_project(tmp_path_factory.mktemp("sums"), files)
 
 
 @pytest.fixture
 def project(sums, tmp_path, monkeypatch):
     """Folder of the project, as the working folder; its study is that of the test alone."""
-    for name in ("fmus", "ssp", "scenarios", "build"):
-        (tmp_path / name).symlink_to(sums / name)
     shutil.copytree(sums / "studies", tmp_path / "studies")
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+    return work_in(tmp_path, sums, monkeypatch)
 
 
 def write(text, name="own"):

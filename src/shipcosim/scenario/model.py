@@ -50,6 +50,11 @@ def _seconds(value: Any) -> Any:
         raise ValueError(str(error)) from None
 
 
+def as_list(value: Any) -> Any:
+    """One value as a list of it; lists, and None, as they are."""
+    return value if isinstance(value, list) or value is None else [value]
+
+
 def _positive(value: float | str | None) -> float | str | None:
     number = amount(value) if isinstance(value, str) else (value, "")
     if number is not None and number[0] is not None and not number[0] > 0.0:
@@ -127,9 +132,9 @@ class Expectation(Part):
     """
 
     signal: ListOfNames = Field(min_length=1)
-    near: Annotated[
-        list[float | str] | None, BeforeValidator(lambda v: v if isinstance(v, list) or v is None else [v])
-    ] = Field(default=None, description="amounts, or names of signals")
+    near: Annotated[list[float | str] | None, BeforeValidator(as_list)] = Field(
+        default=None, description="amounts, or names of signals"
+    )
     within: Annotated[Amount | None, AfterValidator(_positive)] = Field(
         default=None, description="largest distance from `near`, greater than 0"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 from shipcosim import library
@@ -39,7 +40,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     """
     scenario = _scenario(study)
     read = _system(study, scenario, study.components, {name: ("components", name) for name in study.components}, build)
-    components = scenario.components | {name: _beside(study, fmu) for name, fmu in study.components.items()}
+    components = scenario.components | {name: str(_beside(study, fmu) or fmu) for name, fmu in study.components.items()}
     system = with_values(read, scenario.set, str(scenario.path))
     levels = Levels(study, scenario, system)
     levels.check_names()
@@ -95,9 +96,8 @@ def _system(
     """The system of a scenario with other FMUs in place of components' own; `keys` say where the study names each."""
     problems, paths = [], {}
     for name, fmu in components.items():
-        path = study.folder / fmu
         try:
-            paths[name] = path if path.is_file() else library.find("fmu", fmu, near=study.folder, build=build)
+            paths[name] = _beside(study, fmu) or library.find("fmu", fmu, near=study.folder, build=build)
         except ShipcosimError as error:
             found = f"There is no FMU '{fmu}', by this name or beside the study."
             problems.append(problem_of(study, keys[name], found, error.problems[0].remedy))
@@ -133,10 +133,10 @@ def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
     return sorted(found, key=lambda one: (len(one), one))
 
 
-def _beside(study: Study, fmu: str) -> str:
-    """An FMU by its path where it lies beside the study, else as it is named."""
+def _beside(study: Study, fmu: str) -> Path | None:
+    """Path of an FMU that lies beside the study; None where it is one by its name."""
     path = study.folder / fmu
-    return str(path) if path.is_file() else fmu
+    return path if path.is_file() else None
 
 
 def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:

@@ -19,7 +19,7 @@ from pydantic_core import PydanticCustomError
 
 from shipcosim import library
 from shipcosim.scenario import Event, Expectation
-from shipcosim.scenario.model import Amount, ListOfNames, Part, Seconds, Value
+from shipcosim.scenario.model import Amount, ListOfNames, Part, Seconds, Value, as_list
 from shipcosim.sweep import weather
 from shipcosim.units import amount
 
@@ -33,10 +33,6 @@ def _column(name: str) -> str:
     if not re.fullmatch(r"[A-Za-z_][\w.-]*", name):
         raise ValueError(f"'{name}' cannot name a column. Use letters, digits, '_', '-' and '.'.")
     return name
-
-
-def _as_list(value: Any) -> Any:
-    return value if isinstance(value, list) or value is None else [value]
 
 
 def _label(value: Any) -> str | int | float:
@@ -166,7 +162,7 @@ class Quantity(Part):
     name: Column
     description: str = ""
     signal: ListOfNames = []
-    near: Annotated[list[Label] | None, BeforeValidator(_as_list)] = Field(
+    near: Annotated[list[Label] | None, BeforeValidator(as_list)] = Field(
         default=None, description="amounts, or names of signals"
     )
     reduce: Literal[REDUCTIONS] | None = None  # pyright: ignore[reportInvalidTypeForm]

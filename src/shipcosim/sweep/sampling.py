@@ -12,6 +12,7 @@ import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import units_of
+from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.records import Distribution, Study
@@ -102,7 +103,8 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     sample = study.sample
     if sample is None:
         return None
-    check_scipy()
+    with imported("sample", "Samples come from SciPy, which is missing."):
+        import scipy  # noqa: F401
     lines = [line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)]
     quantiles = [_quantiles(study, levels, system, *line) for line in lines]
     usable = [one for one in quantiles if one is not None]
@@ -113,15 +115,6 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     found = Samples(tuple(column for column, _ in usable), numbers)
     _check_ends(study, levels, found, [key for key, _, _ in lines])
     return found
-
-
-def check_scipy() -> None:
-    """Raise ShipcosimError where SciPy is missing."""
-    try:
-        import scipy  # noqa: F401
-    except ImportError:
-        remedy = "Install it: pip install 'shipcosim[sweep]'."
-        raise ShipcosimError(Problem("sample", "Samples come from SciPy, which is missing.", remedy)) from None
 
 
 def _lines(
@@ -252,11 +245,8 @@ def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
     ----------
     Saltelli et al., Variance based sensitivity analysis of model output, Comput. Phys. Commun. 181, 2010.
     """
-    try:
+    with imported("sample.method", "saltelli comes from SALib, which is missing."):
         from SALib.sample import sobol
-    except ImportError:
-        remedy = "Install it: pip install 'shipcosim[sweep]'."
-        raise ShipcosimError(Problem("sample.method", "saltelli comes from SALib, which is missing.", remedy)) from None
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of a number of runs that is no power of two: less even, not wrong
         return sobol.sample(salib_problem(parameters), runs, calc_second_order=False, seed=seed)

@@ -20,6 +20,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario.model import Value
 from shipcosim.series import write_file
 from shipcosim.staging import set_aside
+from shipcosim.sweep.extras import imported
 from shipcosim.sweep.plan import ColumnOf, Plan
 from shipcosim.sweep.work import Row
 
@@ -32,28 +33,14 @@ BETWEEN_PARTS, LARGEST_PART = 5.0, 10_000
 """How long rows wait until they are written [s], and how many of them."""
 GROUP = 10_000
 """Rows of the table that are made and written together."""
-FILES = (
-    *(
-        "runs.parquet",
-        "runs.csv",
-        "summary.csv",
-        "indices.csv",
-        "trials.csv",
-        "study.json",
-        "tracks.parquet",
-        "report.html",
-    ),
-    "parts",
-)
+TABLES = ("runs.parquet", "runs.csv", "summary.csv", "indices.csv", "trials.csv", "tracks.parquet")
+FILES = (*TABLES, "study.json", "report.html", "parts")
 
 
 def check_installed() -> None:
     """Raise ShipcosimError where pyarrow is missing."""
-    try:
+    with imported("sweep", "The table of runs is a Parquet file, and pyarrow is missing."):
         import pyarrow  # noqa: F401
-    except ImportError:
-        found, remedy = "The table of runs is a Parquet file, and pyarrow is missing.", "pip install 'shipcosim[sweep]'"
-        raise ShipcosimError(Problem("sweep", found, f"Install it: {remedy}.")) from None
 
 
 class Store:

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import suggestion
 from shipcosim.scenario import units_of
+from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.reader import problem_of
@@ -41,7 +42,8 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
         If Optuna is missing.
     """
     assert study.tune is not None
-    version = optuna_version()
+    with imported("tune", "The search comes from Optuna, which is missing."):
+        import optuna
     made = [_range(study, levels, system, key, one) for key, one in study.tune.of.items()]
     columns = [one[0] for one in made if one is not None]
     names = [one.name for one in study.quantity]
@@ -51,24 +53,8 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
             levels.problems.append(problem_of(study, keys, found, suggestion(one.quantity, names)))
     if len(columns) < len(made):
         return None
-    bounds = np.array([one[1] for one in made if one is not None])
-    return Samples(tuple(columns), np.full((study.tune.trials, len(columns)), np.nan), bounds, version)
-
-
-def optuna_version() -> str:
-    """Version of Optuna, on which its proposals depend.
-
-    Raises
-    ------
-    ShipcosimError
-        If it is missing.
-    """
-    try:
-        import optuna
-    except ImportError:
-        found, remedy = "The search comes from Optuna, which is missing.", "pip install 'shipcosim[sweep]'"
-        raise ShipcosimError(Problem("tune", found, f"Install it: {remedy}.")) from None
-    return optuna.__version__
+    bounds = np.array([one[1] for one in made if one is not None])  # proposals depend on the version of Optuna, too
+    return Samples(tuple(columns), np.full((study.tune.trials, len(columns)), np.nan), bounds, optuna.__version__)
 
 
 def _range(

@@ -17,6 +17,7 @@ from types import ModuleType
 from typing import Any
 
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.sweep.extras import imported
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
 
@@ -123,11 +124,8 @@ class Cluster(Workers):
     chunk_time = 5.0
 
     def __init__(self, plan: Plan, engine: str, address: str):
-        try:
+        with imported("--scheduler", "Dask is not installed.", "cluster"):
             from distributed import Client
-        except ImportError:
-            found, remedy = "Dask is not installed.", "Install it: pip install 'shipcosim[cluster]'."
-            raise ShipcosimError(Problem("--scheduler", found, remedy)) from None
         try:
             self._client = Client(address, timeout=10, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
