@@ -7,10 +7,10 @@ from craft import draw as draw_craft
 from diagnose import twin
 from measured.logs import CHANNELS, FOLDERS, as_table, files
 
+from shipcosim.diagnose.checked_log import ReadLog
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.pipeline import find_causes, problem_of, verdict_on
-from shipcosim.diagnose.stages import ReadLog
 from shipcosim.diagnose.statement import stated
 from shipcosim.library import build_stale
 from shipcosim.ssp import read_system

@@ -8,18 +8,18 @@ from diagnose import ferry, twin, usv
 from scipy.integrate import solve_ivp
 
 import shipcosim as sc
+from shipcosim.diagnose.explanation.null_distribution import healthy_records
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.linearisation import Regressor, advanced, linearise
 from shipcosim.diagnose.inference.noise import first_noise
-from shipcosim.diagnose.inference.null_distribution import healthy_records
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.dynamics import loads, motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, first_motion, record_of
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.motion import Motion
 from shipcosim.series import write_table

@@ -6,9 +6,9 @@ from diagnose import twin
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.replays import replay_log
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table, write_table

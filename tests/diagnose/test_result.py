@@ -2,7 +2,9 @@
 
 import json
 
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Candidate, Estimate, Finding
+from shipcosim.diagnose.result import Diagnosis
 
 ENTRIES = {
     *("schema", "verdict", "findings", "candidates", "indistinguishable"),

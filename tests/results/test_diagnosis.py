@@ -7,7 +7,8 @@ import pytest
 
 import shipcosim as sc
 import shipcosim.diagnose.pipeline  # a module of the room, imported before the room is called
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
+from shipcosim.diagnose.finding import Candidate, Estimate, Finding
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.results.diagnosis import DiagnosisOfLog
 from shipcosim.results.shown import parts_of
 

@@ -57,7 +57,7 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     from shipcosim.diagnose.log.names.written import channel_file
     from shipcosim.diagnose.log.reader import columns_of, read_log
     from shipcosim.diagnose.log.runs import channels_of_run
-    from shipcosim.diagnose.ship.model import ship_model_of
+    from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 
     check_inputs([log], form)
     given = read_channels(form).form if form is not None else Form()

@@ -14,7 +14,8 @@ from shipcosim.cli.progress import LAST_STEP, shown_progress
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.result import Diagnosis, Finding
+    from shipcosim.diagnose.finding import Finding
+    from shipcosim.diagnose.result import Diagnosis
 
 DEFAULT_SYSTEM = "gunnerus_open"
 FILES = ("diagnosis.json", "report.html", "extended.ssp", "extended.ssv")

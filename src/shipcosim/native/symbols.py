@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from shipcosim.native.recording import Recording
 
 
 class Untraceable(Exception):
@@ -41,6 +38,8 @@ class Symbol:
 
     Attributes
     ----------
+    recording : Recording
+        That it is a value of.
     number : int
         In its recording.
     op : str
@@ -55,7 +54,7 @@ class Symbol:
 
     __slots__ = ("recording", "number", "op", "kind", "operands", "block")
 
-    def __init__(self, recording: Recording, number: int, op: str, kind: str, operands: tuple, block: int):
+    def __init__(self, recording: Any, number: int, op: str, kind: str, operands: tuple, block: int):
         self.recording, self.number, self.op, self.kind, self.operands = recording, number, op, kind, operands
         self.block = block
 

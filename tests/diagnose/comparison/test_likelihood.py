@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 from diagnose import usv
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.felt import felt_by
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
 from shipcosim.diagnose.comparison.readings import Change, driven
 from shipcosim.diagnose.inference.problem import as_logged
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import ReadLog
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 
 
 @pytest.fixture(scope="module")

@@ -19,14 +19,15 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     step_for,
     true_wind,
 )
+from shipcosim.diagnose.explanation.search import explain
+from shipcosim.diagnose.explanation.verdict import judge
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, prepared
 from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import linearise
-from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.inference.verdict import judge
 from shipcosim.diagnose.ship.inputs import Record, first_motion
-from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind

@@ -8,8 +8,8 @@ from ships import parameters
 
 from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.library import build_stale
 from shipcosim.models.core.kinematics import to_body

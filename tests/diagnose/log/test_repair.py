@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults import clock as timing
 from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, with_rate
-from shipcosim.diagnose.result import Estimate, Finding
 
 FIRST, LAST, RATE = 150.0, 300.0, 1.3
 

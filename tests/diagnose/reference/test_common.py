@@ -7,6 +7,7 @@ import pytest
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.labels import Change
+from shipcosim.diagnose.finding import Discrepancy, Estimate, Finding
 from shipcosim.diagnose.reference.common import (
     common_discrepancies,
     common_faults,
@@ -15,7 +16,6 @@ from shipcosim.diagnose.reference.common import (
     together,
     with_right_labels,
 )
-from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
 from shipcosim.series import make_table
 
 SWAP = Finding(

@@ -6,9 +6,9 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.reference.since import with_sizes_at_reference
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.report.diagnosis.words import size_rows, told
 
 

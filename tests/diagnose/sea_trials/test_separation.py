@@ -7,8 +7,8 @@ import pytest
 from diagnose import twin
 from diagnose.sea_trials import trials
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import SOUGHT
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
@@ -16,7 +16,6 @@ from shipcosim.diagnose.sea_trials.separation import Separation, designed, separ
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.stages import ReadLog
 
 PLANTED = {"vessel.mmg_X_vv": -0.7, "instruments.order_lag": 2.5}
 SHAFTS = {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}

@@ -13,16 +13,16 @@ from diagnose import boat, twin
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship import inputs
 from shipcosim.diagnose.ship import model as plant_module
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.ship.surrogate import fitted_thrust, with_surrogates
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
+from shipcosim.diagnose.ship.surrogate_building import fitted_thrust, with_surrogates
 from shipcosim.diagnose.ship.third_party_fmu import drives_of
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.errors import ShipcosimError

@@ -2,8 +2,10 @@
 
 import pytest
 
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Candidate, Estimate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
 from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, told, where
 from shipcosim.report.theme.numbers import plain

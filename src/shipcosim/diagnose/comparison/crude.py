@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.diagnose.comparison.thresholds import SURE_OF_RATIO
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.ship.thrusters import with_thrust
 
 if TYPE_CHECKING:

@@ -30,9 +30,9 @@ from shipcosim.diagnose.comparison.thresholds import (
     ROUND_MODEL,
     TYPICAL_CURRENT,
 )
-from shipcosim.diagnose.ship.instruments import readings, true_motion
-from shipcosim.diagnose.validation.predictions import predicted, replayable
-from shipcosim.diagnose.validation.thresholds import DRAWS
+from shipcosim.diagnose.inference.predictions import predicted, replayable
+from shipcosim.diagnose.inference.thresholds import DRAWS
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     SURE_OF_GAIN,
     TOLD,
 )
-from shipcosim.diagnose.result import Discrepancy
+from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio

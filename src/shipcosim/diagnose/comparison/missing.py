@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim.diagnose.comparison.axes import AXES
 from shipcosim.diagnose.comparison.commanded import inertia
 from shipcosim.diagnose.comparison.thresholds import ABOVE_NOISE, GOES_WITH, LARGE, MENTIONED, OFF, STEADY
-from shipcosim.diagnose.result import Discrepancy
+from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis

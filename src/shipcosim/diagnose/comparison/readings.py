@@ -19,7 +19,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     MOST_CHANGES,
 )
 from shipcosim.diagnose.ship.smoothing import froude_time
-from shipcosim.diagnose.ship.surrogate import with_surrogates
+from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis

@@ -5,8 +5,8 @@ from math import hypot
 from typing import Any
 
 from shipcosim.diagnose.extension.draft import AXES, Estimated, ExtensionDraft, converted
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.cause import ExtensionRule, OnConnections
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, third_party_fmu_of
 from shipcosim.series import conversion
 from shipcosim.ssp import Connection, System, SystemStructure

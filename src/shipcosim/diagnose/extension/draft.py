@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from shipcosim import library
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, parameter
 from shipcosim.ssp.read.parameters import ParameterValue

@@ -9,10 +9,10 @@ from typing import Any
 from shipcosim.diagnose.extension.connections import connect_neighbours, put_on_connections, rewire
 from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
 from shipcosim.diagnose.extension.insertions import add_current, add_force, add_instruments
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
-from shipcosim.diagnose.result import Estimate, Finding
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import SystemStructure, read, write_ssv
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.result import Finding
-from shipcosim.diagnose.stages import ExtendedSystem, Identification
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.extension.extend import Extension, extend
+from shipcosim.diagnose.finding import Finding
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import read_system
+from shipcosim.ssp import System, SystemStructure, read_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
@@ -28,6 +28,34 @@ class Change:
     before: float | None
     after: float
     unit: str
+
+
+@dataclass(frozen=True)
+class ExtendedSystem:
+    """A system with the named causes in it.
+
+    Attributes
+    ----------
+    given : System
+        That the log was held against.
+    source : path or SystemStructure
+        What is extended.
+    extension : Extension or None
+        None where no cause of the physics was named, or it could not be made.
+    system : System or None
+        The extended system, which can be simulated.
+    changes : tuple of Change
+        Every number that differs.
+    remarks : tuple of str
+        Why it could not be made.
+    """
+
+    given: System
+    source: SystemStructure | str
+    extension: Extension | None = None
+    system: System | None = None
+    changes: tuple[Change, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 def with_findings(

@@ -5,8 +5,8 @@ from dataclasses import fields
 from math import atan2, hypot
 
 from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.cause import ExtensionRule
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.environment import water_of
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.instruments import InstrumentParameters

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
@@ -35,7 +36,6 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_SEGMENT,
 )
 from shipcosim.diagnose.numerics import survival
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
+from shipcosim.diagnose.finding import Discrepancy, Estimate, Finding
 from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
-from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
 
 if TYPE_CHECKING:
     import xarray

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Candidate, Discrepancy, Estimate, Finding
 from shipcosim.diagnose.reference.common import RatioOfLogs, Shared
 from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
-from shipcosim.diagnose.result import SCHEMA, Candidate, Diagnosis, Discrepancy, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.result import SCHEMA, Diagnosis
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.extension.extend import Extension

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.reference import Reference, with_reference
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["with_sizes_at_reference"]

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from shipcosim.diagnose.result import Estimate
+from shipcosim.diagnose.finding import Estimate
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
 
 __all__ = ["filled"]

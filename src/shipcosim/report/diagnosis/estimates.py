@@ -2,7 +2,7 @@
 
 import math
 
-from shipcosim.diagnose.result import Estimate
+from shipcosim.diagnose.finding import Estimate
 
 SHOWN = {"1": "", "": ""}
 LARGE = {"N": ("kN", 1e-3), "N.m": ("kN·m", 1e-3)}

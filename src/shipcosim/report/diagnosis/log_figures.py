@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
-from shipcosim.diagnose.result import Finding
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import as_variable, thinned
 from shipcosim.report.theme.figures import TIME, line, rounded

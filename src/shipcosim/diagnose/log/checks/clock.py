@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -36,7 +37,6 @@ from shipcosim.diagnose.log.thresholds import (
     SHORTEST_BLOCK,
 )
 from shipcosim.diagnose.numerics import Bands
-from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["wrong_clock"]
 

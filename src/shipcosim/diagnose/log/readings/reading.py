@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Estimate, Finding
 from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of, turned_grid
 from shipcosim.diagnose.log.readings.changes import CLOCK, Change, changes
 from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, off_angle, reading_of
@@ -20,7 +21,6 @@ from shipcosim.diagnose.log.thresholds import (
     THROUGHOUT,
     UNLIKELY_READING,
 )
-from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["explained", "is_as_labelled", "misread"]
 
