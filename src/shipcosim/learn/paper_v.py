@@ -126,7 +126,9 @@ def train(recipe: Recipe, progress: Progress) -> Trained:
         loss = partial(losses, network, k4=recipe.k4, mean=_row(data.mean), std=_row(data.std))
         batches, held_out = data.forces[: data.trained], data.forces[data.trained :].flatten(0, 1)[None]
         epochs = fit(network, loss, batches, held_out, recipe.schedule, progress)
-    arrays = {"mean": data.mean, "std": data.std, "ranges": _radians(RANGES), "sample_time": np.array(SAMPLE_TIME)}
+    # Commands with their angles in rad.
+    radians = RANGES * np.array([1.0, 1.0, np.pi / 180.0, 1.0, np.pi / 180.0])
+    arrays = {"mean": data.mean, "std": data.std, "ranges": radians, "sample_time": np.array(SAMPLE_TIME)}
     arrays |= arrays_of(network.encoder, "encoder") | arrays_of(network.decoder, "decoder")
     return Trained(arrays, recipe.description, recipe.seed, _about(recipe, data), _settings(recipe), epochs, NOTES)
 
@@ -215,11 +217,6 @@ def losses(
 
 def _row(values: np.ndarray) -> torch.Tensor:
     return torch.from_numpy(np.asarray(values, dtype=np.float32))
-
-
-def _radians(commands: np.ndarray) -> np.ndarray:
-    """Commands with their angles in rad."""
-    return commands * np.array([1.0, 1.0, np.pi / 180.0, 1.0, np.pi / 180.0])
 
 
 def _about(recipe: Recipe, data: Data) -> dict:

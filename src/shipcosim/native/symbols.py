@@ -353,7 +353,12 @@ class Maths:
         if isinstance(x, np.ndarray):
             return np.array([Maths.interp(element, xs, ys) for element in x.flat], dtype=object).reshape(x.shape)
         if first_symbol(xs, ys) is not None:
-            return _interpolated(x, xs, ys)
+            # Linear interpolation in a short table of values in memory.
+            found = ys[0]
+            for k in range(len(xs) - 1):
+                between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
+                found = Maths.where(x >= xs[k], between, found)
+            return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
         recording = x.recording
         first, second = recording.table(np.asarray(xs)), recording.table(np.asarray(ys))
         return recording.value("interp", "d", x, first, second, len(xs))
@@ -375,15 +380,6 @@ class Maths:
         for number in range(len(table) - 2, -1, -1):
             chosen = _chosen((index == number) | (index == number - len(table)), table[number], chosen)
         return chosen
-
-
-def _interpolated(x, xs, ys):
-    """Linear interpolation in a short table of values in memory."""
-    found = ys[0]
-    for k in range(len(xs) - 1):
-        between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
-        found = Maths.where(x >= xs[k], between, found)
-    return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
 
 
 def _consecutive(table):

@@ -18,7 +18,6 @@ from shipcosim.units import UnitError, amount, number_in
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
-    from shipcosim.ssp.fmu.description import Variable
 
 MOST_STEPS = 1e8
 """Steps of a run; the times of more than these would hardly fit into memory."""
@@ -200,7 +199,11 @@ def _event_complaint(system: System, verb: str, signal: str, value: Value | None
     else:
         variable = system.components[component].fmu.variables[name]
         kind, items = variable.kind, variable.items
-        if not _may_change(variable):
+        may_change = variable.causality in ("input", "output") or (variable.causality, variable.variability) == (
+            "parameter",
+            "tunable",
+        )
+        if not may_change:
             remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
     if kind == "Real" and isinstance(value, str) and amount(value) is not None:
@@ -220,13 +223,6 @@ def _unit_complaint(
     except UnitError as error:
         return f"{verb} of '{signal}': {error.found}", error.remedy
     return None
-
-
-def _may_change(variable: Variable) -> bool:
-    return variable.causality in ("input", "output") or (variable.causality, variable.variability) == (
-        "parameter",
-        "tunable",
-    )
 
 
 _WANTED = {

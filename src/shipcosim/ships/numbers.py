@@ -76,19 +76,15 @@ class Numbers:
         units = units_of(self.fmu)
         for name, value in found.items():
             if name not in units:
-                self.problems.append(Problem(f"{self.where}.{name}", "There is no such number.", _named(name, units)))
+                self.problems.append(
+                    Problem(f"{self.where}.{name}", "There is no such number.", suggestion(name, units))
+                )
             elif isinstance(value, dict) and "table" in value:
                 self.table(name, str(value["table"]))
             else:
                 try:
                     self.give(name, given_in_unit(value, units[name]))
                 except ValueError as error:
-                    self.problems.append(Problem(f"{self.where}.{name}", _sentence(str(error))))
-
-
-def _named(name: str, units: dict[str, str]) -> str:
-    return suggestion(name, units)
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
+                    text = str(error)
+                    sentence = text[:1].upper() + text[1:]
+                    self.problems.append(Problem(f"{self.where}.{name}", sentence))

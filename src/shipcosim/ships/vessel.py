@@ -74,17 +74,14 @@ def vessel_of(ship: ShipFile, form: Form, file: Path, problems: list[Problem]) -
     """
     own = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
     own.coefficients(ship.hull)
-    _dimensions(own, ship.particulars or Particulars())
+    p = ship.particulars or Particulars()
+    for name in ("length", "breadth", "draught", "water_density"):
+        own.give(name, getattr(p, name))
     _inertia(own, ship.mass, ship.particulars or Particulars(), form)
     _resistance(own, ship, form)
     _across(own, ship, form)
     _weather(own, ship, form)
     return own.entries
-
-
-def _dimensions(own: Numbers, p: Particulars) -> None:
-    for name in ("length", "breadth", "draught", "water_density"):
-        own.give(name, getattr(p, name))
 
 
 def _inertia(own: Numbers, m: Inertia, p: Particulars, form: Form) -> None:

@@ -231,7 +231,14 @@ class ModelExchange(LibrarySlave):
             if self._next_event > self._time + near:
                 if self._time >= end - near:
                     return
-                if not self._solver_step(min(end, self._next_event), near):
+                # Make one step of the solver; whether there is a state or step event where it ends.
+                stop = min(end, self._next_event)
+                assert self._solver is not None
+                reached, has_root = self._solver.step(stop)
+                self._time = stop if abs(reached - stop) <= near else reached
+                self._set_time_and_states(self._time, self._states)
+                solver_step = self._completed_step() or has_root
+                if not solver_step:
                     continue
             self._enter_event_mode()
             self._iterate_event()
@@ -239,14 +246,6 @@ class ModelExchange(LibrarySlave):
             n_events += 1
             if n_events > MOST_EVENTS:
                 raise SlaveError(f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s.")
-
-    def _solver_step(self, stop, near):
-        """Make one step of the solver; whether there is a state or step event where it ends."""
-        assert self._solver is not None  # since the initialisation
-        reached, has_root = self._solver.step(stop)
-        self._time = stop if abs(reached - stop) <= near else reached
-        self._set_time_and_states(self._time, self._states)
-        return self._completed_step() or has_root
 
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""

@@ -66,7 +66,11 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
     """
     size = size or Size()
     if name in UNLEARNED:
-        return _unlearned(name, progress)
+        progress(1, 1)
+        region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
+        notes = ("Its region is no more than a guess: half a metre at once, three metres after a minute.",)
+        arrays = _arrays(design_of(name)) | region | {"region.sea_share": np.array(1.0)}
+        return Trained(arrays, UNLEARNED[name], 0, {"worlds": 0}, {}, [], notes)
     return _filter(progress, size) if name == FILTER else _networks(name, progress, size)
 
 
@@ -88,14 +92,6 @@ def design_of(name: str) -> Design:
 
 
 STILL = {"position_by_velocity": 0.0, "velocity_by_position": 0.0, "velocity_by_velocity": 0.0, "position_in_sea": 0.0}
-
-
-def _unlearned(name, progress):
-    progress(1, 1)
-    region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
-    notes = ("Its region is no more than a guess: half a metre at once, three metres after a minute.",)
-    arrays = _arrays(design_of(name)) | region | {"region.sea_share": np.array(1.0)}
-    return Trained(arrays, UNLEARNED[name], 0, {"worlds": 0}, {}, [], notes)
 
 
 def _filter(progress, size):

@@ -125,7 +125,9 @@ def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
     Definition.
     """
     zero = 0.0 * tau[0]
-    return Allocated((zero,) * 3, _azimuths(parameters), zero, zero, zero, zero > 0.0)
+    # Angles of port, starboard and tunnel. [rad]
+    azimuths = parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
+    return Allocated((zero,) * 3, azimuths, zero, zero, zero, zero > 0.0)
 
 
 def step(
@@ -181,11 +183,6 @@ def step(
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
-def _azimuths(parameters):
-    """Angles of port, starboard and tunnel. [rad]"""
-    return parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
-
-
 def _limits(shares, parameters):
     """Least and largest thrust of port, starboard and tunnel. [N]"""
     p, (port, starboard, tunnel) = parameters, shares
@@ -203,7 +200,14 @@ def _within_limits(tau, available, limits, *, design):
         given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = a != given[0], b != given[1], c != given[2]
-        if not _anywhere(over[0] | over[1] | over[2]):
+        # True if a condition holds for any element.
+        condition = over[0] | over[1] | over[2]
+        anywhere = (
+            condition
+            if isinstance(condition, bool)
+            else bool(condition.any() if hasattr(condition, "any") else condition)
+        )
+        if not anywhere:
             break
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
@@ -239,13 +243,6 @@ def _choose(index, rows):
     for number, row in enumerate(rows[1:], 1):
         chosen = [where(index == number, new, old) for new, old in zip(row, chosen, strict=True)]
     return chosen
-
-
-def _anywhere(condition):
-    """Whether a condition holds for any element."""
-    return (
-        condition if isinstance(condition, bool) else bool(condition.any() if hasattr(condition, "any") else condition)
-    )
 
 
 def _float(value):

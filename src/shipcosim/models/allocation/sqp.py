@@ -228,7 +228,9 @@ def nearest_step(
 
 def _step(state, tau, available, h, design, shares, slack, proposed):
     """Both programs: changes of thrust and angle, then thrusts at the new angles."""
-    whole = _all(available, design)
+    # True if no unit is missing.
+    missing = sum(where(on, 0.0, 1.0) for on, unit in zip(available, design.units, strict=True) if unit.most > 0.0)
+    whole = missing < 0.5
     around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
     unmet, changes = tau, []
     for at in around:
@@ -367,9 +369,3 @@ def _effect(unit: Unit, s: Arithmetic, c: Arithmetic) -> tuple[Arithmetic, Arith
 def _less(tau, effect, f):
     """A load without that of a thrust."""
     return tau[0] - effect[0] * f, tau[1] - effect[1] * f, tau[2] - effect[2] * f
-
-
-def _all(available, design):
-    """Whether no unit is missing."""
-    missing = sum(where(on, 0.0, 1.0) for on, unit in zip(available, design.units, strict=True) if unit.most > 0.0)
-    return missing < 0.5

@@ -272,7 +272,13 @@ def step(
     predicted = _predict(estimate, acceleration, dt=parameters.sample_period, wave=filters.wave)
     innovations = _innovations(predicted, acceleration, measurement, parameters, filters)
     corrected = _correct(predicted, innovations, ship=ship, filters=filters)
-    swings = _swings(corrected, parameters.sample_period)
+    # Wave motion in surge, sway and yaw a sample later, integrated from its rates with forgetting.
+    keep = 1.0 - parameters.sample_period * FORGETTING
+    swings = (
+        keep * corrected.surge_swing + parameters.sample_period * corrected.u_wave,
+        keep * corrected.sway_swing + parameters.sample_period * corrected.v_wave,
+        keep * corrected.yaw_swing + parameters.sample_period * corrected.r_wave,
+    )
     frequency, power, pace = _paced(*_wave_frequency(corrected, swings, parameters), parameters)
     surge, sway, yaw = swings
     return corrected._replace(
@@ -381,12 +387,6 @@ def _correct(e, innovations, *, ship, filters):
         v_wave=e.v_wave + g.rate_position * sway + g.rate_velocity * dv,
         r_wave=e.r_wave + k.rate_position * yaw + k.rate_velocity * dr,
     )
-
-
-def _swings(e, h):
-    """Wave motion in surge, sway and yaw a sample later, integrated from its rates with forgetting."""
-    keep = 1.0 - h * FORGETTING
-    return keep * e.surge_swing + h * e.u_wave, keep * e.sway_swing + h * e.v_wave, keep * e.yaw_swing + h * e.r_wave
 
 
 def _wave_frequency(e, swings, parameters):

@@ -248,7 +248,9 @@ def start(
     compasses = Channel(wander, (0.0,) * 2, (headings,))
     compasses = compasses._replace(history=(_headings(compasses, numbers[1], truth, failures, p),) * _length(clocks[1]))
     air = _air(truth, mast)
-    wind = Channel((*((0.0, 0.0),) * (_spans(p) - 1), air), (1.0,), (Wind(*air, 1.0),))
+    # Samples of the wind in its mean.
+    spans = max(1, round(p.wind_average_time / p.period))
+    wind = Channel((*((0.0, 0.0),) * (spans - 1), air), (1.0,), (Wind(*air, 1.0),))
     wind = wind._replace(history=(_wind(wind, numbers[2], failures, p),) * _length(clocks[2]))
     return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, p))
 
@@ -306,11 +308,6 @@ def _ticked(state, truth, failures, p, mast):
     if k % p.clocks[2][0] == 0:
         wind = _noted(wind, _wind(wind, _numbers(p, k, 2), failures, p))
     return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p))
-
-
-def _spans(p):
-    """Samples of the wind in its mean."""
-    return max(1, round(p.wind_average_time / p.period))
 
 
 def _length(clock):

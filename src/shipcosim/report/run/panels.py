@@ -68,9 +68,13 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
     tuple of Section
     """
     motion = _motion(shown, roles, verdicts)
+    # A panel for every signal with an expectation that no other panel shows with its limits.
+    drawn = {line.signal for panel in motion for line in panel.lines}
+    signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
+    expected = [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
     made = {
         "Reference and error": motion,
-        "Other expectations": _expected(shown, verdicts, {line.signal for panel in motion for line in panel.lines}),
+        "Other expectations": expected,
         "Forces on the ship": _loads(shown, roles),
         "Thrusters": _thrusters(shown, roles),
         "Allocation": _allocation(shown, roles),
@@ -129,12 +133,6 @@ def _speeds(shown: Dataset, roles: Roles) -> list[Panel]:
     ahead, sideways, turn = (roles.signal(roles.ship, connector) for connector in "uvr")
     speeds = _panel(shown, "Speed over ground", _coloured({ahead: "ahead", sideways: "to starboard"}))
     return speeds + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
-
-
-def _expected(shown: Dataset, verdicts: Sequence[Verdict], drawn: set[str | None]) -> list[Panel]:
-    """A panel for every signal with an expectation that no other panel shows with its limits."""
-    signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
-    return [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
 
 
 def _loads(shown: Dataset, roles: Roles) -> list[Panel]:

@@ -132,12 +132,6 @@ def _plain(connector: str) -> str:
     return re.sub(r"[^a-z0-9]", "", connector.lower())
 
 
-def _spellings(axis: str, endings: Iterable[str] = ("",)) -> set[str]:
-    """Names, as `_plain` gives them, under which an axis is known."""
-    words = [a + word + b for word in AXES[axis] for a in AROUND for b in AROUND if not (a and b)]
-    return {word + ending for word in words for ending in endings}
-
-
 def _poses(table: Dataset, names: list[str]) -> list[Pose]:
     """Signals of every position that has an east beside its north and a heading near it."""
     found = []
@@ -161,7 +155,10 @@ def _moves(table: Dataset, pose: Pose) -> bool:
 
 
 def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
-    return _plain(name.rpartition(".")[2]) in _spellings(axis, endings)
+    # Names, as `_plain` gives them, under which an axis is known.
+    words = [a + word + b for word in AXES[axis] for a in AROUND for b in AROUND if not (a and b)]
+    spellings = {word + ending for word in words for ending in endings}
+    return _plain(name.rpartition(".")[2]) in spellings
 
 
 def _beside(north: str, names: list[str]) -> list[str]:
