@@ -17,7 +17,7 @@ test: .venv/installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
-	$(BIN)/pytest -n 2 --dist loadfile -m "not slow"
+	$(BIN)/pytest -n 2 --dist loadfile -m "not slow" tests/unit tests/system src
 
 test-all: .venv/installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[allocators]"
@@ -26,7 +26,7 @@ test-all: .venv/installed-test
 
 benchmarks: .venv/installed-test
 	$(BIN)/shipcosim build
-	$(BIN)/pytest -m "" -s tests/bench/speed tests/bench/rivals tests/bench/allocation tests/bench/prediction tests/bench/trial/test_diagnosis_trial.py
+	$(BIN)/pytest -m "" -s tests/bench tests/system/bench/allocation tests/system/bench/prediction
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

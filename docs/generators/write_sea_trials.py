@@ -21,7 +21,7 @@ from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]
 LOG = ROOT.parent / "shared" / "measured" / "gunnerus_trials_2022" / "trials.csv"
-CHANNELS = ROOT / "tests" / "measured" / "channels" / "gunnerus.toml"
+CHANNELS = ROOT / "tests" / "system" / "measured" / "channels" / "gunnerus.toml"
 PAGE = ROOT / "docs" / "generated" / "sea-trials-2022.md"
 PICTURE = ROOT / "docs" / "generated" / "pictures" / "sea_trials_2022.png"
 SHOWN = ("speed", "rate", "t90", "t180", "t20", "speed at 90", "advance", "transfer", "tactical diameter", "drift")

@@ -6,7 +6,8 @@ import sys
 import warnings
 from pathlib import Path
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[2])]
+TESTS = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TESTS / "bench"), str(TESTS / "system"), str(TESTS)]  # craft; diagnose; ships
 
 from craft import CHANGES, FAULTS, draw  # noqa: E402
 from craft.scoring import answer, counted, score  # noqa: E402

@@ -1,0 +1,95 @@
+"""Logs of real craft through the whole diagnosis: no crash, figures of the error, time and memory.
+
+The logs are no part of the project; without them these tests skip. What is asserted is what anybody can check in the
+files themselves, never a cause that nobody knows.
+"""
+
+import resource
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas
+import pytest
+from measured.logs import CHANNELS, FOLDERS, as_table, files
+
+import shipcosim as sc
+from shipcosim.diagnose.replays import replay_log
+from shipcosim.diagnose.validation.tracks import errors_of
+from shipcosim.library import build_stale
+from shipcosim.ssp import read_system
+
+ROOT = Path(__file__).resolve().parents[3]
+MEASURED = ROOT.parent / "shared" / "measured"
+HERE = [craft for craft in FOLDERS if (MEASURED / FOLDERS[craft]).is_dir()]
+LOGS = [(craft, path.name) for craft in HERE for path in files(MEASURED.parent, craft)]
+SHORT = ("blueboat", "run_228.csv.gz")
+
+
+@pytest.fixture(scope="module")
+def fmus():
+    return build_stale(ROOT)
+
+
+@pytest.fixture
+def log(tmp_path):
+    """Function from a craft and a file's name to the table, its channel file and the craft's system."""
+
+    def found(craft, name):
+        path = MEASURED / FOLDERS[craft] / name
+        if not path.is_file():
+            pytest.skip("needs the logs in ../shared/measured, which are not here")
+        return as_table(path, tmp_path), CHANNELS / f"{craft}.toml", ROOT / "ssp" / f"{craft}_open"
+
+    return found
+
+
+def diagnosed(table, channels, system, fmus):
+    """A diagnosis, and what it took: printed with -s."""
+    begun = time.perf_counter()
+    found = sc.diagnose(table, read_system(system, fmus=[fmus]), channels=channels)
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    named = ", ".join(finding.label for finding in found.findings) or "nothing"
+    print(f"{table.name}: {found.verdict}, {named}; {time.perf_counter() - begun:.0f} s, {memory:.2f} GB so far")
+    return found
+
+
+def has_figures(found):
+    """Whether the errors of the simulation are stated, as numbers."""
+    base, errors = found.baseline, errors_of(found.tracks)
+    if not all(np.isfinite(base[key]).all() for key in ("position_error_m", "heading_error_deg")):
+        return False
+    return all(np.isfinite(errors[channel].values).all() for channel in ("position", "heading", "surge", "yaw_rate"))
+
+
+def test_a_short_log_goes_through_the_whole_diagnosis_and_its_thrusters_are_found_exchanged(log, fmus):
+    """The left thruster is at y = -0.285 m: more force there turns her to starboard, and in this spin to port."""
+    table, channels, system = log(*SHORT)
+    spin = pandas.read_csv(table)
+    assert np.corrcoef(spin["left_force"] - spin["right_force"], spin["yaw_rate"])[0, 1] < -0.8
+    found = diagnosed(table, channels, system, fmus)
+    assert has_figures(found)
+    assert [finding.cause for finding in found.findings] == ["channel_swap"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("craft", "name"), LOGS)
+def test_every_log_goes_through_the_whole_diagnosis(craft, name, log, fmus):
+    found = diagnosed(*log(craft, name), fmus)
+    assert has_figures(found)
+    if craft == "kvlcc2":
+        has_velocities_of_the_earth(found)
+
+
+def has_velocities_of_the_earth(found):
+    """HSVA's columns u and v are the rates of x and y to 1 mm/s; as those of the body they are off by 5 cm/s."""
+    frames = [finding for finding in found.findings if finding.cause == "frame"]
+    assert [set(finding.channels) for finding in frames] == [{"surge", "sway"}]
+    assert "north and east" in frames[0].note
+
+
+def test_kvlcc2_zigzags_as_published_numbers_say(log, fmus):
+    """Within half a length and 12 deg after 50 s, by numbers of another tank and nothing fitted."""
+    table, channels, system = log("kvlcc2", "Z_35_05.dat.gz")
+    errors = errors_of(replay_log(table, {"before": read_system(system, fmus=[fmus])}, channels, horizon=50.0).tracks)
+    assert float(errors["position"].max()) < 3.5 and float(errors["heading"].max()) < 12.0
