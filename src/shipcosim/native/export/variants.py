@@ -114,11 +114,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
                 remember(getattr(clone, group.name))
         if clone.messages:
             raise Untraceable("it writes to the log")
-        # Order of attributes that does not depend on the way by which the start went.
-        values = dict(vars(clone))
-        first = [*(item.name for item in (*clone.variables, *clone.groups))]
-        vars(clone).clear()
-        vars(clone).update({name: values[name] for name in [*first, *sorted(values.keys() - set(first))]})
+        _put_in_order(clone)
         flat = Flat(vars(clone), constant, unchanging)
         made.append((clone, flat))
         return flat
@@ -144,6 +140,14 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
     size = max([n + STATE, *(place + 1 for place in places)])
     names = [text_of(leaf.path) for leaf in flat.leaves]
     return Variant(fixed, Step(recording, root, frozenset()), step, [*places, n + TIME, n + STEP_SIZE], names, size)
+
+
+def _put_in_order(clone):
+    """Order of attributes that does not depend on the way by which the start went."""
+    values = dict(vars(clone))
+    first = [*(item.name for item in (*clone.variables, *clone.groups))]
+    vars(clone).clear()
+    vars(clone).update({name: values[name] for name in [*first, *sorted(values.keys() - set(first))]})
 
 
 @contextmanager

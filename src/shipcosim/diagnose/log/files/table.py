@@ -10,14 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.cells import NOTHING, decimal_of, numbers_of, with_unit, without_fillers
+from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fillers
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
 from shipcosim.diagnose.log.files.foreign import refuse_foreign
 from shipcosim.diagnose.log.files.form import Form
-from shipcosim.diagnose.log.files.layout import Layout, cells_in, is_comment, layout_of
+from shipcosim.diagnose.log.files.layout import Layout, layout_of
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
+from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
 from shipcosim.errors import Problem, ShipcosimError
 
 __all__ = ["LogColumns", "read_file"]
