@@ -51,7 +51,7 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     """
     from shipcosim.cli.requests import system_of
     from shipcosim.diagnose.log.channels import ChannelFile, read_channels
-    from shipcosim.diagnose.log.files.form import Form
+    from shipcosim.diagnose.log.files.form import FileLayout
     from shipcosim.diagnose.log.names.guesses import SURE, Guess
     from shipcosim.diagnose.log.names.proposal import propose
     from shipcosim.diagnose.log.names.written import channel_file
@@ -60,7 +60,7 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 
     check_inputs([log], form)
-    given = read_channels(form).form if form is not None else Form()
+    given = read_channels(form).form if form is not None else FileLayout()
     columns = columns_of(log, given)
     ship = ship_model_of(system_of(system or DEFAULT_SYSTEM, option="--system"))
     thrusters = {name: ship.drives(name) for name in ship.thrusters}

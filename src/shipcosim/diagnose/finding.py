@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 
-__all__ = ["Candidate", "Discrepancy", "Estimate", "Finding", "label_of"]
+__all__ = ["Candidate", "Discrepancy", "Finding", "ParameterEstimate", "label_of"]
 
 
 def label_of(cause: str, component: str | None) -> str:
@@ -13,7 +13,7 @@ def label_of(cause: str, component: str | None) -> str:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class ParameterEstimate:
     """A parameter of a cause, with its standard deviation, both in `unit`."""
 
     estimate: float
@@ -56,13 +56,13 @@ class Finding:
     component: str | None = None
     kind: str = "physics"
     probability: float = 1.0
-    parameters: dict[str, Estimate] = field(default_factory=dict)
+    parameters: dict[str, ParameterEstimate] = field(default_factory=dict)
     segments: tuple[tuple[float, float], ...] = ()
     channels: tuple[str, ...] = ()
     onset: float | None = None
     note: str = ""
     alternatives: tuple[str, ...] = ()
-    at_reference: dict[str, Estimate] = field(default_factory=dict)
+    at_reference: dict[str, ParameterEstimate] = field(default_factory=dict)
 
     @property
     def label(self) -> str:

@@ -31,7 +31,7 @@ from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experi
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
-from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
 from shipcosim.diagnose.reference.common import (
@@ -338,11 +338,13 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
 
 def _sizes(
     basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding]
-) -> dict[str, dict[str, dict[str, Estimate]]]:
+) -> dict[str, dict[str, dict[str, ParameterEstimate]]]:
     """How large each log by itself would have what is common."""
     each = basis.ratios.each
     sizes = {
-        one.label: {name: dict.fromkeys(one.parameters, Estimate(of.ratio, of.std, "1")) for name, of in each.items()}
+        one.label: {
+            name: dict.fromkeys(one.parameters, ParameterEstimate(of.ratio, of.std, "1")) for name, of in each.items()
+        }
         for one in crude
     }
     if not causes:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.explanation.summary import Evidence
     from shipcosim.diagnose.explanation.verdict import JudgedLog
     from shipcosim.diagnose.extension.extend import Extension
-    from shipcosim.diagnose.extension.extended_system import Change
+    from shipcosim.diagnose.extension.extended_system import NumberChange
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.validation.missing_force import MissingForce
     from shipcosim.diagnose.validation.summary import PredictionErrors
@@ -91,7 +91,7 @@ class Diagnosis:
         What was put into the system; None where no cause of the physics was named.
     extended : System or None
         The system with it, which can be simulated.
-    changes : tuple of Change
+    changes : tuple of NumberChange
         Every number in which it differs.
     system : System or None
         That the log was held against.
@@ -127,7 +127,7 @@ class Diagnosis:
     force: MissingForce | None = field(default=None, repr=False)
     extension: Extension | None = None
     extended: System | None = field(default=None, repr=False)
-    changes: tuple[Change, ...] = ()
+    changes: tuple[NumberChange, ...] = ()
     system: System | None = field(default=None, repr=False)
     remarks: tuple[str, ...] = ()
     discrepancies: tuple[Discrepancy, ...] = ()

@@ -44,7 +44,7 @@ NOTES = (
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PaperVTraining:
     """One variant.
 
     Parameters
@@ -78,10 +78,10 @@ class Recipe:
 
 _OF = "Neural allocator of paper V, 28.9 m ship"
 RECIPES = {
-    "paper-v": Recipe(f"{_OF}, as printed: k4 = 1e-7, independent samples"),
-    "paper-v-k4-3": Recipe(f"{_OF}, as printed but k4 = 3e-7", k4=3e-7),
-    "paper-v-k4-5": Recipe(f"{_OF}, as printed but k4 = 5e-7", k4=5e-7),
-    "paper-v-walks": Recipe(f"{_OF}, as printed but trained on random walks", walks=True),
+    "paper-v": PaperVTraining(f"{_OF}, as printed: k4 = 1e-7, independent samples"),
+    "paper-v-k4-3": PaperVTraining(f"{_OF}, as printed but k4 = 3e-7", k4=3e-7),
+    "paper-v-k4-5": PaperVTraining(f"{_OF}, as printed but k4 = 5e-7", k4=5e-7),
+    "paper-v-walks": PaperVTraining(f"{_OF}, as printed but trained on random walks", walks=True),
 }
 
 
@@ -105,12 +105,12 @@ class Autoencoder(torch.nn.Module):
         self.decoder = Recurrent(len(RANGES), WIDTH, LAYERS, 3)
 
 
-def train(recipe: Recipe, progress: Progress) -> Trained:
+def train(recipe: PaperVTraining, progress: Progress) -> Trained:
     """Train one variant from scratch.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : PaperVTraining
         The variant.
     progress : callable
         Is told how far it is.
@@ -133,12 +133,12 @@ def train(recipe: Recipe, progress: Progress) -> Trained:
     return Trained(arrays, recipe.description, recipe.seed, _about(recipe, data), _settings(recipe), epochs, NOTES)
 
 
-def data_of(recipe: Recipe) -> Data:
+def data_of(recipe: PaperVTraining) -> Data:
     """Draw the commands and standardise their forces.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : PaperVTraining
         The variant.
 
     Returns
@@ -219,7 +219,7 @@ def _row(values: np.ndarray) -> torch.Tensor:
     return torch.from_numpy(np.asarray(values, dtype=np.float32))
 
 
-def _about(recipe: Recipe, data: Data) -> dict:
+def _about(recipe: PaperVTraining, data: Data) -> dict:
     kind = "random walks, steps uniform within the rates" if recipe.walks else "independent, uniform"
     return {
         "commands": f"{kind}; F1 within 10 kN, F2 and F3 within 5 kN, angles within 180 deg",
@@ -232,7 +232,7 @@ def _about(recipe: Recipe, data: Data) -> dict:
     }
 
 
-def _settings(recipe: Recipe) -> dict:
+def _settings(recipe: PaperVTraining) -> dict:
     schedule = recipe.schedule
     return {
         "k0 to k5": [*K[:4], recipe.k4, K[5]],

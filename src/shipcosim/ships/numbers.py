@@ -6,7 +6,7 @@ from typing import Any
 
 from shipcosim.errors import Problem, suggestion
 from shipcosim.ships.entries import Entry, table_entry
-from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.given import PLAIN, Given, given_in_unit
 from shipcosim.ships.kinds import columns_of, units_of
 
@@ -51,7 +51,7 @@ class Numbers:
         self.entries[name] = Entry(given.value, unit, *more)
         return True
 
-    def estimate(self, name: str, estimate: Estimate) -> None:
+    def estimate(self, name: str, estimate: EstimatedNumber) -> None:
         """Take what a formula gives, where nothing is known yet."""
         if name in self.entries:
             return
@@ -60,7 +60,7 @@ class Numbers:
         where = f"{self.where}: {name}"
         self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
 
-    def estimates(self, found: dict[str, Estimate]) -> None:
+    def estimates(self, found: dict[str, EstimatedNumber]) -> None:
         """Take all of these where nothing is known yet."""
         for name, estimate in found.items():
             self.estimate(name, estimate)

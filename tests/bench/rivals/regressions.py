@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from shipcosim.diagnose.finding import Candidate, Estimate, Finding
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
@@ -212,7 +212,7 @@ def _named(problem, findings):
 
 def _finding(hypothesis, values, std):
     estimates = {
-        parameter.name: Estimate(
+        parameter.name: ParameterEstimate(
             values[parameter.paths[0]] * parameter.factor,
             std.get(parameter.paths[0], 0.0) * abs(parameter.factor),
             parameter.unit,

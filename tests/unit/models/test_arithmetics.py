@@ -163,7 +163,7 @@ LAYER = extreme_learning.Network(
     most=(50.0,) * 6,
 )
 PLAIN = parameters(filtered_pid.FilteredPidParameters, "osv")
-AHEAD_LOOP = controlled.Loop(
+AHEAD_LOOP = controlled.ControlLoop(
     parameters(reference.ReferenceParameters),
     DP_SHIP,
     parameters(control.ControlParameters),
@@ -172,7 +172,7 @@ AHEAD_LOOP = controlled.Loop(
     parameters(controlled.ObserverAhead),
 )
 ASSUMED = parameters(surroundings.SurroundingsParameters)
-RECKONING = motion_filter.Design(
+RECKONING = motion_filter.FilterNumbers(
     **dict(bow=2e-7, stern=1e-7, ahead=4e-5, astern=5e-5, surge_time=40.0, sway_time=30.0, wind_surge_1=-1e-5),
     **dict(wind_surge_3=1e-6, wind_sway_1=-4e-5, wind_sway_3=-2e-6, position_by_position=0.1, position_by_velocity=0.2),
     **dict(velocity_by_position=0.01, velocity_by_velocity=0.05, load_by_position=1e-4, load_by_velocity=5e-4),
@@ -204,11 +204,11 @@ def of_reference(*row):
 
 
 def of_observer(*row):
-    return observer.Estimate(*row, 0.8, 30.0, 0.7), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
+    return observer.StateEstimate(*row, 0.8, 30.0, 0.7), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
 
 
 def of_control(*row):
-    return control.ControlState(*row[:6]), observer.Estimate(*row), control.Desired(*row[6:]), row[3:6]
+    return control.ControlState(*row[:6]), observer.StateEstimate(*row), control.Desired(*row[6:]), row[3:6]
 
 
 def of_filtered_pid(*row):
@@ -325,7 +325,7 @@ def of_voting(*row):
 def of_votes(*row):
     """Voting that has gone on for 2 s, and the estimate."""
     state = voting.start(0.0, of_voting(*row), **AIR)
-    estimate = observer.Estimate(*row[6:], *(0.0 * row[0],) * 11)
+    estimate = observer.StateEstimate(*row[6:], *(0.0 * row[0],) * 11)
     later = of_voting(*(1.01 * value for value in row))._replace(position_time=2.0, heading_time=2.0, wind_time=2.0)
     return voting.step(2.4, state, later, estimate, parameters=voting.VotingParameters(), **AIR)
 

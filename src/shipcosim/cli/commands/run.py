@@ -75,7 +75,7 @@ def run(
     given = parsed_settings(settings or [])
     options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
     changed = changed_by(settings, parameters, options, resume, components, fmus)
-    reading = _Reading(parameters or [], parsed_components(components or ()), given, strict, changed, fmus or [])
+    reading = _ReadOptions(parameters or [], parsed_components(components or ()), given, strict, changed, fmus or [])
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
@@ -87,7 +87,7 @@ def run(
 
 
 @dataclass(frozen=True)
-class _Reading:
+class _ReadOptions:
     """How scenarios and systems are read: with which parameter sets, FMUs and values, how strictly, and from where."""
 
     parameters: list[Path]
@@ -98,7 +98,7 @@ class _Reading:
     fmus: list[Path]
 
 
-def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptions") -> None:
+def _run_all(files: list[Path], out: Path, reading: _ReadOptions, options: "RunOptions") -> None:
     """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
     from shipcosim.cli.console import print_overview
     from shipcosim.cli.exits import FAILED
@@ -120,7 +120,7 @@ def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptio
         raise typer.Exit(FAILED)
 
 
-def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
+def _prepared(path: Path, reading: _ReadOptions) -> "tuple[System, Scenario]":
     """System and scenario of a file, checked, with the values that are set for this run."""
     from shipcosim.cli.console import print_problems
     from shipcosim.cosim import system_of

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import Change, Labels
+    from shipcosim.diagnose.comparison.labels import LabelError, Labels
     from shipcosim.diagnose.comparison.missing import MissingLoad
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
@@ -237,7 +237,7 @@ def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
     return replace(log, faults=faults, repaired=right)
 
 
-def _label(change: Change, log: xarray.Dataset):
+def _label(change: LabelError, log: xarray.Dataset):
     """What is wrong with the channels of a change."""
     if len(change.thrusters) == 1:
         return negative(_drives(change.thrusters[0], log)[0])

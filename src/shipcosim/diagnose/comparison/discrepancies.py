@@ -21,7 +21,7 @@ from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import Change, Labels
+    from shipcosim.diagnose.comparison.labels import LabelError, Labels
     from shipcosim.diagnose.comparison.missing import MissingLoad
 
 __all__ = ["discrepancies_of", "is_of_damping"]
@@ -99,7 +99,7 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         yield Discrepancy(f"thrust does not go with its command, but with {why}", None, None, -1.0, 0.0, "1", gained)
 
 
-def in_words(change: Change) -> str:
+def in_words(change: LabelError) -> str:
     """A change of labels: ``left and right exchanged``, ``left running the other way``."""
     if len(change.thrusters) == 2:
         return " and ".join(change.thrusters) + " exchanged"

@@ -11,7 +11,7 @@ from shipcosim.diagnose.comparison.compared import with_crude
 from shipcosim.diagnose.explanation.null_distribution import null_gains
 from shipcosim.diagnose.explanation.search import ExplainedLog, names, without_causes
 from shipcosim.diagnose.explanation.unmodelled import FORCES, unmodelled_gains
-from shipcosim.diagnose.finding import Candidate, Estimate, Finding
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.thresholds import (
@@ -318,7 +318,7 @@ def _candidates(chances):
 def _finding(hypothesis, fit, candidates):
     parameters = {
         # of the log, and of a model that knows no number better than within its tolerance
-        k.name: Estimate(
+        k.name: ParameterEstimate(
             fit.values[k.paths[0]] * k.factor, float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)), k.unit
         )
         for k in hypothesis.parameters

@@ -17,11 +17,11 @@ from shipcosim.ssp import System, SystemStructure, read_system
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
 
-__all__ = ["Change", "extended_by", "with_findings"]
+__all__ = ["NumberChange", "extended_by", "with_findings"]
 
 
 @dataclass(frozen=True)
-class Change:
+class NumberChange:
     """A number of a system that the extended one has otherwise; before is None where there was none."""
 
     name: str
@@ -44,7 +44,7 @@ class ExtendedSystem:
         None where no cause of the physics was named, or it could not be made.
     system : System or None
         The extended system, which can be simulated.
-    changes : tuple of Change
+    changes : tuple of NumberChange
         Every number that differs.
     remarks : tuple of str
         Why it could not be made.
@@ -54,7 +54,7 @@ class ExtendedSystem:
     source: SystemStructure | str
     extension: Extension | None = None
     system: System | None = None
-    changes: tuple[Change, ...] = ()
+    changes: tuple[NumberChange, ...] = ()
     remarks: tuple[str, ...] = ()
 
 
@@ -120,4 +120,4 @@ def _change(name, value, given, extended):
     known = extended.components[component].fmu.variables if component in extended.components else extended.inputs
     unit = known[variable].unit if variable in known else ""
     before = float(start) if isinstance(start, int | float) else None
-    return Change(name, before, float(value), "" if unit in (None, "1") else unit)
+    return NumberChange(name, before, float(value), "" if unit in (None, "1") else unit)

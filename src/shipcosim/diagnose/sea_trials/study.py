@@ -11,7 +11,7 @@ import numpy as np
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.experiment.design import ExperimentDesign
-from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.sea_trials import thresholds
@@ -223,10 +223,12 @@ def _estimates(found, cause):
     }
 
 
-def estimates(found: SetOfCauses) -> list[Estimate]:
+def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
     """Estimates of a set's parameters in the units of their files."""
     return [
-        Estimate(float(p.factor * (p.neutral + value * p.typical)), float(abs(p.factor * p.typical) * std), p.unit)
+        ParameterEstimate(
+            float(p.factor * (p.neutral + value * p.typical)), float(abs(p.factor * p.typical) * std), p.unit
+        )
         for (_, p), value, std in zip(found.parameters, found.values, found.std, strict=True)
     ]
 

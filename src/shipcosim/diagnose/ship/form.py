@@ -50,7 +50,7 @@ def _along(degree: int) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Form:
+class _LoadDeviation:
     @cached_property
     def acts(self) -> bool:
         """Whether any of it is not neutral."""
@@ -58,7 +58,7 @@ class _Form:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HullForm(_Form):
+class HullForm(_LoadDeviation):
     """Drag along the hull, over the model's."""
 
     cross_flow_1: float = _along(1)
@@ -79,7 +79,7 @@ def _round(axis: str, name: str) -> tuple[str, type, float]:
 WindForm = make_dataclass(
     "WindForm",
     [_round(axis, name) for axis in "XYN" for name, *_ in _harmonics()],
-    bases=(_Form,),
+    bases=(_LoadDeviation,),
     frozen=True,
     kw_only=True,
 )
@@ -91,7 +91,7 @@ def _lost(where: str) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThrusterForm(_Form):
+class ThrusterForm(_LoadDeviation):
     """Thrust that a thruster loses at the hull beyond the model's, by where it pushes to, whoever made it."""
 
     across: float = _lost("by one that pushes athwartships; goes with the squared sine")

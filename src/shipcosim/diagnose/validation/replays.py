@@ -11,7 +11,7 @@ import xarray
 
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
-from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import Fit
 from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
@@ -96,7 +96,9 @@ def findings_of(fit: Fit) -> list[Finding]:
             hypothesis.cause,
             hypothesis.component,
             parameters={
-                of.name: Estimate(fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit)
+                of.name: ParameterEstimate(
+                    fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit
+                )
                 for of in hypothesis.parameters
             },
         )

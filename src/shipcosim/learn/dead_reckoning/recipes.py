@@ -14,7 +14,7 @@ from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress
 from shipcosim.models.prediction import motion_filter as filter_law
 from shipcosim.models.prediction import velocity_network as network_law
-from shipcosim.models.prediction.motion_filter import Design
+from shipcosim.models.prediction.motion_filter import FilterNumbers
 
 CALIBRATED_FOR = 720.0  # s, with four of the drills
 UNLEARNED = {
@@ -74,7 +74,7 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
     return _filter(progress, size) if name == FILTER else _networks(name, progress, size)
 
 
-def design_of(name: str) -> Design:
+def design_of(name: str) -> FilterNumbers:
     """Numbers of the filter that nothing was learned for.
 
     Parameters
@@ -84,10 +84,10 @@ def design_of(name: str) -> Design:
 
     Returns
     -------
-    Design
+    FilterNumbers
         Numbers.
     """
-    known = Design(**KNOWN, **GAINS)
+    known = FilterNumbers(**KNOWN, **GAINS)
     return known._replace(surge_time=1e-3, sway_time=1e-3, **STILL) if name == "last-position" else known
 
 
@@ -156,7 +156,7 @@ def _about(size: Size, record: Record, kind: str) -> dict:
     }
 
 
-def _arrays(design: Design) -> dict[str, np.ndarray]:
+def _arrays(design: FilterNumbers) -> dict[str, np.ndarray]:
     return {name: np.array(float(one)) for name, one in design._asdict().items()}
 
 

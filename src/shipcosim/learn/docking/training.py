@@ -18,7 +18,7 @@ from shipcosim.models.prediction.helm import HelmParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters
 
-OURS, PAPER_III = ours.Recipe(), paper_iii.Recipe()
+OURS, PAPER_III = ours.DockingTraining(), paper_iii.PaperIIITraining()
 COMPONENT = "docking_predictor"
 """Of the system, whose parameters the predictor has."""
 SETS = {"training": dockings.TRAINING, "choices": dockings.CHOICES[:12], "calibration": dockings.CALIBRATION[:16]}
@@ -52,7 +52,7 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
     ----------
     learn : callable
         `learn_ours` or `learn_paper_iii`.
-    recipe : Recipe
+    recipe : DockingTraining or PaperIIITraining
         How; that of `learn`.
     progress : callable
         Is told how far it is.
@@ -66,7 +66,9 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
     return learn(records, ship(), recipe, part_of(progress, SAILING, 1.0 - SAILING))
 
 
-def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.Recipe, progress: Progress) -> Trained:
+def learn_ours(
+    records: dict[str, list[Record]], model: ShipModel, recipe: ours.DockingTraining, progress: Progress
+) -> Trained:
     """Our predictor, learned from records.
 
     Parameters
@@ -75,7 +77,7 @@ def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.
         By `SETS`.
     model : ShipModel
         The ship as she knows herself.
-    recipe : Recipe
+    recipe : DockingTraining or PaperIIITraining
         How.
     progress : callable
         Is told how far it is.
@@ -99,7 +101,7 @@ def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.
 
 
 def learn_paper_iii(
-    records: dict[str, list[Record]], model: ShipModel, recipe: paper_iii.Recipe, progress: Progress
+    records: dict[str, list[Record]], model: ShipModel, recipe: paper_iii.PaperIIITraining, progress: Progress
 ) -> Trained:
     """The networks of paper III, learned from records.
 

@@ -24,7 +24,7 @@ class AllocationParameters(NamedUnits):
     tunnel_weight: float = required("1", "price of the tunnel's thrust", minimum=1e-6)
 
 
-class Design(NamedTuple):
+class ThrusterInverses(NamedTuple):
     """Thruster configuration matrix and the generalised inverses of its parts.
 
     Parameters
@@ -70,7 +70,7 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
 
 
 @kept(8)
-def design(parameters: AllocationParameters) -> Design:
+def design(parameters: AllocationParameters) -> ThrusterInverses:
     """Weighted generalised inverses for all sets of free units.
 
     Parameters
@@ -80,7 +80,7 @@ def design(parameters: AllocationParameters) -> Design:
 
     Returns
     -------
-    Design
+    ThrusterInverses
         What `step` needs.
 
     Notes
@@ -102,7 +102,7 @@ def design(parameters: AllocationParameters) -> Design:
         for lever in (p.yaw_lever, p.yaw_lever_degraded)
         for k in range(8)
     ]
-    return Design(b, tuple(inverses))
+    return ThrusterInverses(b, tuple(inverses))
 
 
 def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
@@ -137,7 +137,7 @@ def step(
     h: float,
     *,
     parameters: AllocationParameters,
-    design: Design,
+    design: ThrusterInverses,
     shares: tuple = (1.0, 1.0, 1.0),
 ) -> Allocated:
     """Commands for a requested load, `h` after the last ones.
@@ -154,7 +154,7 @@ def step(
         Time since the last commands, for the rate limit. [s]
     parameters : AllocationParameters
         Units, limits and weights.
-    design : Design
+    design : ThrusterInverses
         Made of the same parameters by `design`.
     shares : tuple of three floats or (...) arrays or tensors
         Shares of their limits of thrust that power leaves to port, starboard and tunnel. What exceeds them is taken

@@ -98,7 +98,7 @@ class Measurement(NamedTuple):
     heading_new: Arithmetic = 1.0
 
 
-class Estimate(NamedTuple):
+class StateEstimate(NamedTuple):
     """Estimated state: low-frequency ship, bias load, wave motion in body axes with its rate.
 
     Parameters
@@ -146,7 +146,7 @@ class Estimate(NamedTuple):
     pace: Arithmetic = 1.0
 
 
-class Design(NamedTuple):
+class ObserverConstants(NamedTuple):
     """What the observer computes once from its parameters.
 
     Parameters
@@ -162,7 +162,7 @@ class Design(NamedTuple):
 
 
 @kept(8)
-def design(ship: DpShip, parameters: ObserverParameters) -> Design:
+def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
     """Gains, wave models and inverse of the mass matrix for a ship.
 
     Parameters
@@ -174,7 +174,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
 
     Returns
     -------
-    Design
+    ObserverConstants
         What `step` needs.
 
     Notes
@@ -211,10 +211,10 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
         -ship.mass_sway_yaw / determinant,
         ship.mass_sway / determinant,
     )
-    return Design(filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse)
+    return ObserverConstants(filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse)
 
 
-def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
+def at_rest(measured: Motion, *, parameters: ObserverParameters) -> StateEstimate:
     """Estimate at the start: the ship as measured, standing still, no bias, no waves.
 
     Parameters
@@ -226,30 +226,30 @@ def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
 
     Returns
     -------
-    Estimate
+    StateEstimate
         The estimate.
     """
     zero = 0.0 * measured.x
-    still = Estimate(measured.x, measured.y, measured.psi, *(zero,) * 15)
+    still = StateEstimate(measured.x, measured.y, measured.psi, *(zero,) * 15)
     assumed = zero + parameters.wave_frequency
     frequency, power, pace = _paced(assumed, assumed * assumed, parameters)
     return still._replace(wave_frequency=frequency, wave_power=power, pace=pace)
 
 
 def step(
-    estimate: Estimate,
+    estimate: StateEstimate,
     measurement: Measurement,
     load: Load,
     *,
     ship: DpShip,
     parameters: ObserverParameters,
-    design: Design,
-) -> Estimate:
+    design: ObserverConstants,
+) -> StateEstimate:
     """Estimate one sample later: predicted with the known load, corrected with the measurement at its end.
 
     Parameters
     ----------
-    estimate : Estimate
+    estimate : StateEstimate
         Estimate at the start.
     measurement : Measurement
         Measurement at the end.
@@ -259,12 +259,12 @@ def step(
         The ship.
     parameters : ObserverParameters
         Periods and ages of the measurements, and limits of the wave frequency.
-    design : Design
+    design : ObserverConstants
         Made of the same ship and parameters by `design`.
 
     Returns
     -------
-    Estimate
+    StateEstimate
         Estimate at the end.
     """
     filters = filter_at(estimate.wave_frequency, design.filters)

@@ -8,7 +8,7 @@ from xarray import Dataset
 from shipcosim.report.run.bands import Band, bands_of, distance_bands
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE, desired
 from shipcosim.report.run.roles import Roles
-from shipcosim.report.run.vessels import Unit, find_units, start_values
+from shipcosim.report.run.vessels import DrawnThruster, find_units, start_values
 from shipcosim.report.run.zones import Zone, angle_zones, thrust_zones
 from shipcosim.report.theme import palette
 from shipcosim.scenario import Verdict
@@ -173,7 +173,7 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
 
 
-def _azimuths(shown: Dataset, units: Sequence[Unit]) -> list[Panel]:
+def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
     """Angles: of all units in one panel where no sector, or the same, is forbidden to them; else of each in its own."""
     turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
     alike = len({unit.sectors for unit in turning}) < 2
@@ -197,7 +197,7 @@ def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
     return panels + _panel(shown, "Time of an allocation", _coloured(dict.fromkeys(times, "by the clock")))
 
 
-def _angles(units: Sequence[Unit]) -> list[Line]:
+def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
     lines = []
     for k, unit in enumerate(units):
         colour = palette.CYCLE[k % len(palette.CYCLE)]

@@ -13,7 +13,7 @@ from diagnose import boat, twin
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.pipeline import find_causes
@@ -247,8 +247,8 @@ def test_the_extended_boat_replays_with_less_error(tmp_path):
     assert errors["difference"].sel(replayed="plain", horizon=60.0).mean() < 0.2
 
 
-LOSS = Finding("thrust_loss", "left", parameters={"loss": Estimate(0.25, 0.02, "1")})
-TACHO = Finding("rpm_offset", "right", parameters={"offset": Estimate(30.0, 2.0, "rpm")})
+LOSS = Finding("thrust_loss", "left", parameters={"loss": ParameterEstimate(0.25, 0.02, "1")})
+TACHO = Finding("rpm_offset", "right", parameters={"offset": ParameterEstimate(30.0, 2.0, "rpm")})
 
 
 def test_the_extended_boat_has_it_on_her_connections(tmp_path):
@@ -391,7 +391,7 @@ def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(pod
 
 
 def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):
-    off = Finding("azimuth_offset", "pod", parameters={"offset": Estimate(8.0, 0.3, "deg")})
+    off = Finding("azimuth_offset", "pod", parameters={"offset": ParameterEstimate(8.0, 0.3, "deg")})
     extension = extend(podded, [off], tmp_path)
     run = sc.simulate(
         sc.read(extension.ssp), stop_time=0.2, step_size=0.1, set={"pod_thrust": 1.0, "pod_azimuth": np.radians(20.0)}

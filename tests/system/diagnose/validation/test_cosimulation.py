@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.finding import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.predictions import replayable
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import true_motion
@@ -56,7 +56,7 @@ def predictor(log, ship_model):
 
 
 def found(cause, component=None, **parameters):
-    estimates = {name: Estimate(value, 0.1 * abs(value), unit) for name, (value, unit) in parameters.items()}
+    estimates = {name: ParameterEstimate(value, 0.1 * abs(value), unit) for name, (value, unit) in parameters.items()}
     return Finding(cause, component, parameters=estimates)
 
 

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.form import FileLayout
 from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
 from shipcosim.errors import Problem, ShipcosimError
 
@@ -39,7 +39,7 @@ class Layout:
     remarks: tuple[str, ...]
 
 
-def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str], bool]) -> Layout:
+def layout_of(source: str, lines: list[str], form: FileLayout, is_unit: Callable[[str], bool]) -> Layout:
     """Layout of the lines of a file.
 
     Parameters
@@ -48,7 +48,7 @@ def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str]
         The file, for messages.
     lines : list of str
         Its lines.
-    form : Form
+    form : FileLayout
         What was said of it.
     is_unit : callable
         Whether a text is the spelling of a unit.
