@@ -51,10 +51,10 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     """
     from shipcosim.cli.requests import system_of
     from shipcosim.diagnose.log.channels import ChannelFile, read_channels
-    from shipcosim.diagnose.log.files.form import FileLayout
+    from shipcosim.diagnose.log.files.file_layout import FileLayout
+    from shipcosim.diagnose.log.names.channel_file import channel_file
     from shipcosim.diagnose.log.names.guesses import SURE, Guess
     from shipcosim.diagnose.log.names.proposal import propose
-    from shipcosim.diagnose.log.names.written import channel_file
     from shipcosim.diagnose.log.reader import columns_of, read_log
     from shipcosim.diagnose.log.runs import channels_of_run
     from shipcosim.diagnose.ship.ship_of_system import ship_model_of

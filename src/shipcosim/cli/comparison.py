@@ -17,7 +17,7 @@ from rich.text import Text
 from shipcosim import library
 from shipcosim.cli.console import WIDTH
 from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
-from shipcosim.cosim.engines.as_read import readers
+from shipcosim.cosim.engines.foreign_process import readers
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario

@@ -26,7 +26,7 @@ from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
-from shipcosim.diagnose.reference.remaining import RemainingErrors, remaining_errors
+from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.errors import Problem, ShipcosimError

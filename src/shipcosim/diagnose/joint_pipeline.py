@@ -34,7 +34,8 @@ from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
-from shipcosim.diagnose.reference.common import (
+from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
+from shipcosim.diagnose.reference.common_findings import (
     Shared,
     common_discrepancies,
     common_faults,
@@ -50,7 +51,6 @@ from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestabl
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import read_reference, with_reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
-from shipcosim.diagnose.reference.since import with_sizes_at_reference
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from shipcosim.native.leaves import Flat, made_like
-from shipcosim.native.purity import anything
+from shipcosim.native.number_rows import Flat, made_like
+from shipcosim.native.side_effects import anything
 from shipcosim.native.symbols import Maths, Symbol, Untraceable
 
 MOST_PATHS = 200

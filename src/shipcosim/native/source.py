@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.native.leaves import Flat
+from shipcosim.native.error_texts import said
+from shipcosim.native.number_rows import Flat
 from shipcosim.native.recording import Block, RecordedLoop, Recording
-from shipcosim.native.sayings import said
 from shipcosim.native.symbols import Symbol, kind_of
 from shipcosim.native.trace import Step
 

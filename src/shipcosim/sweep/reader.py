@@ -14,7 +14,7 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario.locations import line_of, location_of
 from shipcosim.scenario.reader import complaint_of, read_toml
-from shipcosim.sweep.records import Study
+from shipcosim.sweep.study_model import Study
 
 LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
 """Lists of which a later study replaces what has the same name."""

@@ -13,8 +13,8 @@ from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Objective, Range, Study
 from shipcosim.sweep.sampling import SampledColumn, Samples
+from shipcosim.sweep.study_model import Objective, Range, Study
 
 if TYPE_CHECKING:
     import pandas

@@ -7,7 +7,7 @@ import pytest
 from measured.logs import CHANNELS, FOLDERS, as_table, files
 
 from shipcosim.diagnose.log.channels import ChannelFile
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.names.proposal import propose
 from shipcosim.diagnose.log.reader import columns_of, read_log
 

@@ -42,7 +42,7 @@ from shipcosim.models.control import (
     wave_filter,
 )
 from shipcosim.models.control import pid as control
-from shipcosim.models.core import integrate, interpolation, kept, kinematics, maths
+from shipcosim.models.core import integrate, interpolation, kinematics, maths, memoize
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, harbour, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
@@ -50,11 +50,11 @@ from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import (
     controlled,
     dead_reckoning,
-    known,
     motion_filter,
     outage,
     own_model,
     own_record,
+    predictor_inputs,
     regions,
     surroundings,
 )
@@ -71,7 +71,7 @@ from shipcosim.models.propulsion import (
 )
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, mast, rough_form, vessel
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
@@ -263,7 +263,7 @@ def of_monitor(*row):
 
 def of_known(*row):
     ship = Motion(*row)
-    return known.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7)
+    return predictor_inputs.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7)
 
 
 def of_surroundings(*row):
@@ -606,7 +606,7 @@ CASES = [
         lambda *row: (monitor.MonitorState(*row),),
         dict(parameters=WATCH),
     ),
-    Case(known.air_velocity, SHIP, lambda *row: (of_known(*row),)),
+    Case(predictor_inputs.air_velocity, SHIP, lambda *row: (of_known(*row),)),
     Case(
         regions.own_errors,
         SHIP,
@@ -704,7 +704,7 @@ def test_gradients_are_finite_even_at_rest(case):
 
 def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
-    covered |= {maths.is_single, maths.repeat, maths.times, kept.kept}  # know no arithmetic
+    covered |= {maths.is_single, maths.repeat, maths.times, memoize.kept}  # know no arithmetic
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
     covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them

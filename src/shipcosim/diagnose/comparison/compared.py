@@ -10,14 +10,14 @@ import numpy as np
 from shipcosim.diagnose.checked_log import CheckedLog
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.crude import CrudeModel, CrudeNumber, crude_numbers, spoken_for
 from shipcosim.diagnose.comparison.crude_fit import crude_model
+from shipcosim.diagnose.comparison.crude_model import CrudeModel, CrudeNumber, crude_numbers, spoken_for
 from shipcosim.diagnose.comparison.discrepancies import discrepancies_of, is_of_damping
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
-from shipcosim.diagnose.comparison.felt import felt_by
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
 from shipcosim.diagnose.comparison.labels import read_labels
-from shipcosim.diagnose.comparison.missing import missing_loads
+from shipcosim.diagnose.comparison.measured_force import felt_by
+from shipcosim.diagnose.comparison.missing_loads import missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
 from shipcosim.diagnose.finding import Discrepancy, Finding
 from shipcosim.diagnose.inference.problem import as_logged
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
     from shipcosim.diagnose.comparison.labels import LabelError, Labels
-    from shipcosim.diagnose.comparison.missing import MissingLoad
+    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.missing import FORCES
+from shipcosim.diagnose.comparison.missing_loads import FORCES
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
     LEAST_DAMPING,
@@ -22,7 +22,7 @@ from shipcosim.diagnose.finding import Discrepancy
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
     from shipcosim.diagnose.comparison.labels import LabelError, Labels
-    from shipcosim.diagnose.comparison.missing import MissingLoad
+    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
 
 __all__ = ["discrepancies_of", "is_of_damping"]
 

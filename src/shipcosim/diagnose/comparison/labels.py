@@ -16,8 +16,8 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.causality import causal_support
 from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError, LabelHypothesis, changes_of, driven, reading
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
-from shipcosim.diagnose.comparison.readings import LabelError, LabelHypothesis, changes_of, driven, reading
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
     ALIKE,
@@ -41,8 +41,8 @@ from shipcosim.diagnose.ship.smoothing import froude_time
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
     from shipcosim.diagnose.comparison.likelihood import Blocks
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 

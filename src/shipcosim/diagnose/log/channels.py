@@ -11,7 +11,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import ROLES, role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import toml_of

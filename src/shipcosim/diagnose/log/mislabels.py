@@ -10,7 +10,7 @@ import numpy as np
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.samples import quantum
-from shipcosim.diagnose.log.earth import metres_per_degree
+from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
 
 __all__ = [

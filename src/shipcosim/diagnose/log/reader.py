@@ -12,9 +12,9 @@ import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, ChannelFile, read_channels
-from shipcosim.diagnose.log.earth import metres_per_degree
-from shipcosim.diagnose.log.files.form import FileLayout
-from shipcosim.diagnose.log.files.messages import brought_together, spread
+from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.files.long_format import brought_together, spread
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.names.guesses import Thrusters
 from shipcosim.diagnose.log.names.proposal import Proposal, propose

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.positions import (
     MINUTES,
     degrees_of_minutes,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, ParameterEstimate
-from shipcosim.diagnose.reference.common import RatioOfLogs, Shared
+from shipcosim.diagnose.reference.common_findings import RatioOfLogs, Shared
 from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
 from shipcosim.diagnose.result import SCHEMA, Diagnosis

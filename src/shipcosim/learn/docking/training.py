@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.cosim import system_of
 from shipcosim.learn.datasets import digest
-from shipcosim.learn.docking import dockings, ours, paper_iii, predictions, regions
+from shipcosim.learn.docking import distance_ensemble, dockings, paper_iii, predictions, regions
 from shipcosim.learn.docking.inputs import ShipModel, replay
 from shipcosim.learn.docking.records import Record
 from shipcosim.learn.results import Trained
@@ -18,7 +18,7 @@ from shipcosim.models.prediction.helm import HelmParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters
 
-OURS, PAPER_III = ours.DockingTraining(), paper_iii.PaperIIITraining()
+OURS, PAPER_III = distance_ensemble.DockingTraining(), paper_iii.PaperIIITraining()
 COMPONENT = "docking_predictor"
 """Of the system, whose parameters the predictor has."""
 SETS = {"training": dockings.TRAINING, "choices": dockings.CHOICES[:12], "calibration": dockings.CALIBRATION[:16]}
@@ -67,7 +67,7 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
 
 
 def learn_ours(
-    records: dict[str, list[Record]], model: ShipModel, recipe: ours.DockingTraining, progress: Progress
+    records: dict[str, list[Record]], model: ShipModel, recipe: distance_ensemble.DockingTraining, progress: Progress
 ) -> Trained:
     """Our predictor, learned from records.
 
@@ -88,8 +88,11 @@ def learn_ours(
         Weights, regions of this predictor and of the kinetic one, and report.
     """
     replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {name: (ours.features(one, model.hull), ours.targets(one)) for name, one in replayed.items()}
-    arrays, epochs = ours.fit(pairs["training"], pairs["choices"], recipe, progress)
+    pairs = {
+        name: (distance_ensemble.features(one, model.hull), distance_ensemble.targets(one))
+        for name, one in replayed.items()
+    }
+    arrays, epochs = distance_ensemble.fit(pairs["training"], pairs["choices"], recipe, progress)
     calibration = replayed["calibration"]
     predicted = predictions.by_ours(calibration, arrays, model.hull)
     arrays["widths"] = regions.calibrated(predicted, calibration)

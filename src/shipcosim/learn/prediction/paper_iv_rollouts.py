@@ -16,7 +16,7 @@ from shipcosim.learn.prediction.rollouts import HORIZONS, Sailed, Ship, known_of
 from shipcosim.learn.training import Progress, repeatable
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.prediction import paper_iv
-from shipcosim.models.prediction.known import air_velocity
+from shipcosim.models.prediction.predictor_inputs import air_velocity
 
 LENGTH = 60
 """Of a rollout. [s]"""

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import clip, cos, pi, sin, where
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
 

@@ -18,8 +18,8 @@ import numpy as np
 from shipcosim.angles import wrap
 from shipcosim.models.control.wave_filter import AxisNoise, filter_at, filter_table
 from shipcosim.models.core.interpolation import EvenTable
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, clip, cos, minimum, sin
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import required
 

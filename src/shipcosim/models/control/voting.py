@@ -19,7 +19,7 @@ from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
-from shipcosim.models.ship.telegrams import Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Telegrams, Wind
 
 
 @dataclass(frozen=True, kw_only=True)

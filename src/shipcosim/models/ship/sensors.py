@@ -20,7 +20,7 @@ from shipcosim.models.core.maths import Arithmetic, atan2, exp, hypot, maximum, 
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.core.sampling import normals, samples_due
 from shipcosim.models.ship.mast import MastParameters, wind_at_mast
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
-from shipcosim.diagnose.reference.common import Shared
+from shipcosim.diagnose.reference.common_findings import Shared
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.report.diagnosis.words import listed, manoeuvre_step, size_rows, title, told

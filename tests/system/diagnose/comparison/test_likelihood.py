@@ -6,9 +6,9 @@ from diagnose import usv
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.felt import felt_by
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError, driven
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
-from shipcosim.diagnose.comparison.readings import LabelError, driven
+from shipcosim.diagnose.comparison.measured_force import felt_by
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.ship.inputs import record_of

@@ -14,7 +14,7 @@ from shipcosim.cli.joint_diagnosis import print_joint
 from shipcosim.diagnose.calibration_pipeline import READING
 from shipcosim.diagnose.finding import Candidate, Finding
 from shipcosim.diagnose.joint_pipeline import JointDiagnosis, _unusable, diagnose_jointly, steps_of
-from shipcosim.diagnose.reference.common import Shared
+from shipcosim.diagnose.reference.common_findings import Shared
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.errors import ShipcosimError
 from shipcosim.report.joint.page import render, write_joint

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from shipcosim.diagnose.comparison.crude import HeldOutErrors
+from shipcosim.diagnose.comparison.crude_model import HeldOutErrors
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.experiment.testability import log_facts

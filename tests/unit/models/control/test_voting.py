@@ -10,7 +10,7 @@ from shipcosim.models.control.observer import StateEstimate
 from shipcosim.models.control.voting import VotingParameters
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.mast import MastParameters
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 LIMITS = VotingParameters()
 NO_WIND = dict(

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
 from shipcosim.errors import Problem, ShipcosimError
 

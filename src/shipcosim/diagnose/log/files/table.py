@@ -12,10 +12,10 @@ import numpy as np
 
 from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fillers
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
-from shipcosim.diagnose.log.files.foreign import refuse_foreign
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.layout import Layout, layout_of
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
+from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment

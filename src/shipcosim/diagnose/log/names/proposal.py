@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.positions import hemisphere_signs
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, UNUSED, Guess, Thrusters, guesses_of
-from shipcosim.diagnose.log.names.settled import settled
 from shipcosim.diagnose.log.names.units import unit_for
+from shipcosim.diagnose.log.names.unstated_units import settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
 
 __all__ = ["Proposal", "propose"]

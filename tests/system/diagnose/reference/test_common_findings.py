@@ -8,7 +8,7 @@ import pytest
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.labels import LabelError
 from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
-from shipcosim.diagnose.reference.common import (
+from shipcosim.diagnose.reference.common_findings import (
     common_discrepancies,
     common_faults,
     leans_to,

@@ -8,7 +8,7 @@ from diagnose.reference import ships
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.reference.since import with_sizes_at_reference
+from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.report.diagnosis.words import size_rows, told
 
 

@@ -16,7 +16,7 @@ from shipcosim.diagnose.finding import Discrepancy
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["FORCES", "MissingLoad", "missing_loads"]

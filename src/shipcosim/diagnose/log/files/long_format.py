@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.errors import Problem, ShipcosimError, suggestion

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
-from shipcosim.diagnose.log.earth import metres_per_degree
-from shipcosim.diagnose.log.files.form import FileLayout
+from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
