@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from shipcosim.angles import wrap_series
 from shipcosim.capability.thrust import Thruster
 
 CORNERS = np.radians(5.0)
@@ -147,7 +148,7 @@ def _share_of(angle: float, sector: Sector) -> float:
 
 
 def _apart(one: float, other: float) -> float:
-    return (one - other + np.pi) % _TURN - np.pi
+    return wrap_series(one - other, _TURN)
 
 
 def _directions(angles: NDArray) -> NDArray:

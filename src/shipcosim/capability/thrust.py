@@ -6,6 +6,7 @@ from math import erfc, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from shipcosim.angles import TURN, wrap_series
 from shipcosim.capability.conditions import Condition
 from shipcosim.capability.particulars import Hull
 
@@ -103,9 +104,8 @@ def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_fr
     (n,) array
         Between 0 and 1. [1]
     """
-    # In [-π, π).
-    wrapped = (weather_from + np.pi) % (2.0 * np.pi) - np.pi
-    x, turned = thruster.x - hull.midship_x, np.abs(wrapped) / np.pi
+    x = thruster.x - hull.midship_x
+    turned = np.abs(wrap_series(weather_from, TURN)) / np.pi
     period = 0.64 * np.sqrt(hull.length) / condition.zero_crossing_period
     heave = 0.85 * np.where(turned <= 0.5, 1.0 + 0.38 * turned, 1.38 - 0.38 * turned)
     place = 1.0 + 0.4 * min(x, 0.0) / hull.length

@@ -2,13 +2,13 @@
 
 import numpy as np
 from ships import parameters
+from static_optimum import Optimum, static_optimum
 
 from allocation.laws import UNITS
 from allocation.measures import SECTOR
 from shipcosim.models.allocation.power import PowerParameters
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
 from shipcosim.models.allocation.sqp import AllocatedThruster
-from shipcosim.models.allocation.static_optimum import Optimum, static_optimum
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 
 CONES = ((-SECTOR[0], SECTOR[0]), (SECTOR[1], 2.0 * np.pi - SECTOR[1]))

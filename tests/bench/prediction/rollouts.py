@@ -12,9 +12,9 @@ import numpy as np
 HERE = Path(__file__).resolve()
 sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
 
-from prediction import measuring  # noqa: E402
+from prediction import measuring, paper_iv_rollouts  # noqa: E402
 from shipcosim.angles import wrap_series  # noqa: E402
-from shipcosim.learn.prediction import paper_iv, paper_iv_rollouts, rollouts, training  # noqa: E402
+from shipcosim.learn.prediction import paper_iv, rollouts, training  # noqa: E402
 from shipcosim.models.prediction import paper_iv as law  # noqa: E402
 
 BEFORE, STARTS, SECONDS = 170, 20, 60

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray
 
+from shipcosim.angles import wrap_series
 from shipcosim.cosim import replay
 from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.log.roles import ROLES
@@ -291,7 +292,7 @@ def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.nda
     there = one.sel(time=end, method="nearest")
     at = one["start_time"].values + float(there["time"])
     off = {role: there[role].values - _between(tracks.measured, role, at) for role in CHANNELS}
-    off["heading"] = (off["heading"] + 180.0) % 360.0 - 180.0
+    off["heading"] = wrap_series(off["heading"])
     far = np.hypot(off.pop("north"), off.pop("east"))
     return {"position": far} | off
 

@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.angles import TURN, wrap_series
 from shipcosim.cosim import simulate, system_of
 from shipcosim.learn.training import Progress
 from shipcosim.scenario import Event, Scenario
@@ -188,7 +189,7 @@ def scenario_of(
     Scenario
         Of the system `SYSTEM`.
     """
-    turn = abs((world.wind_from[1] - world.wind_from[0] + math.pi) % (2.0 * math.pi) - math.pi)
+    turn = abs(wrap_series(world.wind_from[1] - world.wind_from[0], TURN))
     values = {
         "environment.wind_speed": world.wind_speed[0],
         "environment.wind_from": world.wind_from[0],

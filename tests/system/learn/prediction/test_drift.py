@@ -8,7 +8,8 @@ import pytest
 import torch
 from ships import parameters
 
-from shipcosim.learn.prediction import drift, paper_iv, paper_iv_rollouts, rollouts, training, worlds
+from prediction import paper_iv_rollouts
+from shipcosim.learn.prediction import drift, paper_iv, rollouts, training, worlds
 from shipcosim.learn.results import markdown
 from shipcosim.models.core.networks import read_arrays
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from ships import parameters
+from static_optimum import static_optimum
 
 from shipcosim.models.allocation import optimal, optimal_units, sqp
-from shipcosim.models.allocation.static_optimum import static_optimum
 
 PARAMETERS = parameters(optimal.OptimalParameters)
 DESIGN = optimal.design(PARAMETERS)

@@ -5,9 +5,9 @@ from math import pi, radians
 import numpy as np
 import pytest
 from ships import parameters
+from static_optimum import static_optimum
 
 from shipcosim.models.allocation import optimal
-from shipcosim.models.allocation.static_optimum import static_optimum
 
 UNITS = optimal.design(parameters(optimal.OptimalParameters)).units
 CONES = [[(radians(-80), radians(80)), (radians(100), radians(260))]] * 2 + [[]]

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.angles import TURN, wrap_series
 from shipcosim.models.allocation.sqp import AllocatedThruster
 
 _ROUNDS = 120
@@ -160,7 +161,7 @@ def _dual(prices, tau, units, cones, yaw_lever):
 def _taken(unit, cone, g):
     """What a unit takes where g is offered for a newton in each direction: gain, vector, thrust, angle, derivative."""
     middle, half = 0.5 * (cone[0] + cone[1]), min(0.5 * (cone[1] - cone[0]), np.pi)
-    off = (np.arctan2(g[:, 1], g[:, 0]) - middle + np.pi) % (2.0 * np.pi) - np.pi
+    off = wrap_series(np.arctan2(g[:, 1], g[:, 0]) - middle, TURN)
     turned = np.clip(off, -half, half)
     angle, size = middle + turned, np.hypot(g[:, 0], g[:, 1])
     along = size * np.cos(off - turned)
