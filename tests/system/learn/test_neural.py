@@ -33,7 +33,7 @@ def report_of(kind, root):
 def weights_of(kind, root):
     arrays = read_arrays(root / "fmus" / FMUS[kind] / "weights" / f"{kind}.npz")
     return tuple(
-        (torch.tensor(arrays[f"{k}.weights"]).float(), torch.tensor(arrays[f"{k}.bias"]).float())
+        (torch.tensor(arrays[f"{k}.weights"]).double(), torch.tensor(arrays[f"{k}.bias"]).double())
         for k in range(1, len(arrays) // 2 + 1)
     )
 
@@ -89,9 +89,10 @@ def test_weights_cost_what_their_report_says_and_no_more_than_untrained_ones(kin
     units = neural.tensors(recipe.units)
     with torch.no_grad():
         found = neural.cost(recipe, units, weights_of(kind, root), checked.draw(), checked.interval)
-    best = min(report["epochs"], key=lambda epoch: epoch["objective"])
-    assert float(found["objective"]) == pytest.approx(best["objective"], abs=1e-3)
-    assert best["objective"] <= report["epochs"][0]["objective"]
+    objective, costs = float(found["objective"]), [epoch["objective"] for epoch in report["epochs"]]
+    assert objective == pytest.approx(min(costs), abs=1e-3)
+    assert min(abs(objective - cost) for cost in costs) < 1e-6  # in double precision on any processor
+    assert min(costs) <= costs[0]
     assert report["settings"]["iterations"] == recipe.iterations and report["seed"] == recipe.seed
     assert report["time_s"] < 1200.0
 
