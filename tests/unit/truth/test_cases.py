@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from truth import cases, effects, unknowns
-from truth.cases import CAUSES, KINDS, draw, draw_many, weekly_seed
+from truth.cases import CAUSES, FIXED_SEED, KINDS, bench_seed, draw, draw_many, weekly_seed
 from truth.sensors import ROLES
 
 SHORT = {"minutes": 10}
@@ -170,6 +170,13 @@ def test_dropouts_are_short_and_few():
 def test_weekly_seed_is_printed(capsys):
     assert weekly_seed(date(2026, 11, 21)) == 202647
     assert "202647" in capsys.readouterr().out
+
+
+def test_seed_of_a_bench_does_not_depend_on_the_day_unless_fresh_seeds_are_asked_for(monkeypatch):
+    monkeypatch.delenv("SHIPCOSIM_FRESH_SEEDS", raising=False)
+    assert bench_seed(date(2026, 11, 30)) == bench_seed(date(2027, 5, 3)) == FIXED_SEED
+    monkeypatch.setenv("SHIPCOSIM_FRESH_SEEDS", "1")
+    assert bench_seed(date(2026, 11, 30)) == 202649
 
 
 def test_bad_options_are_refused():
