@@ -17,16 +17,16 @@ test: .venv/installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright
-	$(BIN)/pytest -n 2 --dist loadfile -m "not slow" tests/unit tests/system src
+	$(BIN)/pytest -n 2 --dist loadfile tests/unit tests/system src
 
 test-all: .venv/installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[allocators]"
 	$(BIN)/shipcosim build
-	$(BIN)/pytest -m ""
+	$(BIN)/pytest
 
 benchmarks: .venv/installed-test
 	$(BIN)/shipcosim build
-	$(BIN)/pytest -m "" -s tests/bench tests/system/bench/allocation tests/system/bench/prediction
+	$(BIN)/pytest -s tests/bench tests/system/bench/allocation tests/system/bench/prediction
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

@@ -125,6 +125,12 @@ def draw_many(kind, seeds, **options):
     ]
 
 
+def share_held(cases):
+    """Share of healthy logs in which the ship stays near its setpoint."""
+    held = [case.off_track.max() < 12.0 and np.degrees(np.abs(case.off_heading).max()) < 25.0 for case in cases]
+    return np.mean(held)
+
+
 def bench_seed(day=None):
     """Seed that a bench draws from: always the same, or that of the week where SHIPCOSIM_FRESH_SEEDS is set."""
     return weekly_seed(day) if os.environ.get("SHIPCOSIM_FRESH_SEEDS") else FIXED_SEED

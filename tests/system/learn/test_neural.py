@@ -112,14 +112,3 @@ def test_price_of_power_goes_back_to_the_weights():
         parts = neural.cost(recipe, neural.tensors(recipe.units), neural.paired(weights), drawn.draw(), drawn.interval)
         parts["power"].backward()
     assert all(torch.isfinite(weight.grad).all() and weight.grad.abs().max() > 0.0 for weight in weights)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", FMUS)
-def test_training_again_gives_the_costs_of_the_report(kind, root):
-    """Other processors round otherwise, which training enlarges."""
-    report, trained = report_of(kind, root), neural.train(neural.RECIPES[kind], quiet)
-    assert trained.epochs[0]["objective"] == pytest.approx(report["epochs"][0]["objective"], rel=1e-3)
-    assert min(e["objective"] for e in trained.epochs) == pytest.approx(
-        min(e["objective"] for e in report["epochs"]), rel=0.05
-    )
