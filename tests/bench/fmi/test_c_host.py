@@ -1,9 +1,14 @@
 """At night: states of all FMUs, in a program that is not Python."""
 
 import pytest
-from fmi.test_c_host import FMUS, NATIVE, check_state, host, loaded, native, program
+from fmi.test_c_host import FMUS, NATIVE, NATIVE_IN_CI, check_native, check_state, host, loaded, native, program
 
 from shipcosim.library import build_stale
+
+
+@pytest.mark.parametrize("name", [name for name in NATIVE if name not in NATIVE_IN_CI])
+def test_every_native_fmu_gives_the_reference_result_where_there_is_no_python(name, root, loaded, host, native):
+    check_native(name, loaded(native(name)), root, host)
 
 
 @pytest.mark.parametrize("name", [name for name in NATIVE if name != "reference"])

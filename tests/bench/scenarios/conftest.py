@@ -1,3 +1,12 @@
-"""What the tests in scenarios have at hand too."""
+"""Runs of scenarios as in CI, but in Python."""
 
-from scenarios.conftest import fmus, load_scenario, run, run_scenario
+import pytest
+from scenarios.conftest import fmus, load_scenario, run_scenario
+
+from shipcosim.cosim import simulate, system_of
+
+
+@pytest.fixture(scope="session")
+def run(fmus):
+    """Table of a scenario's run."""
+    return lambda scenario: simulate(system_of(scenario), scenario)
