@@ -1,3 +1,3 @@
 """What the tests in native have at hand too."""
 
-from native.conftest import cache, compiler, own_cache
+from native.conftest import compiler
