@@ -88,7 +88,7 @@ def host(program, only_numpy, tmp_path):
         ]
         text = "".join("\t".join(line) + "\n" for line in lines)
         done = subprocess.run(
-            [program], input=text, capture_output=True, text=True, cwd=tmp_path, timeout=60,
+            [program], input=text, capture_output=True, text=True, cwd=tmp_path, timeout=600,
             env={"PATH": str(path), "OPENBLAS_NUM_THREADS": "1"} | environment,
         )  # fmt: skip
         assert done.returncode == 0, (done.returncode, done.stdout[-2000:], done.stderr[-2000:])

@@ -16,7 +16,7 @@ from shipcosim.library import build_stale
 def run(*code, path):
     """Run Python that finds only what is in a folder, without site packages and environment."""
     text = "\n".join([f"import sys; sys.path.append({str(path)!r})", *map(textwrap.dedent, code)])
-    done = subprocess.run([sys.executable, "-I", "-S", "-c", text], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", text], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout
 

@@ -287,7 +287,7 @@ def test_the_block_runs_in_a_program_that_is_not_python(chain, root, tmp_path, n
     lines += [["get", "b", "Real", fmu.variables["y"].value_reference], ["quit"]]
     text = "".join("\t".join(map(str, line)) + "\n" for line in lines)
     path = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}
-    said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=60).stdout
+    said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=600).stdout
     answers = [line for line in said.splitlines() if not line.startswith("log ")]
     assert float(answers[-1]) == float(block_values(tmp_path / "chain.fmu", 1.0, 0.125, u=4.0)["y"][-1])
 

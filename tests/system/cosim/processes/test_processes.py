@@ -150,7 +150,7 @@ def system(make_system, dangerous):
     )
 
 
-LIMIT = 2.0  # s
+LIMIT = 5.0  # s: a component that works answers within it on a busy machine too
 
 
 def same(one, other):
@@ -224,8 +224,8 @@ def test_the_dp_ship_gives_the_same_digits(root):
         ("leave", "Its process ended itself in DoStep, with exit code 3."),
         ("close", "Its process ended itself in DoStep, with exit code 1."),
         ("fork", "Its process ended itself in DoStep, with exit code 4."),
-        ("hang", "Its process gave no answer to DoStep within 2 s and was ended."),
-        ("spin", "Its process gave no answer to DoStep within 2 s and was ended."),
+        ("hang", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
+        ("spin", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
     ],
 )
 def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(system, make_scenario, how, said):
@@ -380,7 +380,7 @@ def test_a_second_ctrl_c_ends_a_run_whose_component_hangs(hanging):
     time.sleep(0.3)
     assert hanging.poll() is None
     hanging.send_signal(signal.SIGINT)
-    assert hanging.communicate(timeout=20.0) == ("interrupted after 6 rows\n", "")
+    assert hanging.communicate(timeout=120.0) == ("interrupted after 6 rows\n", "")
     assert hanging.returncode == 0
 
 
@@ -390,7 +390,7 @@ def test_a_component_that_hangs_does_not_outlive_a_run_that_is_killed(hanging):
     assert len(children) == 2
     hanging.kill()
     hanging.wait()
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 60.0
     while any(map(is_running, children)) and time.monotonic() < deadline:
         time.sleep(0.1)
     assert not any(map(is_running, children))
