@@ -447,7 +447,7 @@ def test_debug_adds_the_traceback(call, gunnerus):
 def command(*arguments, before="", **options):
     """The command in a process of its own, which runs some Python before; what it said and its exit code."""
     start = [sys.executable, "-c", f"{before}\nfrom shipcosim.cli import main; main()", *arguments]
-    done = subprocess.run(start, capture_output=True, text=True, timeout=60, **options)
+    done = subprocess.run(start, capture_output=True, text=True, timeout=600, **options)
     assert "Traceback" not in done.stderr and "fault of shipcosim" not in done.stderr, done.stderr
     return done
 

@@ -31,24 +31,20 @@ def outcomes():
     return found
 
 
-@pytest.mark.slow
 def test_as_printed_neither_allocator_holds_her_in_beam_seas(outcomes):
     assert held(outcomes["paper-i", 1, "west"]) == held(outcomes["paper-i", 2, "west"]) == 0
 
 
-@pytest.mark.slow
 def test_as_printed_half_or_fewer_hold_her_in_head_seas(outcomes):
     assert held(outcomes["paper-i", 1, "north"]) <= 5 and held(outcomes["paper-i", 2, "north"]) <= 5
 
 
-@pytest.mark.slow
 def test_without_small_singular_values_nearly_all_hold_her(outcomes):
     assert all(
         held(outcomes["paper-i-cutoff", allocator, name]) >= 8 for allocator in (1, 2) for name in ("north", "west")
     )
 
 
-@pytest.mark.slow
 def test_in_beam_seas_both_allocators_break_rates(outcomes):
     """The paper says that the second keeps them. Here it breaks them in more steps than the first."""
     first, second = (outcomes["paper-i-cutoff", allocator, "west"].broken for allocator in (1, 2))

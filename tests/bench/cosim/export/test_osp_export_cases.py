@@ -30,7 +30,6 @@ REFUSED = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in conformance.cases() if not name.startswith("gap_")])
 def test_a_system_has_our_values_in_libcosim_or_is_refused(name, tmp_path, needs):
     if missing := engines_missing().get("libcosim"):

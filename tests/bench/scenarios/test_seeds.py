@@ -10,7 +10,6 @@ from shipcosim.ssp import read_system
 SEEDS = range(101, 121)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["four_corner", "four_corner_rough"])
 def test_four_corners_hold_on_20_other_seeds(name, root):
     scenario = read_scenario(root / "scenarios" / f"{name}.toml")

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from craft import draw
 from craft.scoring import answer, score
 
