@@ -6,27 +6,28 @@ else
   BIN := .venv/bin
 endif
 
-.PHONY: demo test test-all benchmarks clean
+.PHONY: demo quick test nightly durations clean
 
 demo: .venv/installed
 	$(BIN)/shipcosim build
 	$(BIN)/shipcosim run scenarios/four_corner.toml
 
+# before every commit: format, lint, tests/unit
+quick: .venv/installed-test
+	$(BIN)/python .ci/checks.py quick
+
+# what CI runs: the same, types, tests/system and the examples in docstrings
 test: .venv/installed-test
-	$(BIN)/shipcosim build
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/pyright
-	$(BIN)/pytest -n 2 --dist loadfile -m "not slow" tests/unit tests/system src
+	$(BIN)/python .ci/checks.py test
 
-test-all: .venv/installed-test
+# tests/bench, fresh seeds, and the numeric tests as on an older processor: hours
+nightly: .venv/installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[allocators]"
-	$(BIN)/shipcosim build
-	$(BIN)/pytest -m ""
+	$(BIN)/python .ci/checks.py nightly
 
-benchmarks: .venv/installed-test
-	$(BIN)/shipcosim build
-	$(BIN)/pytest -m "" -s tests/bench tests/system/bench/allocation tests/system/bench/prediction
+# after `make test`: how long its files of tests took decides their order from now on
+durations: .venv/installed-test
+	$(BIN)/python .ci/durations.py
 
 .venv/installed: pyproject.toml
 	$(PYTHON) -m venv .venv

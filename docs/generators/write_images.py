@@ -1,7 +1,7 @@
 """Writes the pictures of README and docs: pages as a browser shows them, the DP loop's margins, its sensors' failures.
 
 Run `python docs/generators/write_images.py [NAME...]` after one looks different; it takes two minutes for all. Needs
-Chromium, its driver, and the packages selenium, Pillow and matplotlib. `tests/system/test_images.py` makes the pictures
+Chromium, its driver, and the packages selenium, Pillow and matplotlib. `tests/bench/test_images.py` makes the pictures
 again and compares them; docs/dataflow.md lists them all.
 """
 

@@ -26,18 +26,6 @@ def images(root, needs):
         yield module
 
 
-@pytest.mark.parametrize("name", ["four_corner", "capability", "diagnosis", "study", "dp-loop", "dp-sensors"])
-def test_picture_is_as_its_command_makes_it_now(images, name, tmp_path):
-    kept = images.path_of(name).read_bytes()
-    assert images.difference(kept, images.fresh(name, tmp_path)) <= MOST, "run docs/generators/write_images.py"
-
-
-@pytest.mark.slow
-def test_picture_of_the_measured_trials_is_as_its_command_makes_it_now(images, shared, tmp_path):
-    kept = images.path_of("sea_trials_2022").read_bytes()
-    assert images.difference(kept, images.fresh("sea_trials_2022", tmp_path)) <= MOST, "run write_sea_trials.py"
-
-
 def test_every_picture_is_listed_with_the_command_that_makes_it(root):
     folders = ("docs/*.md", "docs/generated/*.md", "fmus/*/README.md", "tests/bench/*/README.md")
     pages = [root / "README.md", *(page for folder in folders for page in root.glob(folder))]

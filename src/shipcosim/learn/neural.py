@@ -20,6 +20,9 @@ EVERY = 10
 """Steps of the optimiser from one check on held-out sequences to the next."""
 HELD_OUT = 6
 """Runs of each kind, the last ones, that only decide which weights are kept."""
+PRECISION = torch.float64
+"""Of all arithmetic. Thrusts meet a request by a linear system that is nearly singular where units point the same way:
+in single precision its solution, and so the cost, depends on the processor's instructions (1.340 or 1.343)."""
 
 
 @dataclass(frozen=True)
@@ -141,10 +144,10 @@ def train(recipe: NeuralTraining, progress: Progress) -> Trained:
 
 
 def tensors(units: Units) -> Units:
-    """The units in tensors of single precision."""
+    """The units in tensors of the precision of training."""
     found = {name: getattr(units, name) for name in Units._fields}
     vectors = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
-    return units._replace(**{name: torch.tensor(value, dtype=torch.float32) for name, value in vectors.items()})
+    return units._replace(**{name: torch.tensor(value, dtype=PRECISION) for name, value in vectors.items()})
 
 
 def first_weights(recipe: NeuralTraining) -> list[torch.Tensor]:
@@ -153,7 +156,7 @@ def first_weights(recipe: NeuralTraining) -> list[torch.Tensor]:
     sizes, found = (8 + 5 * n, *recipe.hidden, 2 * n), []
     for number, (k, m) in enumerate(zip(sizes[:-1], sizes[1:], strict=True), 1):
         gain = 0.02 if number == len(sizes) - 1 else 1.0
-        found += [gain * torch.randn(k, m) / math.sqrt(k), torch.zeros(m)]
+        found += [gain * torch.randn(k, m).to(PRECISION) / math.sqrt(k), torch.zeros(m, dtype=PRECISION)]
     return [weight.requires_grad_() for weight in found]
 
 
@@ -185,8 +188,8 @@ class Sequences:
         """Requests (steps, batch, 3), availability (batch, n) and the state before."""
         r, size, steps = self.random, self.recipe.batch, self.recipe.steps
         rows = [self._row(*self.runs[r.integers(len(self.runs))], steps) for _ in range(size)]
-        scale = np.exp(r.uniform(-0.7, 0.7, (size, 1, 1))).astype(np.float32)
-        scale = scale * np.where(r.random((size, 1, 1)) < 0.5, [1.0, -1.0, -1.0], 1.0).astype(np.float32)
+        scale = np.exp(r.uniform(-0.7, 0.7, (size, 1, 1)))
+        scale = scale * np.where(r.random((size, 1, 1)) < 0.5, [1.0, -1.0, -1.0], 1.0)
         tau = torch.from_numpy(np.array([tau for tau, _ in rows]) * scale).transpose(0, 1).contiguous()
         smooth = torch.from_numpy(np.array([smooth for _, smooth in rows]) * scale[:, 0])
         available = torch.from_numpy(self._availability(size))
@@ -199,19 +202,19 @@ class Sequences:
     def _availability(self, size):
         """All units in half of the sequences; else one is missing, in a tenth two; in a fifth less power for all."""
         r, n = self.random, len(self.recipe.units.x)
-        found = np.ones((size, n), np.float32)
+        found = np.ones((size, n))
         rows, lost = np.arange(size), r.integers(n, size=(2, size))
         found[rows, lost[0]] = np.where(r.random(size) < 0.5, 0.0, 1.0)
         found[rows, lost[1]] *= np.where(r.random(size) < 0.1, 0.0, 1.0)
         less = np.where(r.random(size) < 0.2, r.uniform(0.3, 1.0, size), 1.0)
-        return (found * less[:, None]).astype(np.float32)
+        return found * less[:, None]
 
     def _before(self, tau, smooth, available):
         """Units at random angles, with thrusts that meet the first request as well as these angles allow."""
         units, r = self.units, self.random
         first, last = torch.clamp(units.first, min=-np.pi), torch.clamp(units.last, max=np.pi)
         last = torch.where(torch.isfinite(units.last), units.last, last)
-        drawn = torch.from_numpy(r.random((len(tau), len(units.x))).astype(np.float32))
+        drawn = torch.from_numpy(r.random((len(tau), len(units.x))))
         angles = first + drawn * (last - first)
         angles = torch.where(units.turn > 0.0, angles, units.azimuth)
         least, most = units.least * available, units.most * available
@@ -237,7 +240,7 @@ def cost(
     tau = tau[recipe.settling :]
     size = (neural._scaled(tau, units.lever) ** 2).sum(-1).mean(0).sqrt() + 1e-3 * units.most.max()
     worth = units.full_power.max() * (size / units.most.max()) ** 1.5
-    spent, missed, turned = torch.zeros(3, tau.shape[1])
+    spent, missed, turned = torch.zeros(3, tau.shape[1], dtype=tau.dtype)
     for request in tau:
         before = state
         state = neural.propose(state, request, available, interval, units=units, weights=weights)

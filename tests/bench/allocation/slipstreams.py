@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # allocation; ships, dp_runs
+if __name__ == "__main__":  # as a test its folders are on the path already
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # allocation; ships, dp_runs
 
 from allocation.loops import SCENARIOS  # noqa: E402
 from allocation.measures import spread  # noqa: E402

@@ -7,7 +7,8 @@ import warnings
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(TESTS / "bench"), str(TESTS / "system"), str(TESTS)]  # craft; diagnose; ships
+if __name__ == "__main__":
+    sys.path[:0] = [str(TESTS / "bench"), str(TESTS / "system"), str(TESTS)]  # craft; diagnose; ships
 
 from craft import CHANGES, FAULTS, draw  # noqa: E402
 from craft.scoring import answer, counted, score  # noqa: E402

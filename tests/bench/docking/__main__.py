@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # docking; ships
+if __name__ == "__main__":
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # docking; ships
 
 from docking import measuring, pages  # noqa: E402
 from shipcosim.learn.docking import dockings  # noqa: E402

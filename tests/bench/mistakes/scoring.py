@@ -1,6 +1,7 @@
 """What was said of a log with mistakes in it, held against what is in it."""
 
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray
@@ -10,9 +11,12 @@ from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import read_anew
 from shipcosim.diagnose.log.roles import role_of
+from shipcosim.errors import ShipcosimError
 
 RATE_NEAR = 0.015  # of a clock: largest error of the logarithm of its rate
 PUT_RIGHT = 0.1  # of what a channel changes: how far off it may be once put right
+ASKED_UNIT = re.compile(r'Say the unit: (\w+) = \{column = "\w+", unit = "(\w+)"\}')
+"""How a refusal asks for the unit of a channel."""
 
 
 @dataclass(frozen=True)
@@ -27,11 +31,13 @@ class Answer:
         "right": all mistakes that can be seen are named and put right, and nothing wrong; "wrong": something else is
         named, or the log that is put right is not the right one; "among":
         nothing wrong is named, and of the readings left open one is right; "beside": none of them is; "part": one of
-        two is named; "silent": nothing is said; "not visible": the same where no mistake can be seen in the log.
+        two is named; "silent": nothing is said; "not visible": the same where no mistake can be seen in the log. A log
+        that is refused with the question for a unit is "beside" if another unit is right. Else the question is
+        answered, and the rest of the log counts, but as "among" instead of "right": the reader left it open.
     said : tuple of (str, float, bool)
         Each finding in words, its probability, whether it is right; those left open are not among them.
     open : tuple of str
-        What was left open, in words.
+        What was left open, in words, among it the question with which a log was refused.
     hidden : tuple of str
         Mistakes that cannot be seen in the log.
     """
@@ -55,8 +61,12 @@ def as_table(log, declared):
 
 def answered(log, source, seed, names, declared, hidden=()):
     """The answer to a log with some mistakes, of which some cannot be seen."""
+    try:
+        table = as_table(with_mistakes(log, names), declared)
+    except ShipcosimError as refusal:
+        return _answered_after_question(refusal, log, source, seed, tuple(names), declared, hidden)
     with np.errstate(all="ignore"):
-        found = examine(as_table(with_mistakes(log, names), declared))
+        found = examine(table)
     expected = [MISTAKES[name] for name in names]
     sure = [finding for finding in found if not getattr(finding, "alternatives", ())]
     left_open = [finding for finding in found if getattr(finding, "alternatives", ())]
@@ -70,6 +80,21 @@ def answered(log, source, seed, names, declared, hidden=()):
     if outcome == "right" and not _is_put_right(log, with_mistakes(log, names), sure, visible):
         outcome = "wrong"
     return Answer(source, seed, tuple(names), declared, outcome, said, open_words, tuple(hidden))
+
+
+def _answered_after_question(refusal, log, source, seed, names, declared, hidden):
+    """The answer to a log that is refused with the question for a unit; any other refusal is raised."""
+    question = ASKED_UNIT.search(str(refusal))
+    if question is None:
+        raise refusal
+    reading = "{} is in {}".format(*question.groups())
+    remaining = tuple(name for name in names if MISTAKES[name].said != reading)
+    if remaining == names:
+        return Answer(source, seed, names, declared, "beside", (), (str(refusal),), tuple(hidden))
+    # Once the user has given the unit that was asked for, this mistake is gone from the log.
+    rest = answered(log, source, seed, remaining, declared, hidden)
+    outcome = {"right": "among", "not visible": "among", "silent": "part"}.get(rest.outcome, rest.outcome)
+    return replace(rest, mistakes=names, outcome=outcome, open=(reading, *rest.open))
 
 
 def _outcome(expected, visible, hits, left_open):

@@ -6,7 +6,8 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
+if __name__ == "__main__":
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
 
 from prediction import measuring, pages  # noqa: E402
 from prediction.rivals import PREDICTORS, there  # noqa: E402

@@ -12,7 +12,8 @@ from time import perf_counter
 import numpy as np
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
+if __name__ == "__main__":  # as a test its folders are on the path already
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
 
 from prediction import measuring, pages  # noqa: E402
 from prediction.rivals import NONE, ROOT, ConstantVelocity, equipped, fmu_class  # noqa: E402

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
+if __name__ == "__main__":  # as a test its folders are on the path already
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
 
 import shipcosim  # noqa: E402
 from prediction import measuring  # noqa: E402

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 HERE = Path(__file__).resolve()
-sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
+if __name__ == "__main__":  # as a test its folders are on the path already
+    sys.path[:0] = [str(HERE.parents[1]), str(HERE.parents[2])]  # prediction; ships
 
 from prediction import measuring, paper_iv_rollouts  # noqa: E402
 from shipcosim.angles import wrap_series  # noqa: E402

@@ -36,13 +36,11 @@ def right(results):
     return np.mean([score(r["answer"], r["diagnosis"] or tables.UNJUDGED, r["span"]).right for r in results])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("rival", RIVALS)
 def test_more_answers_are_right_than_the_rivals(results, rival):
     assert right(results["ours"]) > right(results[rival])
 
 
-@pytest.mark.slow
 def test_named_causes_predict_better_than_a_network(tmp_path):
     from rivals.network import gains
     from truth import draw_many

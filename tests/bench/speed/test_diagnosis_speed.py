@@ -22,7 +22,6 @@ class Log:
     step, known, is_last = 1.0, np.ones(ROWS, bool), np.arange(ROWS) == ROWS - 1
 
 
-@pytest.mark.slow
 def test_columns_are_filtered_3_times_as_fast_as_by_numpy():
     linear, noise = drawn(COLUMNS), levels(1)
     alone = Noise(*(values[0] for values in (noise.white, noise.jolt, noise.walk, noise.wave, noise.wave_frequency)))
@@ -33,7 +32,6 @@ def test_columns_are_filtered_3_times_as_fast_as_by_numpy():
     assert ratio(f"{COLUMNS} columns", ours, theirs, COLUMNS_TO_REACH) >= COLUMNS_TO_REACH
 
 
-@pytest.mark.slow
 def test_levels_of_noise_are_compared_3_times_as_fast_as_by_numpy():
     linear, noises = drawn(1), levels(LEVELS)
     found = log_likelihoods(linear, noises, Log)

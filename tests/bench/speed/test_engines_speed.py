@@ -36,7 +36,6 @@ def seconds(root):
     return durations
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("engine", TO_REACH)
 def test_faster_than_other_engines(seconds, engine, needs):
     if engine not in seconds:
@@ -46,7 +45,6 @@ def test_faster_than_other_engines(seconds, engine, needs):
     assert reported(f"four corners, beside {engine}", ratios, "times as fast", f"{goal}, aim {aim}") >= goal
 
 
-@pytest.mark.slow
 def test_faster_than_real_time(seconds):
     factors = [1100.0 / duration for duration in seconds["fmpy"]]
     goal, aim = TIMES_REAL_TIME

@@ -27,7 +27,6 @@ def log(tmp_path_factory):
     return path
 
 
-@pytest.mark.slow
 def test_parts_need_less_memory(log):
     whole, parts = measured(log, 10**9), measured(log, 4096)
     print(f"\n{MINUTES * 60} rows in one piece: {whole[0]:.0f} MB, {whole[1]:.1f} s CPU; in parts: {parts}")
@@ -36,7 +35,6 @@ def test_parts_need_less_memory(log):
     assert parts[1] <= MOST_TIME * whole[1]
 
 
-@pytest.mark.slow
 def test_a_hundred_thousand_rows_are_diagnosed_in_a_gigabyte_and_four_minutes_of_processor(tmp_path):
     """Forty times as many rows as in 40 minutes; what is computed for the ship grows by no more than 2.5."""
     from truth import draw
@@ -51,7 +49,6 @@ def test_a_hundred_thousand_rows_are_diagnosed_in_a_gigabyte_and_four_minutes_of
     assert memory <= LONG_MEMORY and seconds <= LONG_TIME
 
 
-@pytest.mark.slow
 def test_fits_side_by_side_cost_no_more_processor_time():
     """Up to a fifth: threads wait for each other. The results are equal, which a test beside the sources holds."""
     from diagnose import twin

@@ -13,7 +13,6 @@ SHOWN = ["vessel.x", "vessel.y", "vessel.psi", "port.thrust"]
 SHORT = 1.0  # s: a run of which most is its start
 
 
-@pytest.mark.slow
 def test_a_variation_is_forty_times_as_fast_on_one_core_as_the_run_in_python(root):
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
     system = system_of(scenario)

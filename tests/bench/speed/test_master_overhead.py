@@ -39,7 +39,6 @@ def ring():
     )
 
 
-@pytest.mark.slow
 def test_own_time_per_fmu_step(tmp_path):
     (tmp_path / "empty.py").write_text(empty_fmu())
     build_fmu(tmp_path / "empty.py", tmp_path / "resources")

@@ -28,7 +28,6 @@ def seconds(root):
     return {key: found[1:] for key, found in durations.items()}  # the first round imports and compiles
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", GOALS)
 def test_compiled_models_are_faster_than_python(seconds, part):
     if part == "whole run":

@@ -34,7 +34,6 @@ def command():
     return str(Path(sysconfig.get_path("scripts")) / ("shipcosim.exe" if os.name == "nt" else "shipcosim"))
 
 
-@pytest.mark.slow
 def test_help_comes_at_once():
     seconds = []
     for _ in range(RUNS):
@@ -44,7 +43,6 @@ def test_help_comes_at_once():
     assert reported("shipcosim --help", seconds, "s", f"{LONGEST_HELP}") < LONGEST_HELP
 
 
-@pytest.mark.slow
 def test_first_step_of_a_run_comes_within_two_seconds(root, tmp_path):
     """The clock runs from the start of the process to the call of the first component's first step."""
     build_stale(root)

@@ -53,7 +53,6 @@ def swept(plan, folder: Path, workers=1):
     assert len(runs) == len(plan) and not runs["error"].any()
 
 
-@pytest.mark.slow
 def test_a_run_of_a_study_costs_less_than_ten_milliseconds_on_top(plan, tmp_path):
     few, many, length = 20, 220, 5.0
 
@@ -74,7 +73,6 @@ def test_a_run_of_a_study_costs_less_than_ten_milliseconds_on_top(plan, tmp_path
     assert reported("CPU time of a run of a study over that of the same variation alone", on_top, "ms", "10") < 10.0
 
 
-@pytest.mark.slow
 def test_two_processes_do_nearly_twice_as_much(plan, tmp_path):
     runs, length = 200, 300.0
     swept(plan(4, length), tmp_path / "first")

@@ -3,6 +3,6 @@
 Written apart from the models that a diagnosis uses, and importing nothing of the project.
 """
 
-from truth.cases import Case, draw, draw_many, weekly_seed
+from truth.cases import Case, bench_seed, draw, draw_many
 
-__all__ = ["Case", "draw", "draw_many", "weekly_seed"]
+__all__ = ["Case", "bench_seed", "draw", "draw_many"]

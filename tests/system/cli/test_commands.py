@@ -35,7 +35,7 @@ def test_version_is_the_packages(call):
 
 def test_console_without_our_characters_is_no_error(project):
     running = command("run", "fill", env={**os.environ, "PYTHONIOENCODING": "ascii"})
-    out, err = running.communicate(timeout=30)
+    out, err = running.communicate(timeout=300)
     assert running.returncode == 0 and "PASS" in out and err == ""
 
 
@@ -203,7 +203,7 @@ def test_ctrl_c_stops_at_once_and_keeps_what_there_is(project):
         time.sleep(0.05)
     time.sleep(0.5)
     running.send_signal(signal.SIGINT)
-    out, err = running.communicate(timeout=20)
+    out, err = running.communicate(timeout=300)
     assert running.returncode == 130 and "PARTIAL" in err and "Traceback" not in err and out == ""
     table = read_table(project / "results" / "fill" / "result-partial.nc")
     assert table.attrs["complete"] == 0 and 1 < table.sizes["time"] < 51
@@ -224,7 +224,7 @@ def test_results_that_cannot_be_written_leave_the_old_ones_whole(call, project):
     before = {path.name: path.read_bytes() for path in results.iterdir()}
     limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (400_000, 400_000))
     running = command("run", "fill", "--set", "lag.time_constant=0.4", preexec_fn=limit)
-    _, err = running.communicate(timeout=20)
+    _, err = running.communicate(timeout=300)
     assert running.returncode == 2 and "cannot be written: File too large" in err
     assert os.path.join("results", "fill", "report.html") in err
     assert {path.name: path.read_bytes() for path in results.iterdir()} == before
@@ -240,7 +240,7 @@ def test_fault_of_the_program_is_no_traceback_unless_asked_for(call, project, mo
     def fault(*_, **__):
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr("shipcosim.scenario.read_scenario", fault)
+    monkeypatch.setattr("shipcosim.calls.runs.read_scenario", fault)
     plain, debug = call("run", "fill"), call("run", "fill", "--debug")
     assert plain.code == debug.code == 2
     assert "ZeroDivisionError" in plain.err and "Traceback" not in plain.err and "--debug" in plain.err

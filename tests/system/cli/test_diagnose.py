@@ -10,6 +10,7 @@ import pytest
 from pydantic import BaseModel, ConfigDict, Field
 from typer.testing import CliRunner
 
+import shipcosim.calls.logs as calls
 import shipcosim.cli.diagnosis as command
 from shipcosim.cli import app
 from shipcosim.cli.progress import LAST_STEP
@@ -144,16 +145,16 @@ def ran(like_the_root):
 
     def run(name, case, *options):
         case.save(like_the_root / f"{name}.csv")
-        diagnoses, diagnose_log = [], command.diagnose_log
+        diagnoses, diagnose = [], calls.diagnose
 
         def kept(*arguments, **more):
-            diagnoses.append(diagnose_log(*arguments, **more))
+            diagnoses.append(diagnose(*arguments, **more))
             return diagnoses[-1]
 
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(like_the_root)
             patch.setenv("COLUMNS", "200")
-            patch.setattr(command, "diagnose_log", kept)
+            patch.setattr(calls, "diagnose", kept)
             result = CliRunner().invoke(app, ["diagnose", f"{name}.csv", *options], prog_name="shipcosim")
         assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
         out = like_the_root / "results" / name
@@ -266,7 +267,7 @@ def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_r
 
     monkeypatch.chdir(like_the_root)
     monkeypatch.setattr("shipcosim.diagnose.pipeline.diagnose", known)
-    monkeypatch.setattr("shipcosim.report.diagnosis.page.write_diagnosis", cut_off)
+    monkeypatch.setattr("shipcosim.report.diagnosis.page.render", cut_off)
     before = {path.name: path.read_bytes() for path in lossy.folder.iterdir()}
     done = call("diagnose", "lossy.csv")
     assert done.code == (130 if error is KeyboardInterrupt else 2) and "Traceback" not in done.err
@@ -342,22 +343,3 @@ def test_help_names_the_exit_codes_and_options(call):
     said = call("diagnose", "--help").out
     assert "Exit codes" in said
     assert all(option in said for option in ("--channels", "--system", "--effects", "--out", "--json", "--debug"))
-
-
-def rounded_like(shown, found):
-    """Numbers of an answer with as many digits as a page shows of them."""
-    if isinstance(shown, dict):
-        return {key: rounded_like(shown.get(key), value) for key, value in found.items()}
-    if isinstance(shown, list) and len(shown) == len(found):
-        return [rounded_like(*pair) for pair in zip(shown, found, strict=True)]
-    return float(f"{found:.{len(f'{shown:g}'.replace('.', '').lstrip('0'))}g}") if isinstance(shown, float) else found
-
-
-def test_the_page_of_the_docs_shows_the_answer_to_its_example(root, tmp_path, monkeypatch):
-    monkeypatch.chdir(root)
-    log, out = "docs/examples/gunnerus_log.csv.gz", tmp_path / "found"
-    assert CliRunner().invoke(app, ["diagnose", log, "--out", str(out)]).exit_code == 1
-    found = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
-    page = (root / "docs" / "diagnosis.md").read_text(encoding="utf-8")
-    shown = json.loads(page.split("## diagnosis.json")[1].split("```json")[1].split("```")[0])
-    assert rounded_like(shown, found) == shown

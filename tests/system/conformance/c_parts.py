@@ -3,6 +3,9 @@
 ``decay``: x' = u - k x, x(0) = 1, k = 2; as co-simulation by Euler's rule. ``matrix``: y = A u of FMI 3.0.
 """
 
+import tempfile
+from pathlib import Path
+
 import c_fmus
 from cosim.slaves.test_fmi_versions import ECHO, MADE, _echo_description
 
@@ -24,6 +27,13 @@ FORMS = {"cs": ("CoSimulation",), "me": ("ModelExchange",), "both": ("ModelExcha
 def build_c(name, folder):
     """FMU of a name: ``matrix``, or ``decay_1_cs``, with the version of FMI and the form."""
     folder.mkdir(parents=True, exist_ok=True)
+    # Other processes may read or make the same file: it is there whole or not at all.
+    with tempfile.TemporaryDirectory(dir=folder) as temporary:
+        fmu = _built(name, Path(temporary))
+        return fmu.replace(folder / fmu.name)
+
+
+def _built(name, folder):
     if name == "matrix":
         return c_fmus.build(folder, "echo", "3.0", "", _echo_description(), code=f"{ECHO}{MADE}\n")
     model, version, form = name.split("_")

@@ -1,6 +1,8 @@
 """FMUs of the cases: built from parts/, or from C, with descriptions that a case changes."""
 
 import hashlib
+import os
+import tempfile
 import zipfile
 from functools import cache
 from pathlib import Path
@@ -37,7 +39,10 @@ def _fmu(name, how):
     if target.exists() or not how:
         return target if how else part
     target.parent.mkdir(exist_ok=True)
-    with zipfile.ZipFile(part) as old, zipfile.ZipFile(target, "w") as new:
+    # Other processes may read or make the same file: it is there whole or not at all.
+    handle, temporary = tempfile.mkstemp(dir=target.parent)
+    os.close(handle)
+    with zipfile.ZipFile(part) as old, zipfile.ZipFile(temporary, "w") as new:
         for entry in old.infolist():
             data = old.read(entry)
             if entry.filename == "modelDescription.xml":
@@ -45,6 +50,7 @@ def _fmu(name, how):
             new.writestr(entry, data)
         for path, text in how.get("extra", {}).items():
             new.writestr(path, document(path, text, "1.0"))
+    os.replace(temporary, target)
     return target
 
 

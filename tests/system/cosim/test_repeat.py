@@ -38,7 +38,7 @@ def results(root, tmp_path_factory):
     for seed in ("1", "4711"):
         folders.append(tmp_path_factory.mktemp("run"))
         command = [sys.executable, "-c", RUN, str(root), str(folders[-1])]
-        subprocess.run(command, check=True, timeout=120, env=os.environ | {"PYTHONHASHSEED": seed})
+        subprocess.run(command, check=True, timeout=600, env=os.environ | {"PYTHONHASHSEED": seed})
     return folders
 
 

@@ -19,8 +19,6 @@ PARAMETERS = {  # truth by cause and component, in the contract's units
     "two": {("thrust_loss", "tunnel"): {"loss": 0.3}, ("lever_arm", None): {"x": 5.0, "y": 2.0}},
 }
 
-LONG = "thrust_loss", "heading_bias", "mass", "two"
-
 
 @pytest.fixture(scope="module")
 def diagnosed(tmp_path_factory):
@@ -35,8 +33,12 @@ def diagnosed(tmp_path_factory):
     return of
 
 
-@pytest.mark.parametrize("name", ["current", *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
-def test_planted_causes_are_named_with_their_parameters(name, diagnosed):
+def test_a_planted_current_is_named_with_its_parameters(diagnosed):
+    check_planted("current", diagnosed)
+
+
+def check_planted(name, diagnosed):
+    """Exactly the planted causes are named, with their parameters within three standard deviations."""
     diagnosis = diagnosed(name)
     assert diagnosis.verdict == "named"
     found = {(finding.cause, finding.component): finding for finding in diagnosis.findings}
@@ -67,15 +69,6 @@ def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
     assert "current" not in diagnosis.not_testable
     gain = basis.fit.score - next(fit.score for fit in basis.fits if not fit.hypotheses)
     assert gain > 100.0 and basis.null_gains == {}
-
-
-@pytest.mark.slow
-def test_without_wind_in_the_log_its_causes_are_not_testable_and_that_is_said(tmp_path):
-    path = tmp_path / "log.csv"
-    write_table(twin.logs()["heading_bias"].drop_vars("wind_speed"), path)
-    diagnosis = find_causes(path, twin.system())
-    assert any("No wind in the log" in remark for remark in diagnosis.basis.problem.record.remarks)
-    assert {"wind_scale", "wind_direction"} <= set(diagnosis.not_testable)
 
 
 def test_a_thruster_without_a_command_in_the_log_is_said_and_not_blamed():

@@ -32,7 +32,7 @@ def run(compiled, only_numpy, tmp_path):
             text=True,
             cwd=tmp_path,
             env={"PATH": path},
-            timeout=60,
+            timeout=600,
         )
         assert done.returncode == 0, done.stderr[-2000:]
         values = [line for line in done.stdout.splitlines() if line[:1].isdigit() or line[:1] == "-"]

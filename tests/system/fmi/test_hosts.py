@@ -1,12 +1,10 @@
 """Built FMUs in their hosts: FMPy, a process without this package, libcosim, ecos."""
 
 import importlib.util
-import json
 import math
 import subprocess
 import sys
 import textwrap
-import venv
 from pathlib import Path
 
 import pytest
@@ -18,7 +16,7 @@ from shipcosim.library import build_stale
 def run(*code, path):
     """Run Python that finds only what is in a folder, without site packages and environment."""
     text = "\n".join([f"import sys; sys.path.append({str(path)!r})", *map(textwrap.dedent, code)])
-    done = subprocess.run([sys.executable, "-I", "-S", "-c", text], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", text], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -355,26 +353,3 @@ def test_all_fmus_of_the_project_run_with_python_numpy_and_fmpy_alone(root, bare
         path=bare_packages,
     )
     assert len(names) >= 18 and printed.splitlines() == [f"{name} 201 True" for name in names]
-
-
-@pytest.mark.slow
-def test_all_fmus_of_the_project_run_in_an_environment_with_only_fmpy_installed(root, tmp_path):
-    """A fresh virtual environment, NumPy comes with FMPy; skips where no package index can be reached."""
-    fmus = build_stale(root)
-    venv.create(tmp_path / "venv", with_pip=True)
-    python = next(path for path in (tmp_path / "venv").glob("*/python*") if path.is_file())
-    installed = subprocess.run([python, "-m", "pip", "install", "-q", "fmpy"], capture_output=True, text=True)
-    if installed.returncode:
-        pytest.skip(f"needs a package index: {installed.stderr[-200:]}")
-    code = """
-    import json, sys
-    from fmpy import simulate_fmu
-    for fmu, given in json.loads(sys.argv[1]).items():
-        print(len(simulate_fmu(fmu, stop_time=5.0, step_size=0.05, output_interval=0.05, start_values=given)))
-    """
-    given = given_to([fmu.stem for fmu in sorted(fmus.glob("*.fmu"))], root)
-    given = {str(fmus / f"{name}.fmu"): values for name, values in given.items()}
-    command = [python, "-I", "-c", textwrap.dedent(code), json.dumps(given)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.split() == ["101"] * len(given)

@@ -11,7 +11,7 @@ import threading
 import time
 from pathlib import Path
 
-SILENCE = 30.0  # s, after which a process is taken to hang
+SILENCE = 120.0  # s, after which a process is taken to hang
 PROCESS = Path(__file__).resolve().with_name("process.py")
 
 

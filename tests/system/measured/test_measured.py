@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pandas
 import pytest
-from measured.logs import CHANNELS, FOLDERS, as_table, files
+from measured.logs import CHANNELS, FOLDERS, as_table
 
 import shipcosim as sc
 from shipcosim.diagnose.replays import replay_log
@@ -21,8 +21,6 @@ from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[3]
 MEASURED = ROOT.parent / "shared" / "measured"
-HERE = [craft for craft in FOLDERS if (MEASURED / FOLDERS[craft]).is_dir()]
-LOGS = [(craft, path.name) for craft in HERE for path in files(MEASURED.parent, craft)]
 SHORT = ("blueboat", "run_228.csv.gz")
 
 
@@ -70,22 +68,6 @@ def test_a_short_log_goes_through_the_whole_diagnosis_and_its_thrusters_are_foun
     found = diagnosed(table, channels, system, fmus)
     assert has_figures(found)
     assert [finding.cause for finding in found.findings] == ["channel_swap"]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("craft", "name"), LOGS)
-def test_every_log_goes_through_the_whole_diagnosis(craft, name, log, fmus):
-    found = diagnosed(*log(craft, name), fmus)
-    assert has_figures(found)
-    if craft == "kvlcc2":
-        has_velocities_of_the_earth(found)
-
-
-def has_velocities_of_the_earth(found):
-    """HSVA's columns u and v are the rates of x and y to 1 mm/s; as those of the body they are off by 5 cm/s."""
-    frames = [finding for finding in found.findings if finding.cause == "frame"]
-    assert [set(finding.channels) for finding in frames] == [{"surge", "sway"}]
-    assert "north and east" in frames[0].note
 
 
 def test_kvlcc2_zigzags_as_published_numbers_say(log, fmus):

@@ -1,4 +1,4 @@
-"""Compiled components in a cache of their own."""
+"""What tests of compiled components need. They share the cache of all tests, so that nothing is compiled twice."""
 
 import importlib.util
 
@@ -9,13 +9,3 @@ import pytest
 def compiler(needs):
     if importlib.util.find_spec("ziglang") is None:
         needs("ziglang", 'Install it: pip install -e ".[native]".')
-
-
-@pytest.fixture(scope="session")
-def cache(tmp_path_factory):
-    return tmp_path_factory.mktemp("cache")
-
-
-@pytest.fixture(autouse=True)
-def own_cache(cache, monkeypatch):
-    monkeypatch.setenv("SHIPCOSIM_CACHE", str(cache))

@@ -251,9 +251,13 @@ def test_an_error_of_the_model_leaves_the_memory_and_the_step_to_python():
         assert step.memory[step.places["y"]] == before[step.places["y"]]
 
 
-def test_a_cache_that_is_spoilt_is_made_again(cache):
+def test_a_cache_that_is_spoilt_is_made_again(tmp_path, monkeypatch):
+    monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path))
+    record_cache._READ.clear()
     compiled(Arithmetic)
-    for path in (cache / "native").glob("*.record"):
+    records = list((tmp_path / "native").glob("*.record"))
+    assert records
+    for path in records:
         path.write_bytes(b"nothing")
     record_cache._READ.clear()
     _, step = compiled(Arithmetic)

@@ -211,7 +211,7 @@ class Page:
         """What a script returns."""
         return self.driver.execute_script(script, *arguments)
 
-    def wait(self, script, seconds=30.0):
+    def wait(self, script, seconds=120.0):
         """Until a script returns something true."""
         end = clock.monotonic() + seconds
         while not self.ask(script):

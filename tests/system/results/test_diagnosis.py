@@ -73,11 +73,3 @@ def test_engines_are_compared_by_name():
     found = sc.compare("otter_open", stop_time=0.5, step_size=0.1)
     assert found.agree and "Engines on otter_open" in repr(found)
     assert "half the step" in found.to_pandas().columns and "Largest differences" in found._repr_html_()
-
-
-@pytest.mark.slow
-def test_a_calibration_is_what_a_diagnosis_takes(tmp_path):
-    ship = sc.calibrate("gunnerus_log", out=tmp_path / "ship")
-    assert "Calibration of gunnerus_open" in repr(ship) and "Moved most" in ship._repr_html_()
-    assert (tmp_path / "ship" / "report.html").is_file()
-    assert ship.page().html

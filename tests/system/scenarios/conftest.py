@@ -1,10 +1,15 @@
-"""Runs of the project's own scenarios, each made once for all tests that look at it."""
+"""Runs of the project's own scenarios, each made once for all tests that look at it.
+
+They are compiled, which takes a fiftieth of the time. Engines agree to rounding: cosim/engines/test_native.py holds it
+in CI, and at night tests/bench runs all scenarios in Python.
+"""
 
 import functools
+import importlib.util
 
 import pytest
 
-from shipcosim.cosim import simulate, system_of
+from shipcosim.cosim import RunOptions, simulate, system_of
 from shipcosim.library import build_stale
 from shipcosim.scenario import read_scenario
 
@@ -28,11 +33,13 @@ def load_scenario(root):
 
 
 @pytest.fixture(scope="session")
-def run(fmus):
+def run(fmus, needs):
     """Table of a scenario's run."""
+    if importlib.util.find_spec("ziglang") is None:
+        needs("ziglang", 'Install it: pip install -e ".[native]".')
 
     def run(scenario):
-        return simulate(system_of(scenario), scenario)
+        return simulate(system_of(scenario), scenario, RunOptions(engine="native"))
 
     return run
 

@@ -1,6 +1,6 @@
-"""Every scenario in scenarios/ and its folders holds, because it is there.
+"""Every scenario in scenarios/ holds, because it is there, and of its folders a representative share.
 
-Those of a folder of their own are slow, but for a representative share of each folder.
+All of those in folders run at night: tests/bench/scenarios.
 """
 
 from pathlib import Path
@@ -18,14 +18,16 @@ REPRESENTATIVE = {
     "failures/bus_a_short_of_power",
     "paper_i/north",
 }
-"""Scenarios in folders that run with the fast tests."""
-SCENARIOS = [
-    pytest.param(name, marks=[pytest.mark.slow] if "/" in name and name not in REPRESENTATIVE else []) for name in NAMES
-]
+"""Scenarios in folders that run in CI."""
+IN_CI = [name for name in NAMES if "/" not in name or name in REPRESENTATIVE]
 
 
-@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("name", IN_CI)
 def test_what_a_scenario_expects_holds(name, load_scenario, run_scenario):
+    check_scenario(name, load_scenario, run_scenario)
+
+
+def check_scenario(name, load_scenario, run_scenario):
     verdicts = judge(run_scenario(name), load_scenario(name))
     assert verdicts, "a scenario without expectations shows nothing"
     assert not [verdict for verdict in verdicts if not verdict.passed]

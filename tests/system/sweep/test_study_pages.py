@@ -89,7 +89,7 @@ def test_a_click_simulates_a_row(project, monkeypatch):
 
     def click(server):
         for run in (3, 11):
-            connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=60.0)
+            connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=600.0)
             connection.request("POST", f"/run/{run}", headers={"X-Shipcosim": "run"})
             answer = connection.getresponse()
             asked.append((answer.status, json.loads(answer.read())))

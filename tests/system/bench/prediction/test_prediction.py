@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from prediction import learned, measuring, pages
-from prediction.rivals import PREDICTORS, there
-from shipcosim.learn.prediction.worlds import HELD_OUT, KNOWN, Record
+from prediction.rivals import there
+from shipcosim.learn.prediction.worlds import KNOWN, Record
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.prediction import own_model
-
-WORLDS = range(300, 308)  # of those to choose by
 
 
 def straight(seconds=90, lost_at=4.0, speed=(0.4, -0.3), psi=0.5):
@@ -86,18 +84,6 @@ def test_measures_are_kept_and_not_redone(tmp_path, monkeypatch):
     again = measuring.measured("kinetic", 300, 1.0, tmp_path)
     assert all((first[key] == again[key]).all() for key in first)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["kinetic-300-1.npz", "record-300-1.npz"]
-
-
-@pytest.mark.slow
-def test_all_predictors_in_worlds_to_choose_by(capsys):
-    """Printed for the reader; held are a few things of which the page could not be true otherwise."""
-    assert not set(WORLDS) & set(HELD_OUT)
-    found = {name: {1.0: [measuring.measured(name, seed, 1.0) for seed in WORLDS]} for name in there()}
-    with capsys.disabled():
-        print(pages.page(found, WORLDS, "make benchmarks"))
-    position = {name: pages.by_world(found[name][1.0], 20)[:, -1, 3].mean() for name in found}
-    assert position["kinetic"] < position["constant velocity"]
-    assert set(PREDICTORS) >= set(position)
 
 
 def test_a_learned_force_is_what_its_coefficients_say(tmp_path):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from trial import manoeuvres, runs, tools
+from trial import manoeuvres, runs
 from truth.orders import Orders, leg_speeds
 
 AMBIGUOUS = {"verdict": "ambiguous", "findings": [], "prescription": {"manoeuvre": "turn by 90 deg and hold"}}
@@ -61,15 +61,3 @@ def test_a_manoeuvre_is_sailed_once_and_its_log_is_longer(tmp_path):
     assert (sailed["set"], sailed["seed"], sailed["error"]) == ("one sailed", 7, None)
     assert sailed["answer"][0]["cause"] == "tow"
     assert LENGTHS == [pytest.approx(sailed["span"][1], abs=10)] and sailed["span"][1] > 600.0 + 240.0
-
-
-@pytest.mark.slow
-def test_naming_the_cause_is_worth_more_than_a_bias_observer_under_dp_and_in_the_drift_after_it(tmp_path):
-    (case,) = runs.draw_many("trial", [3], among=["current"], after=runs.DRIFT)
-    case.save(tmp_path / "log.csv")
-    case.twin().save(tools.twin_of(tmp_path / "log.csv"))
-    found = tools.with_drift(tmp_path / "log.csv").as_json()
-    for gain in (found["gain"], found["drift"]):
-        assert gain["noise_floor_m"] <= gain["after_m"] < 0.5 * gain["bias_observer_m"]
-        assert gain["twin_m"] < 0.5 * gain["bias_observer_m"]
-    assert found["drift"]["segments"] > 30

@@ -220,10 +220,11 @@ def test_missing_engines_say_what_to_install():
     assert "pip install libcosimpy" in said and "libtbb12" in said
 
 
-@pytest.mark.parametrize(
-    "stop_time", [pytest.param(60.0), pytest.param(1100.0, marks=pytest.mark.slow)], ids=["first minute", "whole run"]
-)
-def test_engines_agree_on_the_four_corners(root, engine, stop_time):
+def test_engines_agree_on_the_four_corners(root, engine):
+    agree_on_the_four_corners(root, engine, stop_time=60.0)
+
+
+def agree_on_the_four_corners(root, engine, stop_time):
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
     scenario = scenario.model_copy(update={"output_interval": None, "stop_time": stop_time, "expect": []})
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"])

@@ -67,24 +67,6 @@ def test_the_table_is_that_of_python_but_for_rounding(root, name):
     assert not by_python(native)
 
 
-AMPLIFIES = {
-    "box_qp.py",
-    "sqp.py",
-    "neural.py",
-}  # an optimiser's iterations turn rounding of its inputs into 1e-9 of its outputs
-
-
-@pytest.mark.slow
-def test_every_scenario_is_that_of_python_but_for_rounding(root):
-    off = {}
-    for path in sorted((root / "scenarios").rglob("*.toml")):
-        scenario = read_scenario(path)
-        python, native = both(scenario, min(scenario.stop_time, 120.0))
-        if not any(name in text for name in AMPLIFIES for text in by_python(native).values()):
-            off |= {f"{path.stem}: {name}": value for name, value in far_off(python, native).items()}
-    assert not off
-
-
 def test_a_stored_run_goes_on_bit_for_bit(root):
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
     events = [Event(time=0.0, override={"reference.x_set": 20.0}), Event(time=12.0, override={"port.failed": True})]

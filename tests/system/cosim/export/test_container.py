@@ -12,7 +12,6 @@ from pathlib import Path
 import c_fmus
 import numpy as np
 import pytest
-from conformance.cases import cases, write
 
 from shipcosim.cosim import RunError, RunOptions, engines_missing, export_fmu, simulate
 from shipcosim.cosim.export.container import PLATFORMS
@@ -288,7 +287,7 @@ def test_the_block_runs_in_a_program_that_is_not_python(chain, root, tmp_path, n
     lines += [["get", "b", "Real", fmu.variables["y"].value_reference], ["quit"]]
     text = "".join("\t".join(map(str, line)) + "\n" for line in lines)
     path = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}
-    said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=60).stdout
+    said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=600).stdout
     answers = [line for line in said.splitlines() if not line.startswith("log ")]
     assert float(answers[-1]) == float(block_values(tmp_path / "chain.fmu", 1.0, 0.125, u=4.0)["y"][-1])
 
@@ -315,34 +314,3 @@ def test_names_with_blanks_dots_and_brackets_are_kept(make_system, fmus, tmp_pat
     export_fmu(System("odd", "odd.ssd", parts, lines), tmp_path / "odd.fmu", 0.1, check=False)
     assert {"the ship.no. 1.y", "b[2].y", "the ship.no. 1.u"} <= set(read_fmu(tmp_path / "odd.fmu").variables)
     assert block_values(tmp_path / "odd.fmu", 0.1, 0.1)["b[2].y"][1] == 1.0
-
-
-EXPRESSED = {
-    "connection",
-    "dictionary_file",
-    "feedback",
-    "names",
-    "nested_bindings",
-    "nested_deep",
-    "other_ssp",
-    "types",
-}
-EXPRESSED |= {"parameter_enumeration", "ssm_transformations", "ssv_several", "start_values", "units_suppressed"}
-NOT_EXPRESSED = {"boolean_mapping", "calculated", "enumeration_mapping", "integer_to_real", "linear", "nested", "units"}
-NOT_EXPRESSED |= {"step_component"}
-
-
-@pytest.mark.slow
-def test_each_system_of_the_conformance_suite_is_exported_with_its_values_or_refused(tmp_path):
-    outcome = {True: set(), False: set()}
-    for name, case in cases().items():
-        path = write(case, tmp_path / name, "ssp, 1.0" if "1.0" in case.versions else "ssp, 2.0")
-        fmu = tmp_path / f"{name}.fmu"
-        try:
-            system = read_system(path)
-            export_fmu(system, fmu, case.step_size or system.experiment.step_size)
-        except ShipcosimError as error:
-            assert all("container FMU" in problem.remedy or problem.where for problem in error.problems), name
-        assert fmu.exists() or name not in EXPRESSED, name
-        outcome[fmu.exists()].add(name)
-    assert outcome[True] >= EXPRESSED and outcome[False] >= NOT_EXPRESSED

@@ -266,5 +266,5 @@ def test_the_dp_ship_goes_on_in_another_process_bit_for_bit(root, built, tmp_pat
     first = simulate(system, scenario, RunOptions(until=25.35, store=tmp_path / "half.state"))
     (tmp_path / "scenario.json").write_text(scenario.model_dump_json())
     files = map(str, (tmp_path, scenario.system_path, ssv, built))
-    subprocess.run([sys.executable, "-c", CONTINUE, *files], check=True, timeout=120)
+    subprocess.run([sys.executable, "-c", CONTINUE, *files], check=True, timeout=600)
     assert_same(whole, first, read_table(tmp_path / "rest.nc"))

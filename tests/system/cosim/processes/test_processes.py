@@ -20,7 +20,6 @@ from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
 from shipcosim.fmi.export.builder import build_fmu
 
-slow = pytest.mark.slow  # since each process takes some tenths of a second to start
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the ways to end a process are those of POSIX")
 
 DANGEROUS = '''
@@ -151,7 +150,7 @@ def system(make_system, dangerous):
     )
 
 
-LIMIT = 2.0  # s
+LIMIT = 5.0  # s: a component that works answers within it on a busy machine too
 
 
 def same(one, other):
@@ -175,7 +174,7 @@ LINKS += ["clock.odd -> meter.flag", "clock.text -> meter.text", "push -> meter.
 EVENTS = [{"time": 0.4, "override": {"law.y": 0.5, "push": 2.0}}, {"time": 1.2, "reset": ["law.y"]}]
 
 
-@pytest.mark.parametrize("order", ["jacobi", pytest.param("gauss-seidel", marks=slow)])
+@pytest.mark.parametrize("order", ["jacobi", "gauss-seidel"])
 def test_results_are_the_same_to_the_last_digit(make_system, make_scenario, order):
     """All types, a loop, a slow component, events."""
     system, scenario = (
@@ -188,7 +187,6 @@ def test_results_are_the_same_to_the_last_digit(make_system, make_scenario, orde
     )
 
 
-@slow
 def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, make_scenario):
     system, scenario = (
         make_system(PARTS, LINKS, {"push": ("input", "Real", "")}),
@@ -203,7 +201,6 @@ def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, 
         assert all(rest[name].values.tobytes() == whole[name].values[8:].tobytes() for name in whole)
 
 
-@slow
 def test_the_dp_ship_gives_the_same_digits(root):
     from shipcosim.library import build_stale
     from shipcosim.scenario import read_scenario
@@ -222,13 +219,13 @@ def test_the_dp_ship_gives_the_same_digits(root):
     "how, said",
     [
         ("signal", "Its process was ended in DoStep by signal 11, Segmentation fault."),
-        pytest.param("read", "Its process was ended in DoStep by signal 11, Segmentation fault.", marks=slow),
+        ("read", "Its process was ended in DoStep by signal 11, Segmentation fault."),
         ("abort", "by signal 6, Aborted. It printed last:\nsomething is badly wrong"),
-        pytest.param("leave", "Its process ended itself in DoStep, with exit code 3.", marks=slow),
-        pytest.param("close", "Its process ended itself in DoStep, with exit code 1.", marks=slow),
+        ("leave", "Its process ended itself in DoStep, with exit code 3."),
+        ("close", "Its process ended itself in DoStep, with exit code 1."),
         ("fork", "Its process ended itself in DoStep, with exit code 4."),
-        ("hang", "Its process gave no answer to DoStep within 2 s and was ended."),
-        pytest.param("spin", "Its process gave no answer to DoStep within 2 s and was ended.", marks=slow),
+        ("hang", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
+        ("spin", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
     ],
 )
 def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(system, make_scenario, how, said):
@@ -259,8 +256,8 @@ def test_one_that_goes_down_at_the_start_is_named_too(system, make_scenario):
     "how, said",
     [
         (1, "signal 11, Segmentation fault. It printed last:\nit was nice"),
-        pytest.param(2, "gave no answer", marks=slow),
-        pytest.param(3, "signal 6", marks=slow),
+        (2, "gave no answer"),
+        (3, "signal 6"),
     ],
 )
 def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenario, how, said):
@@ -299,7 +296,7 @@ def test_what_goes_wrong_without_a_crash_is_said_in_the_same_words(system, make_
     assert said[0] == said[1] and "50%s of it is wrong" in said[0] and "dangerous.py" in said[0]
 
 
-@pytest.mark.parametrize("how", ["garbage", "warn", *(pytest.param(how, marks=slow) for how in ("interrupt", ""))])
+@pytest.mark.parametrize("how", ["garbage", "warn", "interrupt", ""])
 def test_what_would_confuse_a_run_does_not(system, make_scenario, how):
     table = simulate(system(how), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     assert table["engine.count"].values.tolist() == list(range(11))
@@ -335,7 +332,7 @@ def processes(parent):
     return [(int(pid), command) for pid, command in listed if "cosim.processes.child" in command]
 
 
-@pytest.mark.parametrize("how", ["read", *(pytest.param(how, marks=slow) for how in ("", "raise"))])
+@pytest.mark.parametrize("how", ["read", "", "raise"])
 def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
@@ -383,7 +380,7 @@ def test_a_second_ctrl_c_ends_a_run_whose_component_hangs(hanging):
     time.sleep(0.3)
     assert hanging.poll() is None
     hanging.send_signal(signal.SIGINT)
-    assert hanging.communicate(timeout=20.0) == ("interrupted after 6 rows\n", "")
+    assert hanging.communicate(timeout=120.0) == ("interrupted after 6 rows\n", "")
     assert hanging.returncode == 0
 
 
@@ -393,7 +390,7 @@ def test_a_component_that_hangs_does_not_outlive_a_run_that_is_killed(hanging):
     assert len(children) == 2
     hanging.kill()
     hanging.wait()
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + 60.0
     while any(map(is_running, children)) and time.monotonic() < deadline:
         time.sleep(0.1)
     assert not any(map(is_running, children))

@@ -19,13 +19,11 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     step_for,
     true_wind,
 )
-from shipcosim.diagnose.explanation.search import explain
-from shipcosim.diagnose.explanation.verdict import judge
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, prepared
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
 from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import linearise
-from shipcosim.diagnose.ship.inputs import Record, first_motion
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
@@ -274,39 +272,6 @@ def test_before_sailing_a_cause_shows_where_it_acts():
     assert best["drag"] == best["velocity_scale"] == "steps in surge"
     assert best["wave_drift"] == best["wind_scale"] == "full circle"
     assert found["reverse_loss"][3] < 1.0 < CLEAR < found["reverse_loss"][0]
-
-
-def logged(values, manoeuvre=None, seed=1, minutes=8.0):
-    """A ship with some values keeps her place, and then sails a manoeuvre; her log and what she is taken for."""
-    before, model = 60.0 * minutes, replace(problem().model, span=(0.0, 60.0 * minutes))
-    after = manoeuvre or Manoeuvre("nothing", ())
-    pushes = tuple(replace(p, start=p.start + before, end=p.end + before) for p in after.pushes)
-    free = tuple((a + before, b + before) for a, b in after.free)
-    one = Manoeuvre("both", ((before, 0.0, 0.0, 0.0), *after.legs), pushes, free)
-    dp, random = DpController(model, 1.0), np.random.default_rng(seed)
-    track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
-    jolts = random.standard_normal((record.time.size, 3, 1)) * NOISE.jolt[:, None]
-    motion, units = kept_on_track(model.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
-    measured = np.stack([v[0] for v in motion], -1) + NOISE.white * random.standard_normal((record.time.size, 6))
-    units = {name: tuple(series[0] for series in pair) for name, pair in units.items()}
-    record = replace(record, measured=measured, units=units, wind=tuple(series[0] for series in record.wind))
-    names = {"current", "wave_drift", "tow", "wind_scale", "thrust_loss of port"}
-    asked = tuple(hypothesis for hypothesis in problem().hypotheses if hypothesis.label in names)
-    return prepared(IdentificationProblem(record, model, asked, NOISE, first_motion(record, model)))
-
-
-@pytest.mark.slow
-def test_a_log_that_cannot_tell_drift_from_current_can_after_the_prescribed_manoeuvre():
-    drift = {"water.drift_east": -1500.0}
-    one = logged(drift)
-    before = judge(explain(one), lambda fit: {"": 0.0})
-    assert before.verdict == "ambiguous"
-    assert {"current", "wave_drift"} <= {candidate.cause for candidate in before.indistinguishable}
-    told = design_experiment(one, before.fit, before.rivals)
-    sent = next(m for m in library(one.model) if m.name == told.manoeuvre)
-    after = judge(explain(logged(drift, sent)), lambda fit: {"": 0.0})
-    assert after.verdict == "named"
-    assert [finding.cause for finding in after.findings] == ["wave_drift"]
 
 
 def test_before_sailing_nothing_is_said_of_weather_that_the_ship_cannot_hold_against():

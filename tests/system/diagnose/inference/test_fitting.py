@@ -27,8 +27,15 @@ def score(name, labels=frozenset()):
     return next(fit.score for fit in fits(name) if {hypothesis.label for hypothesis in fit.hypotheses} == set(labels))
 
 
-@pytest.mark.parametrize("name", NAMES)
+IN_CI = ("current", "azimuth_offset", "two")
+
+
+@pytest.mark.parametrize("name", IN_CI)
 def test_a_planted_cause_explains_its_log_best_with_its_size(name):
+    check_planted(name)
+
+
+def check_planted(name):
     best = fits(name)[0]
     assert {hypothesis.label for hypothesis in best.hypotheses} == NAMES[name]
     assert best.score - score(name) > 50.0

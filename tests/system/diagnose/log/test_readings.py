@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from diagnose.logs import measured, smooth, table
+from diagnose.logs import measured, table
 
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
@@ -167,44 +167,6 @@ def test_an_ordinary_dropout_is_no_gap_where_rows_are_a_thousand_seconds_apart()
     log["heading"][300:303] = np.nan
     few = {role: log[role] for role in ("north", "east", "heading")}
     assert examine(table({"time": 1000.0 * log["time"]} | few)) == []
-
-
-def on_station(seed):
-    """A ship that hardly moves: at 1 cm/s, seen by 0.2 m, and by a third of a degree."""
-    random, time = np.random.default_rng(seed), np.arange(1200.0)
-    heading, velocity = (
-        30.0 + smooth(time, seed, 0.2),
-        smooth(time, seed + 1, 0.006) + 1j * smooth(time, seed + 2, 0.006),
-    )
-    noise = random.normal(size=(6, len(time)))
-    position = np.cumsum(velocity * np.exp(1j * np.radians(heading))) + 0.2 * (noise[0] + 1j * noise[1])
-    return {
-        "time": time,
-        "north": position.real,
-        "east": position.imag,
-        "heading": heading + 0.1 * noise[2],
-        "surge": velocity.real + 0.01 * noise[3],
-        "sway": velocity.imag + 0.01 * noise[4],
-        "yaw_rate": np.gradient(heading) + 0.02 * noise[5],
-    }
-
-
-@pytest.mark.parametrize(
-    ("said", "change"),
-    {
-        "sway has the other sign": lambda log: {"sway": -log["sway"]},
-        "yaw_rate has the other sign": lambda log: {"yaw_rate": -log["yaw_rate"]},
-        "time is in ms, not s": lambda log: {"time": 1000.0 * log["time"]},
-        "2 s pass in each logged second": lambda log: {"time": 0.5 * log["time"]},
-    }.items(),
-)
-def test_what_is_wrong_shows_on_a_ship_that_keeps_her_station_too(said, change):
-    """Motion that is less than the noise of a fix says it over twenty minutes."""
-    log = on_station(31)
-    assert examine(table(log)) == []
-    (finding,) = examine(table(log | change(log)))
-    assert said in (finding.note, *finding.alternatives) and not finding.segments
-    assert finding.alternatives or finding.probability > 0.95
 
 
 def test_a_log_of_rest_and_short_manoeuvres_is_judged_by_the_manoeuvres():

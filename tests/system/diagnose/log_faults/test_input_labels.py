@@ -8,14 +8,11 @@ from diagnose import twin
 
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log_faults.input_labels import (
-    _Relabelled,
     best_run,
-    likelihood,
     suspected_inputs,
     with_label,
     with_refined_segment,
 )
-from shipcosim.diagnose.ship.inputs import record_of
 
 KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)
 FIRST, LAST = 120.0, 260.0
@@ -92,18 +89,3 @@ def test_thebest_run_is_the_one_of_all_runs_that_adds_up_to_most():
     runs = {(a, b): gain[a : b + 1].sum() for a in range(80) for b in range(a + 9, 80)}
     first, last, total = best_run(gain, 10)
     assert (first, last) == max(runs, key=runs.get) and total == pytest.approx(max(runs.values()))
-
-
-@pytest.mark.parametrize("step", [1.0, 0.31], ids=["each row", "rows averaged"])
-@pytest.mark.parametrize("ends", [(0, 100), (37, 111), (60, 119)])
-def test_a_segment_that_is_spliced_is_as_likely_as_one_that_is_linearised(step, ends):
-    """Of two linearised logs and the rows about its ends, with late channels and with rows that are averaged."""
-    log = changed({"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values})
-    log = log.assign_coords(time=step * log["time"])
-    problem = twin.ready(with_label(log, KNOTS))
-    model = problem.model.with_values({"instruments.thruster_lag": 2.0})
-    problem = replace(problem, model=model, record=record_of(log, model))
-    time = problem.record.time
-    segment = ((float(time[ends[0]]), float(time[ends[1]])),)
-    whole = likelihood(problem, record_of(with_label(log, KNOTS, segment), model))
-    assert _Relabelled(log, KNOTS, problem).likelihood(ends, segment) == pytest.approx(whole, rel=1e-12)

@@ -13,7 +13,7 @@ from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import SOUGHT, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
-from shipcosim.diagnose.sea_trials.study import STEPS, best_of, causes_of_trials, estimates, rivals_of, study
+from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, estimates, rivals_of, study
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.errors import ShipcosimError
@@ -100,21 +100,6 @@ def test_a_larger_inertia_in_yaw_is_found_with_its_size(ranking):
     assert [cause.cause for cause in best.hypotheses] == ["yaw_inertia"]
     (inertia,) = estimates(best)
     assert abs(inertia.estimate - 2.0 * 43e6) < 3.0 * inertia.std
-
-
-@pytest.mark.slow
-def test_causes_fitted_on_one_side_predict_the_other(logs):
-    told = []
-    found = study(logs["slowed in turns"], twin.system(), progress=told.append, orders=True)
-    assert told == list(STEPS)
-    assert found.verdict == "ambiguous" and set(found.held_out) == {"port", "starboard"}
-    for one in found.held_out.values():
-        assert not set(one.fitted_on) & set(one.judged_on)
-        for feature in ("speed", "t90"):
-            name = f"turning circle: {feature}"
-            assert one.before[name] > 5.0 and one.after[name] < 3.0
-    said = found.as_json()
-    assert said["verdict"] == "ambiguous" and len(said["indistinguishable"]) == len(found.rivals)
 
 
 def test_a_log_without_a_circle_is_refused_and_told_what_would_do(logs):

@@ -10,14 +10,12 @@ from diagnose.sea_trials import trials
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, ranked, trial_evidence
-from shipcosim.diagnose.sea_trials.features import SOUGHT
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
-from shipcosim.diagnose.sea_trials.separation import Separation, designed, separations
+from shipcosim.diagnose.sea_trials.separation import Separation, designed
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 
-PLANTED = {"vessel.mmg_X_vv": -0.7, "instruments.order_lag": 2.5}
 SHAFTS = {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}
 
 
@@ -35,11 +33,6 @@ def found():
 def sets(found):
     ranking = ranked(found)
     return [best_of(ranking), *rivals_of(ranking)]
-
-
-@pytest.fixture(scope="module")
-def separated(found, sets):
-    return separations(found, sets)
 
 
 def test_a_ship_sails_every_manoeuvre_of_the_catalogue_to_both_sides():
@@ -67,22 +60,3 @@ def test_as_few_manoeuvres_are_prescribed_as_tell_all_pairs_apart():
     assert first.manoeuvre == "half" and first.separates == (("a", "c"), ("b", "c"))
     assert second.manoeuvre == "other" and second.separates == (("a", "b"),)
     assert designed([separation("nothing", 5.0, True, 9.0, 9.0, 9.0)], sets) == ()
-
-
-@pytest.mark.slow
-def test_what_was_sailed_already_separates_nothing(separated):
-    """The trials held circles with 10, 20 and 32 deg: sailing such again tells no more, by whatever is computed."""
-    again = [one for one in separated if one.manoeuvre == "turning circle with 20 deg at full speed"]
-    assert all(max(one.nats.values()) < 3.0 for one in again) and again
-
-
-@pytest.mark.slow
-def test_sailing_what_is_prescribed_tells_the_planted_drag_from_the_others(found, sets, separated):
-    assert len(sets) > 1
-    designs = designed(separated, sets)
-    chosen = [one for one in catalogue(found.model) if one.name in {design.manoeuvre for design in designs}]
-    assert chosen and all(one.kind in SOUGHT for one in chosen)
-    more = [trial for _, pair in as_trials(chosen, found.model, SHAFTS, PLANTED) for trial in pair]
-    ranking = ranked(trial_evidence([*found.trials, *more], found.model, found.hypotheses, orders=True))
-    assert {cause.cause for cause in best_of(ranking).hypotheses} == {"drift_drag", "late_orders"}
-    assert not rivals_of(ranking)

@@ -31,7 +31,6 @@ from shipcosim.diagnose.validation.gain import (
 )
 from shipcosim.diagnose.validation.missing_force import missing_force
 from shipcosim.diagnose.validation.split import (
-    HORIZONS,
     conditions,
     first_rows,
     sorted_by,
@@ -327,18 +326,3 @@ def test_a_ship_without_thrust_drifts(diagnosed):
     seen, train = case.motion, first_rows(record)
     found = conditions(replace(record, units=dead), seen, rows, train, case.model)["regime"][1]
     assert found[0] == "drifting" and found[1] != "drifting"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ["trial", "work"])
-def test_ordinary_logs_of_forty_minutes_gain_beyond_the_bias_observer(diagnosed, kind):
-    shares = []
-    for cause in ("current", "thrust_loss", "wave_drift", "wind_scale", "tow"):
-        twin, faulty = (compare(*diagnosed(cause, one, kind, 2010, 40)[:2]).errors for one in (True, False))
-        rival, after, possible = (
-            rms(errors, "position", model)
-            for errors, model in ((faulty, "bias_observer"), (faulty, "extended"), (twin, "plain"))
-        )
-        shares.append((rival - after) / (rival - possible))
-    assert np.median(shares) > 0.9
-    assert HORIZONS[-1] == 60.0

@@ -180,9 +180,3 @@ def test_weights_and_pages_are_those_of_their_report(name, weights):
     else:
         assert report["data"]["seeds of the worlds"] == "1 to 12"
         assert report["data"]["seeds of the worlds that calibrate the region"] == "200 to 223"
-
-
-@pytest.mark.slow
-def test_records_are_repeated_to_the_digit():
-    one, other = (worlds.recorded([worlds.drawn(1)], 60.0, lambda *_: None) for _ in range(2))
-    assert all((one.measured[name] == other.measured[name]).all() for name in worlds.MEASURED)

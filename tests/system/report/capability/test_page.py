@@ -73,11 +73,6 @@ def test_page_is_small(file):
     assert file.stat().st_size < 1.5e6
 
 
-@pytest.mark.slow  # by the clock: not beside other work
-def test_page_is_soon_there(file, shown_at):
-    assert any(max(shown_at(file, 1280).seconds()) < 1.0 for _ in range(3))
-
-
 PAPER = "return [...document.querySelectorAll('.plot')].map(p => p._fullLayout.paper_bgcolor)"
 LIGHT, DARK = "#ffffff", "#182028"
 

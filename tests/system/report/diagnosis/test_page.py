@@ -154,11 +154,6 @@ def test_page_is_small(file):
     assert file.stat().st_size < 1.5e6
 
 
-@pytest.mark.slow  # by the clock: not beside other work
-def test_page_is_soon_there(shown):
-    assert any(max(shown(1280, "light").seconds()) < 1.0 for _ in range(3))
-
-
 def test_first_screen_holds_verdict_figures_and_what_to_do(shown):
     page = shown(1280, "light")
     assert "starboard thruster delivers" in page.text("#verdict") and "NAMED" in page.text("#verdict")

@@ -236,8 +236,3 @@ def test_no_text_of_a_panel_lies_over_another_and_nothing_sticks_out(shown_at, f
 
 def test_page_is_small(file):
     assert file.stat().st_size < 1.5e6
-
-
-@pytest.mark.slow  # by the clock: not beside other work
-def test_page_is_soon_there(file, shown_at):
-    assert any(max(shown_at(file, 1280).seconds()) < 1.0 for _ in range(3))

@@ -188,11 +188,6 @@ def test_page_is_small(file):
     assert file.stat().st_size < 1.0e6
 
 
-@pytest.mark.slow  # by the clock: not beside other work
-def test_page_is_soon_there(file, shown_at):
-    assert any(max(shown_at(file, 1280).seconds()) < 1.5 for _ in range(3))
-
-
 def test_canvases_turn_dark_and_are_light_on_paper(shown_at, file):
     page = shown_at(file, 1280, "dark")
     ink = "const c = document.getElementById('scatter'); return report.colour('card')"
@@ -321,28 +316,6 @@ def test_tens_of_thousands_of_runs_do_not_freeze_the_page(large, shown_at):
     assert page.ask("return [...document.querySelectorAll('#rows tr[data-row]')].pop().dataset.row") == str(
         page.ask("return study.count - 1")
     )
-
-
-@pytest.mark.slow  # by the clock: not beside other work
-def test_a_change_of_the_choice_among_tens_of_thousands_is_soon_drawn(large, shown_at):
-    page = shown_at(large, 1280)
-    assert min(page.ask(SLOWEST) for _ in range(3)) < 0.5, "seconds from a change until it is drawn"
-
-
-SLOWEST = """
-const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
-return (async () => {
-  let slowest = 0;
-  for (const end of [0.5, 1, 2]) {
-    const start = performance.now();
-    study.setRange("excursion", [0, end]);
-    await frame();
-    await frame();
-    slowest = Math.max(slowest, performance.now() - start);
-  }
-  return slowest / 1000;
-})();
-"""
 
 
 def test_page_without_room_for_all_keeps_failed_runs_and_says_what_it_lacks(tables, tmp_path, browse, monkeypatch):

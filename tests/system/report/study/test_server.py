@@ -26,7 +26,7 @@ class Simulations:
             raise ShipcosimError(Problem("vessel", "step to 312.4 s failed.", "Choose a shorter step."))
         if run == 3:
             self.begun.set()
-            assert self.may_end.wait(10.0)
+            assert self.may_end.wait(120.0)
         if run == 4:
             raise RuntimeError("not foreseen")
         if run != 5:
@@ -64,7 +64,7 @@ def ask(server):
     """Function from a method, a path and headers to status and body."""
 
     def send(method, path, headers=None):
-        connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10.0)
+        connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=120.0)
         connection.putrequest(method, path, skip_host="Host" in (headers or {}))
         for name, value in (headers or {}).items():
             connection.putheader(name, value)
@@ -106,7 +106,7 @@ def test_one_simulation_at_a_time_while_files_are_served(ask, simulations):
     first = []
     thread = threading.Thread(target=lambda: first.append(ask("POST", "/run/3", OURS)))
     thread.start()
-    assert simulations.begun.wait(10.0)
+    assert simulations.begun.wait(120.0)
     status, body = ask("POST", "/run/1", OURS)
     assert status == 409 and "one at a time" in json.loads(body)["error"]
     assert ask("GET", "/runs.csv")[0] == 200
@@ -210,7 +210,7 @@ def test_other_methods_are_refused(ask, method):
     ],
 )
 def test_nonsense_is_refused_and_the_server_stays(ask, server, simulations, sent):
-    with socket.create_connection(("127.0.0.1", server.server_port), timeout=10.0) as connection:
+    with socket.create_connection(("127.0.0.1", server.server_port), timeout=120.0) as connection:
         connection.sendall(sent)
         answer = connection.recv(4096)
     assert answer.split(b" ")[1:2] != [b"200"] and simulations.asked == []
@@ -222,7 +222,7 @@ def test_only_this_machine_is_answered(server):
 
 
 def test_answers_tell_browsers_to_keep_to_this_server(server):
-    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=10.0)
+    connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=120.0)
     connection.request("GET", "/")
     answer = connection.getresponse()
     policy = answer.headers["Content-Security-Policy"]

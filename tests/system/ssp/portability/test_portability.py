@@ -100,7 +100,7 @@ def tried(host, tmp_path_factory):
     while left:
         folder = tmp_path_factory.mktemp(host)
         command = [sys.executable, "-c", code, host, str(folder), *left]
-        process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=120)
+        process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=600)
         for line in process.stdout.splitlines():
             if line.startswith('["'):
                 name, verdict, _ = json.loads(line)
@@ -168,7 +168,7 @@ END = "print('value', value, flush=True)\nos._exit(0 if value == 7.0 else 3)\n"
 def outcome(host, path):
     """Verdict of a tool on an SSP of one FMU whose output is 7."""
     code = f"import os, sys\n{STEP[host]}{END}"
-    process = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, timeout=60)
+    process = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, timeout=600)
     return {0: RIGHT, 1: REFUSED, 3: WRONG}.get(process.returncode, CRASHES)
 
 

@@ -50,13 +50,6 @@ def test_no_limit_is_broken_whatever_the_network_says(kind, diameter):
     count_violations(kind, diameter, runs=100, steps=25)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ["anywhere", "back and forth", "out of reach", "nearly nothing"])
-def test_no_limit_is_broken_on_a_million_requests(kind):
-    for diameter in (0.0, 1.9):
-        count_violations(kind, diameter, runs=2500, steps=50)
-
-
 def count_violations(kind, diameter, runs, steps):
     """Each run has a new request and new missing units in every other step, with power short in between."""
     random = np.random.default_rng(7)

@@ -95,11 +95,6 @@ def test_no_limit_is_broken_with_other_steps(h):
     assert keep_limits(100, 30, 2, h) == 0
 
 
-@pytest.mark.slow
-def test_no_limit_is_broken_on_a_million_random_requests():
-    assert keep_limits(10_000, 100, 3) == 0
-
-
 def adversary(state):
     """Request that pulls every unit the way it may least go: back, and across the nearest sector."""
     X = Y = N = 0.0

@@ -1,0 +1,3 @@
+"""What the tests in fmi have at hand too."""
+
+from fmi.conftest import build, compiled, lag, load, only_numpy, own_shipcosim, sources

@@ -1,0 +1,3 @@
+"""What the tests in native have at hand too."""
+
+from native.conftest import compiler
