@@ -12,7 +12,7 @@ from shipcosim.diagnose.experiment.design import testability
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.innovations import Noise
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.library import build_stale
 from shipcosim.ssp import read_system
 

@@ -14,7 +14,7 @@ from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.dead_reckoning import predict
-from shipcosim.models.prediction.known import Known, air_velocity
+from shipcosim.models.prediction.predictor_inputs import Known, air_velocity
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast

@@ -9,7 +9,7 @@ from shipcosim.models.core.maths import number
 from shipcosim.models.core.sampling import samples_due
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.mast import MastParameters
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 
 class DpController(Fmu):

@@ -28,6 +28,6 @@ class DpPredictor(KineticPredictor):
         return Prediction(motions, self.regions.positions, self.regions.headings)
 
     def _held(self, state, known):
-        loop = controlled.Loop(self.reference, self.ship, self.law, self.units, self.design, self.observer)
+        loop = controlled.ControlLoop(self.reference, self.ship, self.law, self.units, self.design, self.observer)
         ahead = {"horizons": HORIZONS, "longest_step": self.longest_step}
         return controlled.predict(known, state, **ahead, hull=self.hull, wind=self.wind, loop=loop)

@@ -15,7 +15,7 @@ from shipcosim.errors import Problem, ShipcosimError
 if TYPE_CHECKING:
     import xarray
 
-    from shipcosim.cosim.master.snapshot import Snapshot
+    from shipcosim.snapshot import Snapshot
 
 TIMEOUT = 60.0
 """How long a component in its own process may take for an answer, if nothing else is said. [s]"""

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from shipcosim.dialects import cells_in, decimal_of, is_figure, separator_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.units import UnitError, spelled_conversion
 
@@ -317,19 +318,37 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     try:
         with gzip.open(path, "rb") if path.name.endswith(".gz") else path.open("rb") as file:
             text = file.read().decode("utf-8-sig")
-        rows = [row for row in csv.reader(io.StringIO(text, newline=""), strict=True) if row]
+        rows, decimal = _cells(path, text)
     except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
         raise ShipcosimError(_unreadable(path, error)) from error
     except MemoryError as error:
         raise ShipcosimError(Problem(str(path), "is larger than the memory.", "Read a part of it.")) from error
     if not rows:
         raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
+    if decimal == ",":
+        rows = [rows[0], *([_with_point(cell) for cell in row] for row in rows[1:])]
     width = len(rows[0])
     for number, row in enumerate(rows, start=1):
         if len(row) != width:
             found = f"Row {number}: Expected {width} columns, got {len(row)}: {','.join(row)}"
             raise ShipcosimError(_unreadable(path, ValueError(found)))
     return rows[0], list(zip(*rows[1:], strict=True))
+
+
+def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
+    """Cells by row, and the decimal sign. Commas separate where the header has one; else what fits."""
+    lines = text.splitlines()
+    separator = "," if not lines or "," in lines[0] else separator_of(lines)
+    if separator in (",", " "):
+        return [row for row in csv.reader(io.StringIO(text, newline=""), strict=True) if row], "."
+    rows = [cells_in(line, separator) for line in lines if line.strip()]
+    with_comma = {cell for row in rows[1:] for cell in row if "," in cell and is_figure(cell)}
+    return rows, decimal_of(str(path), sorted(with_comma)) or "."
+
+
+def _with_point(cell: str) -> str:
+    """A number with a decimal comma, written with a point; points in it group thousands. Texts stay."""
+    return cell.replace(".", "").replace(",", ".") if is_figure(cell) else cell
 
 
 def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:

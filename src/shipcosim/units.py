@@ -353,7 +353,14 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
         raise UnitError(f"{text!r}: the unit {spelling!r} is not known.", "Units are written like deg, kn or N.m.")
     if target is None or not _same_kind(source, target):
         wanted = f"{name} is wanted" if target else "no unit is wanted"
-        raise UnitError(f"{text!r} is in {spelling}, where {wanted}: they measure different things.", _instead(target))
+        raise UnitError(
+            f"{text!r} is in {spelling}, where {wanted}: they measure different things.",
+            (
+                f"Write a number in {target.name}, or one with a unit that converts to it."
+                if target
+                else "Write a number."
+            ),
+        )
     factor, offset = source.factor / target.factor, (source.offset - target.offset) / target.factor
     return number * factor + (0.0 if difference else offset)
 
@@ -393,10 +400,6 @@ def seconds(given: str | float) -> float:
     if not math.isfinite(number):
         raise UnitError(f"{given!r} is no time.", remedy)
     return number
-
-
-def _instead(target: Unit | None) -> str:
-    return f"Write a number in {target.name}, or one with a unit that converts to it." if target else "Write a number."
 
 
 def _same_kind(source: Unit, target: Unit) -> bool:

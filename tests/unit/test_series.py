@@ -66,6 +66,18 @@ def test_time_in_another_unit_is_converted_to_seconds(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "content",
+    ["time [s];u [N]\n0;1,5\n0,5;-2,25\n", "time [s]\tu [N]\n0\t1.5\n0.5\t-2.25\n"],
+    ids=["decimal commas", "tabs"],
+)
+def test_tables_of_spreadsheets_are_read(tmp_path, content):
+    (tmp_path / "t.csv").write_text(content)
+    table = read_table(tmp_path / "t.csv")
+    assert table.time.values.tolist() == [0.0, 0.5] and table.u.values.tolist() == [1.5, -2.25]
+    assert table.u.attrs["units"] == "N"
+
+
+@pytest.mark.parametrize(
     ("content", "said"),
     [
         ("x [m]\n1.0\n", "no column 'time'"),

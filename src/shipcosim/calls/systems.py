@@ -210,7 +210,7 @@ def _as_read(
     ShipcosimError
         If it is none of these, a component runs another FMU than the file says, or the system does not start at 0.
     """
-    from shipcosim.cosim.engines.as_read import readers
+    from shipcosim.cosim.engines.foreign_process import readers
     from shipcosim.ssp.portability.as_interpreted import taken_by, told_set
 
     if not isinstance(given, (str, os.PathLike)):

@@ -107,7 +107,9 @@ def _of_azimuth(thrust: float, narrowed: Sequence[Sector]) -> list[NDArray]:
     ordered = sorted(cuts)
     found = []
     for start, end in zip(ordered, [*ordered[1:], ordered[0] + _TURN], strict=True):
-        if not _forbidden(0.5 * (start + end), narrowed):
+        angle = 0.5 * (start + end)
+        forbidden = any(s.share == 0.0 and abs(_apart(angle, s.middle)) < s.half for s in narrowed)
+        if not forbidden:
             found += [_corners(thrust, a, b, narrowed) for a, b in _halves(start, end)]
     return found
 
@@ -142,10 +144,6 @@ def _share_of(angle: float, sector: Sector) -> float:
         return 0.0
     sine = np.sin(sector.half)
     return float(sector.share * sine / (np.sin(sector.half - away) + sector.share * np.sin(away)))
-
-
-def _forbidden(angle: float, narrowed: Sequence[Sector]) -> bool:
-    return any(s.share == 0.0 and abs(_apart(angle, s.middle)) < s.half for s in narrowed)
 
 
 def _apart(one: float, other: float) -> float:

@@ -103,7 +103,9 @@ def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_fr
     (n,) array
         Between 0 and 1. [1]
     """
-    x, turned = thruster.x - hull.midship_x, np.abs(_wrapped(weather_from)) / np.pi
+    # In [-π, π).
+    wrapped = (weather_from + np.pi) % (2.0 * np.pi) - np.pi
+    x, turned = thruster.x - hull.midship_x, np.abs(wrapped) / np.pi
     period = 0.64 * np.sqrt(hull.length) / condition.zero_crossing_period
     heave = 0.85 * np.where(turned <= 0.5, 1.0 + 0.38 * turned, 1.38 - 0.38 * turned)
     place = 1.0 + 0.4 * min(x, 0.0) / hull.length
@@ -111,8 +113,3 @@ def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_fr
     sigma = 0.25 * (heave * place * condition.wave_height * min(period, 1.0) + max(load - 1.0, 0.0))
     depth = 4.0 * thruster.submergence / thruster.diameter
     return np.array([0.5 * erfc((1.5 * one - depth) / sqrt(2.0)) for one in sigma])
-
-
-def _wrapped(angle: NDArray) -> NDArray:
-    """In [-π, π)."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi

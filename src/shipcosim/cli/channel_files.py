@@ -50,16 +50,16 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
         If the log or the system cannot be read.
     """
     from shipcosim.diagnose.log.channels import ChannelFile, read_channels
-    from shipcosim.diagnose.log.files.form import Form
+    from shipcosim.diagnose.log.files.file_layout import FileLayout
+    from shipcosim.diagnose.log.names.channel_file import channel_file
     from shipcosim.diagnose.log.names.guesses import SURE, Guess
     from shipcosim.diagnose.log.names.proposal import propose
-    from shipcosim.diagnose.log.names.written import channel_file
     from shipcosim.diagnose.log.reader import columns_of, read_log
     from shipcosim.diagnose.log.runs import channels_of_run
-    from shipcosim.diagnose.ship.model import ship_model_of
+    from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 
     check_inputs([log], form)
-    given = read_channels(form).form if form is not None else Form()
+    given = read_channels(form).form if form is not None else FileLayout()
     columns = columns_of(log, given)
     ship = ship_model_of(Reading().system(system or SYSTEM_OF_LOGS, "system"))
     thrusters = {name: ship.drives(name) for name in ship.thrusters}

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.result import Diagnosis, Finding
+    from shipcosim.diagnose.finding import Finding
+    from shipcosim.diagnose.result import Diagnosis
 
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:

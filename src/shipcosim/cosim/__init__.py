@@ -2,15 +2,15 @@
 
 from shipcosim.cosim.engines.registry import ENGINES, engines_missing
 from shipcosim.cosim.export.fmu import export_fmu
-from shipcosim.cosim.many import Variation, simulate_many
 from shipcosim.cosim.master.inputs import interpolated
 from shipcosim.cosim.master.run import Interrupted, RunError
-from shipcosim.cosim.master.snapshot import Snapshot, read_snapshot, write_snapshot
 from shipcosim.cosim.repeat import repeat
 from shipcosim.cosim.replay import replay
 from shipcosim.cosim.simulate import simulate
 from shipcosim.cosim.systems import system_of
+from shipcosim.cosim.variations import Variation, simulate_many
 from shipcosim.options import RunOptions
+from shipcosim.snapshot import Snapshot, read_snapshot, write_snapshot
 
 __all__ = [
     "ENGINES",

@@ -108,7 +108,8 @@ def compare(
     tolerance : float
         Difference from which on a signal differs, relative to its range.
     readers : mapping of str to callable, optional
-        Tools that read the file themselves, in place of the engines; see `shipcosim.cosim.engines.as_read.readers`.
+        Tools that read the file themselves, in place of the engines; see
+        `shipcosim.cosim.engines.foreign_process.readers`.
     taken : callable, optional
         Says in which respects a tool takes the system otherwise, as `ssp.portability.as_interpreted.taken_by` does.
 

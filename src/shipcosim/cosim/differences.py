@@ -119,16 +119,12 @@ def _cause(name, ours, theirs, step_size):
                 f"{name} is ours times {factor:.6g} plus {offset:.6g}: "
                 "a transformation, a unit or a parameter is not applied."
             )
-        drift = _drift_of_sums(time, step_size)
+        # What is wrong with a time that was summed up step by step, at each time; (n,). [s]
+        counts = np.rint(time / step_size).astype(int)
+        summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
+        drift = summed[counts] - time
         if np.max(np.abs(np.gradient(x, time) * drift - distance)) < 0.3 * largest:
             return f"{name} differs as its rate times {drift[-1]:.1e} s: the engine's time, a sum of steps, drifts."
     if np.abs(distance[0]) > 0.0:
         return f"{name} differs at the start: a parameter or start value is not applied, or settled otherwise."
     return f"{name} was the same before: something is decided otherwise there, e.g. a sample, a limit or an event."
-
-
-def _drift_of_sums(time, step_size):
-    """What is wrong with a time that was summed up step by step, at each time; (n,). [s]"""
-    counts = np.rint(time / step_size).astype(int)
-    summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
-    return summed[counts] - time

@@ -58,7 +58,9 @@ def repeat(
         raise ShipcosimError(problems)
     starts = {name: value for name, value in json.loads(facts["start_values"]).items() if value is not None}
     about = {key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")}
-    scenario = Scenario.model_validate(_plain(about) | {"events": json.loads(facts["events"])})
+    # NetCDF gives numbers of NumPy's types.
+    plain = {key: value if isinstance(value, str) else float(value) for key, value in about.items()}
+    scenario = Scenario.model_validate(plain | {"events": json.loads(facts["events"])})
     start_time, until = float(facts["start_time"]), facts.get("until")
     engine, order = str(facts["engine"]), str(facts["order"])
     options = RunOptions(engine=engine, inputs=inputs, order=order, start_time=start_time, until=until)
@@ -69,11 +71,6 @@ def repeat(
 def _in(folders, file):
     """Path of an FMU in the first of some folders that has it; its name alone where none has."""
     return next((folder / file for folder in folders if (folder / file).is_file()), Path(file))
-
-
-def _plain(about):
-    """NetCDF gives numbers of NumPy's types."""
-    return {key: value if isinstance(value, str) else float(value) for key, value in about.items()}
 
 
 def _differences(facts, system, inputs):

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from threadpoolctl import threadpool_limits
 
 import shipcosim
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, given_system, problem_of, read_measurements
@@ -24,11 +26,9 @@ from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
-from shipcosim.diagnose.reference.remaining import RemainingErrors, remaining_errors
+from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
-from shipcosim.diagnose.result import Finding
-from shipcosim.diagnose.stages import Identification
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:

@@ -24,15 +24,18 @@ from typing import TYPE_CHECKING, cast
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.compared import compared, ratio_finding
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
-from shipcosim.diagnose.experiment.design import design_experiment
+from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
+from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
+from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
-from shipcosim.diagnose.inference.form import of_scale, with_learnt_form
-from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
-from shipcosim.diagnose.reference.common import (
+from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
+from shipcosim.diagnose.reference.common_findings import (
     Shared,
     common_discrepancies,
     common_faults,
@@ -48,11 +51,10 @@ from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestabl
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import read_reference, with_reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
-from shipcosim.diagnose.reference.since import with_sizes_at_reference
-from shipcosim.diagnose.result import Diagnosis, Estimate, ExperimentDesign, Finding
-from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.result import Diagnosis
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import with_thrust
-from shipcosim.diagnose.stages import Identification, ReadLog
 
 if TYPE_CHECKING:
     import xarray
@@ -336,11 +338,13 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
 
 def _sizes(
     basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding]
-) -> dict[str, dict[str, dict[str, Estimate]]]:
+) -> dict[str, dict[str, dict[str, ParameterEstimate]]]:
     """How large each log by itself would have what is common."""
     each = basis.ratios.each
     sizes = {
-        one.label: {name: dict.fromkeys(one.parameters, Estimate(of.ratio, of.std, "1")) for name, of in each.items()}
+        one.label: {
+            name: dict.fromkeys(one.parameters, ParameterEstimate(of.ratio, of.std, "1")) for name, of in each.items()
+        }
         for one in crude
     }
     if not causes:

@@ -37,24 +37,24 @@ from dataclasses import replace
 import xarray
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.comparison.compared import compared, with_crude_model
-from shipcosim.diagnose.extension.extended_system import with_findings
+from shipcosim.diagnose.checked_log import ReadLog, checked
+from shipcosim.diagnose.comparison.compared import compared
+from shipcosim.diagnose.explanation.change_point import with_change_point
+from shipcosim.diagnose.explanation.form import with_learnt_form, with_settled_form
+from shipcosim.diagnose.explanation.identification import Identification, identified
+from shipcosim.diagnose.explanation.search import with_causes
+from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_crude_model
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.inference.change_point import with_change_point
-from shipcosim.diagnose.inference.form import with_learnt_form, with_settled_form
-from shipcosim.diagnose.inference.problem import identified
-from shipcosim.diagnose.inference.search import with_causes
-from shipcosim.diagnose.inference.verdict import judged
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
+from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
 from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
-from shipcosim.diagnose.reference.since import with_sizes_at_reference
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
-from shipcosim.diagnose.stages import ExtendedSystem, Identification, JudgedLog, ReadLog
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation

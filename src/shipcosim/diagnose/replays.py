@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import xarray
 
-from shipcosim.diagnose.log.checks.examine import checked
+from shipcosim.diagnose.checked_log import checked
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.pipeline import read_measurements
-from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed

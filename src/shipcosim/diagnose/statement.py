@@ -7,11 +7,14 @@ from pathlib import Path
 
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
 from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
-from shipcosim.diagnose.inference.summary import evidence_of, load_form
+from shipcosim.diagnose.explanation.summary import LoadForm, evidence_of, load_form
+from shipcosim.diagnose.explanation.verdict import JudgedLog
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.log.remarks import handled
-from shipcosim.diagnose.result import Diagnosis, LoadForm, LogSummary
-from shipcosim.diagnose.stages import ExtendedSystem, JudgedLog, PredictedLog, SimulatedLog
+from shipcosim.diagnose.result import Diagnosis, LogSummary
+from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.gain import gain
+from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.tracks import tracks_of
 

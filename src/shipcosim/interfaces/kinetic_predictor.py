@@ -6,7 +6,7 @@ from shipcosim.models.control.observer import DpShip
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import dead_reckoning, surroundings
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings, SurroundingsParameters
 from shipcosim.models.ship.hull import HullParameters
 

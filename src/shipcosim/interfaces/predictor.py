@@ -8,7 +8,7 @@ from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.maths import maximum, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.sampling import samples_due
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.regions import FORESIGHT, RegionParameters, own_errors, widening
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 
@@ -58,7 +58,7 @@ class MotionPredictor(Fmu):
     thrusters act there are none, they are calibrated for the drift.
 
     They are called once each `prediction_period`, and at the start. Between predictions the outputs hold. `known` is a
-    `models.prediction.known.Known`: what is aboard, and nothing else.
+    `models.prediction.predictor_inputs.Known`: what is aboard, and nothing else.
     """
 
     x_hat = Input("m", "estimated north position")

@@ -29,15 +29,15 @@ class Kind:
     train: Callable[[Progress], Trained]
 
 
-def _paper_v(recipe: paper_v.Recipe) -> Kind:
+def _paper_v(recipe: paper_v.PaperVTraining) -> Kind:
     return Kind(recipe.description, lambda progress: paper_v.train(recipe, progress))
 
 
-def _paper_i(recipe: paper_i.Recipe) -> Kind:
+def _paper_i(recipe: paper_i.PaperITraining) -> Kind:
     return Kind(recipe.description, lambda progress: paper_i.train(recipe, progress))
 
 
-def _neural(recipe: neural.Recipe) -> Kind:
+def _neural(recipe: neural.NeuralTraining) -> Kind:
     return Kind(recipe.description, lambda progress: neural.train(recipe, progress))
 
 

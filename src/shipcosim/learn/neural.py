@@ -26,7 +26,7 @@ in single precision its solution, and so the cost, depends on the processor's in
 
 
 @dataclass(frozen=True)
-class Recipe:
+class NeuralTraining:
     """How an allocator is trained.
 
     Parameters
@@ -95,23 +95,25 @@ def _four_azimuths() -> Units:
 
 
 RECIPES = {
-    "neural": Recipe("Our neural allocator of the DP ship, within the forbidden sectors of paper V", _dp_ship(0.0)),
-    "neural-slipstreams": Recipe(
+    "neural": NeuralTraining(
+        "Our neural allocator of the DP ship, within the forbidden sectors of paper V", _dp_ship(0.0)
+    ),
+    "neural-slipstreams": NeuralTraining(
         "Our neural allocator of the DP ship, which knows slipstreams instead of sectors", _dp_ship(DIAMETER)
     ),
-    "neural-four-azimuths": Recipe(
+    "neural-four-azimuths": NeuralTraining(
         "Our neural allocator of the system four_azimuths, which knows slipstreams", _four_azimuths()
     ),
 }
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes."""
 
 
-def train(recipe: Recipe, progress: Progress) -> Trained:
+def train(recipe: NeuralTraining, progress: Progress) -> Trained:
     """Train an allocator from scratch.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : NeuralTraining
         How.
     progress : callable
         Is told how many steps are done, and of how many.
@@ -148,7 +150,7 @@ def tensors(units: Units) -> Units:
     return units._replace(**{name: torch.tensor(value, dtype=PRECISION) for name, value in vectors.items()})
 
 
-def first_weights(recipe: Recipe) -> list[torch.Tensor]:
+def first_weights(recipe: NeuralTraining) -> list[torch.Tensor]:
     """Weights at the start: small in the last layer, so that units stay where they are."""
     n = len(recipe.units.x)
     sizes, found = (8 + 5 * n, *recipe.hidden, 2 * n), []
@@ -175,7 +177,7 @@ def smoothed(runs: np.ndarray, interval: float) -> np.ndarray:
 class Sequences:
     """Sequences of requests with the state before each, drawn at random."""
 
-    def __init__(self, recipe: Recipe, held_out: bool):
+    def __init__(self, recipe: NeuralTraining, held_out: bool):
         runs, _, self.interval = recorded_requests(every=2)
         part = slice(-HELD_OUT, None) if held_out else slice(None, -HELD_OUT)
         self.runs = [(kind[part], smoothed(kind[part], self.interval)) for kind in runs]
@@ -223,7 +225,9 @@ class Sequences:
         return Commands(thrusts, angles, smooth)
 
 
-def cost(recipe: Recipe, units: Units, weights: tuple, drawn: tuple, interval: float) -> dict[str, torch.Tensor]:
+def cost(
+    recipe: NeuralTraining, units: Units, weights: tuple, drawn: tuple, interval: float
+) -> dict[str, torch.Tensor]:
     """What sequences cost: power, missed load and turning, each over the power that their requests are worth.
 
     The first requests only bring the units from where they were drawn to where they would be. The objective is the mean
@@ -256,7 +260,7 @@ def missing(state: Commands, request: torch.Tensor, units: Units) -> torch.Tenso
     return neural._scaled(request, units.lever) - (effect @ state.thrusts[..., None])[..., 0]
 
 
-def fit(recipe: Recipe, progress: Progress) -> tuple[list[np.ndarray], list[dict[str, float]]]:
+def fit(recipe: NeuralTraining, progress: Progress) -> tuple[list[np.ndarray], list[dict[str, float]]]:
     """Weights of the smallest cost on held-out sequences, and costs on the way."""
     weights, units = first_weights(recipe), tensors(recipe.units)
     training, checked = Sequences(recipe, held_out=False), Sequences(replace(recipe, batch=256), held_out=True)

@@ -37,7 +37,7 @@ NOTES = (
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PaperITraining:
     """One variant.
 
     Parameters
@@ -54,8 +54,8 @@ class Recipe:
 
 _OF = "Allocators 1 and 2 of paper I, 82.7 m vessel"
 RECIPES = {
-    "paper-i": Recipe(f"{_OF}, as printed"),
-    "paper-i-cutoff": Recipe(f"{_OF}, singular values below 1 % of the largest left out", cutoff=0.01),
+    "paper-i": PaperITraining(f"{_OF}, as printed"),
+    "paper-i-cutoff": PaperITraining(f"{_OF}, singular values below 1 % of the largest left out", cutoff=0.01),
 }
 
 
@@ -143,12 +143,12 @@ def hidden_layer(network: dict, inputs: np.ndarray) -> np.ndarray:
     return 1.0 / (1.0 + np.exp(-(inputs / network["scale"] @ network["hidden"].T + network["bias"])))
 
 
-def train(recipe: Recipe, progress: Progress) -> Trained:
+def train(recipe: PaperITraining, progress: Progress) -> Trained:
     """Train both allocators with both numbers of signals.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : PaperITraining
         The variant.
     progress : callable
         Is told how far it is.

@@ -44,7 +44,7 @@ NOTES = (
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PaperVTraining:
     """One variant.
 
     Parameters
@@ -78,10 +78,10 @@ class Recipe:
 
 _OF = "Neural allocator of paper V, 28.9 m ship"
 RECIPES = {
-    "paper-v": Recipe(f"{_OF}, as printed: k4 = 1e-7, independent samples"),
-    "paper-v-k4-3": Recipe(f"{_OF}, as printed but k4 = 3e-7", k4=3e-7),
-    "paper-v-k4-5": Recipe(f"{_OF}, as printed but k4 = 5e-7", k4=5e-7),
-    "paper-v-walks": Recipe(f"{_OF}, as printed but trained on random walks", walks=True),
+    "paper-v": PaperVTraining(f"{_OF}, as printed: k4 = 1e-7, independent samples"),
+    "paper-v-k4-3": PaperVTraining(f"{_OF}, as printed but k4 = 3e-7", k4=3e-7),
+    "paper-v-k4-5": PaperVTraining(f"{_OF}, as printed but k4 = 5e-7", k4=5e-7),
+    "paper-v-walks": PaperVTraining(f"{_OF}, as printed but trained on random walks", walks=True),
 }
 
 
@@ -105,12 +105,12 @@ class Autoencoder(torch.nn.Module):
         self.decoder = Recurrent(len(RANGES), WIDTH, LAYERS, 3)
 
 
-def train(recipe: Recipe, progress: Progress) -> Trained:
+def train(recipe: PaperVTraining, progress: Progress) -> Trained:
     """Train one variant from scratch.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : PaperVTraining
         The variant.
     progress : callable
         Is told how far it is.
@@ -126,17 +126,19 @@ def train(recipe: Recipe, progress: Progress) -> Trained:
         loss = partial(losses, network, k4=recipe.k4, mean=_row(data.mean), std=_row(data.std))
         batches, held_out = data.forces[: data.trained], data.forces[data.trained :].flatten(0, 1)[None]
         epochs = fit(network, loss, batches, held_out, recipe.schedule, progress)
-    arrays = {"mean": data.mean, "std": data.std, "ranges": _radians(RANGES), "sample_time": np.array(SAMPLE_TIME)}
+    # Commands with their angles in rad.
+    radians = RANGES * np.array([1.0, 1.0, np.pi / 180.0, 1.0, np.pi / 180.0])
+    arrays = {"mean": data.mean, "std": data.std, "ranges": radians, "sample_time": np.array(SAMPLE_TIME)}
     arrays |= arrays_of(network.encoder, "encoder") | arrays_of(network.decoder, "decoder")
     return Trained(arrays, recipe.description, recipe.seed, _about(recipe, data), _settings(recipe), epochs, NOTES)
 
 
-def data_of(recipe: Recipe) -> Data:
+def data_of(recipe: PaperVTraining) -> Data:
     """Draw the commands and standardise their forces.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : PaperVTraining
         The variant.
 
     Returns
@@ -217,12 +219,7 @@ def _row(values: np.ndarray) -> torch.Tensor:
     return torch.from_numpy(np.asarray(values, dtype=np.float32))
 
 
-def _radians(commands: np.ndarray) -> np.ndarray:
-    """Commands with their angles in rad."""
-    return commands * np.array([1.0, 1.0, np.pi / 180.0, 1.0, np.pi / 180.0])
-
-
-def _about(recipe: Recipe, data: Data) -> dict:
+def _about(recipe: PaperVTraining, data: Data) -> dict:
     kind = "random walks, steps uniform within the rates" if recipe.walks else "independent, uniform"
     return {
         "commands": f"{kind}; F1 within 10 kN, F2 and F3 within 5 kN, angles within 180 deg",
@@ -235,7 +232,7 @@ def _about(recipe: Recipe, data: Data) -> dict:
     }
 
 
-def _settings(recipe: Recipe) -> dict:
+def _settings(recipe: PaperVTraining) -> dict:
     schedule = recipe.schedule
     return {
         "k0 to k5": [*K[:4], recipe.k4, K[5]],

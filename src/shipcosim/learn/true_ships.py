@@ -19,7 +19,7 @@ the errors of sensors. [1]"""
 SPEEDS = (1.0, 0.3, 0.02)  # m/s, m/s, rad/s
 
 
-class Form(NamedTuple):
+class TrueLoads(NamedTuple):
     """Form of a ship that her model does not have, for the FMU `rough_vessel`.
 
     Parameters

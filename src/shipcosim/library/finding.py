@@ -56,7 +56,9 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
     if text in known:
         return built_fmu(known[text], build) if kind == "fmu" else known[text]
     where = f"{option} {text}" if option else text
-    raise ShipcosimError(Problem(where, f"There is no such {WHAT[kind]}.", suggestion(_bare(text), known)))
+    raise ShipcosimError(
+        Problem(where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), known))
+    )
 
 
 def find_any(given: str) -> str:
@@ -125,7 +127,3 @@ def _is_one(kind: str, path: Path) -> bool:
     """Whether a path is a thing of a kind, so that it goes before a name; an empty folder of this name does not."""
     holds = {"system": STRUCTURES, "ship": ("ship.toml",)}.get(kind, ())
     return path.is_file() or any((path / name).is_file() for name in holds)
-
-
-def _bare(text: str) -> str:
-    return text.removesuffix(".toml")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.native.leaves import text_of
+from shipcosim.native.number_rows import text_of
 from shipcosim.native.source import DONE
 from shipcosim.native.symbols import Untraceable
 from shipcosim.native.trace import STANDS, shape_of

@@ -11,10 +11,10 @@ import numpy as np
 
 from shipcosim.native.checking import refuse_other_results
 from shipcosim.native.compiler import libraries
-from shipcosim.native.kept_records import Record, keep_record, kept_record, key_of, record_of
-from shipcosim.native.leaves import Flat, attributes_like, made_like
+from shipcosim.native.error_texts import line_of
+from shipcosim.native.number_rows import Flat, attributes_like, made_like
+from shipcosim.native.record_cache import Record, keep_record, kept_record, key_of, record_of
 from shipcosim.native.recording import typed
-from shipcosim.native.sayings import line_of
 from shipcosim.native.source import source_of
 from shipcosim.native.symbols import Untraceable
 from shipcosim.native.trace import Shape, shape_of, trace

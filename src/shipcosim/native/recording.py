@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from shipcosim.native.leaves import Flat, made_like
-from shipcosim.native.purity import anything
+from shipcosim.native.number_rows import Flat, made_like
+from shipcosim.native.side_effects import anything
 from shipcosim.native.symbols import Maths, Symbol, Untraceable
 
 MOST_PATHS = 200
@@ -81,7 +81,7 @@ class Block:
 
 
 @dataclass(eq=False)
-class Loop:
+class RecordedLoop:
     """A body that is repeated while a condition holds.
 
     Attributes
@@ -118,7 +118,7 @@ class Recording:
         Constant numbers that are looked up by an index.
     calls : list of Call
         Functions that stay in Python.
-    loops : list of Loop
+    loops : list of RecordedLoop
         What is repeated.
     relied_on : list of Symbol
         Values that must be what they are in the example.
@@ -135,7 +135,7 @@ class Recording:
         self.memory, self._choices = example, choices
         self.tables: list[np.ndarray] = []
         self.calls: list[Call] = []
-        self.loops: list[Loop] = []
+        self.loops: list[RecordedLoop] = []
         self.relied_on: list[Symbol] = []
         self.count = 0
         self.said: dict[int, Symbol] = {}
@@ -203,7 +203,7 @@ class Recording:
             if wider == kinds:
                 break
             kinds = wider
-        self.loops.append(Loop(flat.numbers, carried, condition, body))
+        self.loops.append(RecordedLoop(flat.numbers, carried, condition, body))
         self.fresh("loop", "d", number)
         return made_like(state, iter([self.fresh("after", kind, number, place) for place, kind in enumerate(kinds)]))
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.native.leaves import Flat
-from shipcosim.native.recording import Block, Loop, Recording
-from shipcosim.native.sayings import said
+from shipcosim.native.error_texts import said
+from shipcosim.native.number_rows import Flat
+from shipcosim.native.recording import Block, RecordedLoop, Recording
 from shipcosim.native.symbols import Symbol, kind_of
 from shipcosim.native.trace import Step
 
@@ -202,7 +202,7 @@ class Writer:
         self._put(depth + 1, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
         self._put(depth, "}")
 
-    def _loop(self, loop: Loop, number, depth):
+    def _loop(self, loop: RecordedLoop, number, depth):
         needed = [
             place
             for place, symbol in enumerate(loop.carried)

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from shipcosim.native.recording import Recording
 
 
 class Untraceable(Exception):
@@ -41,6 +38,8 @@ class Symbol:
 
     Attributes
     ----------
+    recording : Recording
+        That it is a value of.
     number : int
         In its recording.
     op : str
@@ -55,7 +54,7 @@ class Symbol:
 
     __slots__ = ("recording", "number", "op", "kind", "operands", "block")
 
-    def __init__(self, recording: Recording, number: int, op: str, kind: str, operands: tuple, block: int):
+    def __init__(self, recording: Any, number: int, op: str, kind: str, operands: tuple, block: int):
         self.recording, self.number, self.op, self.kind, self.operands = recording, number, op, kind, operands
         self.block = block
 
@@ -354,7 +353,12 @@ class Maths:
         if isinstance(x, np.ndarray):
             return np.array([Maths.interp(element, xs, ys) for element in x.flat], dtype=object).reshape(x.shape)
         if first_symbol(xs, ys) is not None:
-            return _interpolated(x, xs, ys)
+            # Linear interpolation in a short table of values in memory.
+            found = ys[0]
+            for k in range(len(xs) - 1):
+                between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
+                found = Maths.where(x >= xs[k], between, found)
+            return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
         recording = x.recording
         first, second = recording.table(np.asarray(xs)), recording.table(np.asarray(ys))
         return recording.value("interp", "d", x, first, second, len(xs))
@@ -376,15 +380,6 @@ class Maths:
         for number in range(len(table) - 2, -1, -1):
             chosen = _chosen((index == number) | (index == number - len(table)), table[number], chosen)
         return chosen
-
-
-def _interpolated(x, xs, ys):
-    """Linear interpolation in a short table of values in memory."""
-    found = ys[0]
-    for k in range(len(xs) - 1):
-        between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
-        found = Maths.where(x >= xs[k], between, found)
-    return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
 
 
 def _consecutive(table):

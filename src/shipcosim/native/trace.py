@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
-from shipcosim.native.leaves import Flat, attributes_like, numbers_of, text_of
-from shipcosim.native.purity import only_arithmetic
+from shipcosim.native.number_rows import Flat, attributes_like, numbers_of, text_of
 from shipcosim.native.recording import Block, Recording, ends
+from shipcosim.native.side_effects import only_arithmetic
 from shipcosim.native.symbols import Symbol, Untraceable, kind_of
 
 STANDS = "messages", "_in_binary", "_initialised", "_initialising", "_stale", "_time", "instance_name", "start_time"
@@ -142,7 +142,9 @@ def trace(
         if clone.messages:
             raise ValueError("it writes to the log")
         parameters = attributes_like(values, loads, constant, unchanging)
-        return _changes(before, loads, _mutable(vars(clone), parameters, unchanging), constant, unchanging)
+        # The attributes after a step; parameters are those of before, whatever they may have remembered meanwhile.
+        mutable = {name: parameters[name] if name in unchanging else value for name, value in vars(clone).items()}
+        return _changes(before, loads, mutable, constant, unchanging)
 
     root = recording.record(run)
     _check_kinds(before, root)
@@ -157,11 +159,6 @@ def remember(parameters: Any) -> None:
         for name, item in vars(cls).items():
             if isinstance(item, cached_property):
                 getattr(parameters, name)
-
-
-def _mutable(after, before, unchanging):
-    """The attributes after a step; parameters are those of before, whatever they may have remembered meanwhile."""
-    return {name: before[name] if name in unchanging else value for name, value in after.items()}
 
 
 def _changes(before: Flat, loads: list[Symbol], values: Mapping[str, Any], constant, unchanging):

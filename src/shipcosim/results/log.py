@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-    from shipcosim.diagnose.result import Finding
+    from shipcosim.diagnose.finding import Finding
 
 __all__ = ["Log"]
 

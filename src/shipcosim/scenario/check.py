@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
+from fractions import Fraction
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -15,7 +18,6 @@ from shipcosim.units import UnitError, amount, number_in
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
-    from shipcosim.ssp.fmu.description import Variable
 
 MOST_STEPS = 1e8
 """Steps of a run; the times of more than these would hardly fit into memory."""
@@ -60,6 +62,37 @@ def whole_steps(duration: float, step_size: float) -> int | None:
     """
     count = round(duration / step_size)
     return count if abs(duration / step_size - count) <= 1e-6 else None
+
+
+def step_times(step_size: float, first: int, last: int, start_time: float = 0.0) -> np.ndarray:
+    """Times of the steps from one number to another, both included.
+
+    Parameters
+    ----------
+    step_size, start_time : float
+        Length of a step, and time of step 0. [s, s]
+    first, last : int
+        Numbers of the steps.
+
+    Returns
+    -------
+    (last - first + 1,) array
+        Times. [s]
+
+    Examples
+    --------
+    >>> step_times(0.05, 0, 3).tolist()
+    [0.0, 0.05, 0.1, 0.15]
+
+    A run that starts on a step of another one has the same times:
+
+    >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
+    True
+    """
+    step, before = Fraction(step_size).limit_denominator(10**12), whole_steps(start_time, step_size)
+    if before is None:
+        return start_time + step_times(step_size, first, last)
+    return np.arange(before + first, before + last + 1) * float(step.numerator) / float(step.denominator)
 
 
 def check_times(scenario: Scenario) -> Iterator[Problem]:
@@ -166,7 +199,11 @@ def _event_complaint(system: System, verb: str, signal: str, value: Value | None
     else:
         variable = system.components[component].fmu.variables[name]
         kind, items = variable.kind, variable.items
-        if not _may_change(variable):
+        may_change = variable.causality in ("input", "output") or (variable.causality, variable.variability) == (
+            "parameter",
+            "tunable",
+        )
+        if not may_change:
             remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
     if kind == "Real" and isinstance(value, str) and amount(value) is not None:
@@ -186,13 +223,6 @@ def _unit_complaint(
     except UnitError as error:
         return f"{verb} of '{signal}': {error.found}", error.remedy
     return None
-
-
-def _may_change(variable: Variable) -> bool:
-    return variable.causality in ("input", "output") or (variable.causality, variable.variability) == (
-        "parameter",
-        "tunable",
-    )
 
 
 _WANTED = {

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from shipcosim.errors import Problem
 from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Scenario, Value
-from shipcosim.units import RADIAN, Unit, relation, spelled_unit
+from shipcosim.units import RADIAN, relation, spelled_unit
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -84,7 +84,10 @@ def _odd(system: System, component: str | None, name: str, value: Value | None) 
     unit = system.unit_of(component, name)
     if unit is None or isinstance(value, (bool, str)) or not isinstance(value, (int, float)):
         return None
-    if _turns(value, unit) > 1.0:
+    # Size of a value in rad in whole turns; 0 for other units.
+    named = unit.name == "rad" or relation(unit, RADIAN) == "same"
+    turns = abs(value) / (2.0 * math.pi) if named else 0.0
+    if turns > 1.0:
         return f"{value:g} {unit.name} is more than a whole turn.", f'If degrees are meant, write "{value:g} deg".'
     variables = system.components[component].fmu.variables if component is not None else {}
     is_ship = all(one in variables for one in SHIP)
@@ -97,9 +100,3 @@ def _odd(system: System, component: str | None, name: str, value: Value | None) 
             few = "little" if size < known.low else "much"
             return f"{value:g} {unit.name} is very {few}: {known.reason}.", "Check number and unit."
     return None
-
-
-def _turns(value: float, unit: Unit) -> float:
-    """Size of a value in rad in whole turns; 0 for other units."""
-    named = unit.name == "rad" or relation(unit, RADIAN) == "same"
-    return abs(value) / (2.0 * math.pi) if named else 0.0

@@ -159,7 +159,9 @@ def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, s
     if kind == "value_error":
         return str(finding.get("ctx", {})["error"]), ""
     remedy = _REMEDIES.get(kind) or finding["msg"].replace("Input", "It", 1) + "."
-    return f"{label} = {_as_toml(finding['input'])}.", remedy
+    value = finding["input"]
+    as_toml = json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)
+    return f"{label} = {as_toml}.", remedy
 
 
 def _part_at(record: type[BaseModel], keys: tuple[int | str, ...]) -> tuple[type[BaseModel], tuple[int | str, ...]]:
@@ -178,7 +180,3 @@ def _kinds_in(annotation: Any) -> Iterator[Any]:
     yield get_origin(annotation) or annotation
     for inner in get_args(annotation):
         yield from _kinds_in(inner)
-
-
-def _as_toml(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)

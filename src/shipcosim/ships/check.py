@@ -14,7 +14,7 @@ from shipcosim.ships.file import number
 from shipcosim.ships.folder import read_ship
 from shipcosim.ships.numbers import ESTIMATED
 from shipcosim.ships.system import check_numbers
-from shipcosim.ships.thrusters import Unit
+from shipcosim.ships.thrusters import ShipThruster
 
 BLOCK = (0.2, 1.0)
 """Block coefficients of ships."""
@@ -157,7 +157,7 @@ def _thrusters(ship: Described) -> Iterator[Problem]:
         yield from _thrust(unit, where, draught)
 
 
-def _thrust(unit: Unit, where: str, draught: float) -> Iterator[Problem]:
+def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]:
     """Thrust that no such propeller gives."""
     screw = unit.screw
     if screw is None:

@@ -9,10 +9,10 @@ from shipcosim.models.allocation.fixed_angles import UNITS
 from shipcosim.ships.described import Described
 from shipcosim.ships.entries import Entry
 from shipcosim.ships.estimates import control
-from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.file import number
 from shipcosim.ships.numbers import Numbers
-from shipcosim.ships.thrusters import Unit
+from shipcosim.ships.thrusters import ShipThruster
 
 COMPONENTS = {
     "sensors": "sensors",
@@ -41,7 +41,7 @@ def why_no_dp(ship: Described) -> str:
     return f"her thrusters give no force in {' and '.join(weak)} alone" if weak else ""
 
 
-def units_for_dp(ship: Described) -> list[Unit]:
+def units_for_dp(ship: Described) -> list[ShipThruster]:
     """Thrusters that the DP uses: those that take a commanded thrust."""
     return [unit for unit in ship.units if unit.most > 0.0 and unit.kind != "rudder"]
 
@@ -102,21 +102,21 @@ def _numbers(fmu: str, path: Path) -> Numbers:
     return Numbers(fmu, f"{path}: control", path.parent, "", problems)
 
 
-def _loop(ship: Described, used: list[Unit]) -> control.Loop:
+def _loop(ship: Described, used: list[ShipThruster]) -> control.ControlledShip:
     effects = np.array([unit.effect for unit in used]).T
     least, most = np.array([unit.least for unit in used]), np.array([unit.most for unit in used])
     reach = control.reach_of(effects, least, most)
     floor = WORTH * 0.01 * number(ship.file.mass.mass, ship.form.mass)
     X, Y, N = (0.0 if load < least else load for load, least in zip(reach, (floor, floor, 0.1 * floor), strict=True))
-    return control.Loop(length=ship.form.length, mass=mass_matrix(ship), reach=(X, Y, N))
+    return control.ControlledShip(length=ship.form.length, mass=mass_matrix(ship), reach=(X, Y, N))
 
 
-def _allocation(used: list[Unit]) -> dict[str, Estimate]:
+def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
     """Places, directions and limits of the thrusters as the allocator knows them."""
     found = {}
     for i, unit in enumerate(used, 1):
         places = {"x": unit.x, "y": unit.y, "azimuth": unit.direction, "thrust_rate": unit.rate}
         places |= {"thrust_min": unit.least, "thrust_max": unit.most}
-        found |= {f"{name}_{i}": Estimate(value, 0.0, f"thruster {unit.name}") for name, value in places.items()}
+        found |= {f"{name}_{i}": EstimatedNumber(value, 0.0, f"thruster {unit.name}") for name, value in places.items()}
     lever = max(max(abs(unit.effect[2]) for unit in used), 0.1)
-    return found | {"yaw_lever": Estimate(lever, 0.0, "largest lever of a thruster")}
+    return found | {"yaw_lever": EstimatedNumber(lever, 0.0, "largest lever of a thruster")}

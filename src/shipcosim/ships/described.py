@@ -10,9 +10,9 @@ from pydantic import ValidationError
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ships.entries import Entry
-from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.file import KINDS, ShipFile
-from shipcosim.ships.thrusters import Unit, units_of_ship
+from shipcosim.ships.thrusters import ShipThruster, units_of_ship
 from shipcosim.ships.vessel import form_of, vessel_of
 
 LONGEST = 200_000
@@ -33,20 +33,20 @@ class Described:
         The file.
     file : ShipFile
         What it says.
-    form : Form
+    form : HullDimensions
         Her main particulars.
     vessel : dict of str to Entry
         Parameters of her hull, given or estimated.
-    units : list of Unit
+    units : list of ShipThruster
         Her thrusters.
     """
 
     name: str
     path: Path
     file: ShipFile
-    form: Form
+    form: HullDimensions
     vessel: dict[str, Entry]
-    units: list[Unit]
+    units: list[ShipThruster]
 
     @property
     def entries(self) -> dict[str, dict[str, Entry]]:

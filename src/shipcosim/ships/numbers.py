@@ -6,7 +6,7 @@ from typing import Any
 
 from shipcosim.errors import Problem, suggestion
 from shipcosim.ships.entries import Entry, table_entry
-from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.given import PLAIN, Given, given_in_unit
 from shipcosim.ships.kinds import columns_of, units_of
 
@@ -51,7 +51,7 @@ class Numbers:
         self.entries[name] = Entry(given.value, unit, *more)
         return True
 
-    def estimate(self, name: str, estimate: Estimate) -> None:
+    def estimate(self, name: str, estimate: EstimatedNumber) -> None:
         """Take what a formula gives, where nothing is known yet."""
         if name in self.entries:
             return
@@ -60,7 +60,7 @@ class Numbers:
         where = f"{self.where}: {name}"
         self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
 
-    def estimates(self, found: dict[str, Estimate]) -> None:
+    def estimates(self, found: dict[str, EstimatedNumber]) -> None:
         """Take all of these where nothing is known yet."""
         for name, estimate in found.items():
             self.estimate(name, estimate)
@@ -76,19 +76,15 @@ class Numbers:
         units = units_of(self.fmu)
         for name, value in found.items():
             if name not in units:
-                self.problems.append(Problem(f"{self.where}.{name}", "There is no such number.", _named(name, units)))
+                self.problems.append(
+                    Problem(f"{self.where}.{name}", "There is no such number.", suggestion(name, units))
+                )
             elif isinstance(value, dict) and "table" in value:
                 self.table(name, str(value["table"]))
             else:
                 try:
                     self.give(name, given_in_unit(value, units[name]))
                 except ValueError as error:
-                    self.problems.append(Problem(f"{self.where}.{name}", _sentence(str(error))))
-
-
-def _named(name: str, units: dict[str, str]) -> str:
-    return suggestion(name, units)
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
+                    text = str(error)
+                    sentence = text[:1].upper() + text[1:]
+                    self.problems.append(Problem(f"{self.where}.{name}", sentence))

@@ -11,7 +11,7 @@ from shipcosim.ships.entries import Entry
 from shipcosim.ships.folder import Ship
 from shipcosim.ships.kinds import FMU_OF, PARAMETERS
 from shipcosim.ships.parameter_set import parameter_values
-from shipcosim.ships.thrusters import Unit
+from shipcosim.ships.thrusters import ShipThruster
 from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
 
 STEP, LONG_RUN = 0.05, 600.0  # s
@@ -141,7 +141,7 @@ def _fmu(name: str, folders: list[Path]) -> Path:
     raise ShipcosimError(Problem(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them."))
 
 
-def _around(units: list[Unit]) -> Iterable[tuple[str, str]]:
+def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:
     """Wires between weather, hull and thrusters."""
     yield from ((f"environment.{name}", f"vessel.{name}") for name in (*WEATHER, *SEA))
     for number, unit in enumerate(units, 1):
@@ -161,7 +161,7 @@ def _open_to_outside(system: SystemStructure, ship: Described) -> None:
         system.connect(name, f"environment.{target}")
 
 
-def _commands(unit: Unit, ship: Described) -> Iterable[tuple[str, str | None, str, str]]:
+def _commands(unit: ShipThruster, ship: Described) -> Iterable[tuple[str, str | None, str, str]]:
     """Inputs of a thruster from outside: name, unit, input of the FMU, meaning."""
     by_thrust = any(one.name == unit.name and getattr(one, "command", "") == "thrust" for one in ship.file.thrusters)
     if by_thrust:

@@ -7,8 +7,8 @@ from pathlib import Path
 from shipcosim.errors import Problem
 from shipcosim.models.propulsion.mapped import MapParameters, within_map
 from shipcosim.ships.entries import Entry
-from shipcosim.ships.estimates.estimate import Estimate, within
-from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.estimate import EstimatedNumber, within
+from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.estimates.propulsion import (
     ASTERN,
     USUAL_KT,
@@ -30,7 +30,7 @@ HALF_TURN = 0.25 * pi
 
 
 @dataclass(frozen=True, kw_only=True)
-class Unit:
+class ShipThruster:
     """A thruster with its parameters, and what the DP may ask of it.
 
     Attributes
@@ -67,15 +67,15 @@ class Unit:
 
 
 def units_of_ship(
-    thrusters: list[Thruster], form: Form, source: str, file: Path, problems: list[Problem]
-) -> list[Unit]:
+    thrusters: list[Thruster], form: HullDimensions, source: str, file: Path, problems: list[Problem]
+) -> list[ShipThruster]:
     """Thrusters with all their parameters.
 
     Parameters
     ----------
     thrusters : list of Thruster
         Of the ship file.
-    form : Form
+    form : HullDimensions
         The hull.
     source : str
         Where numbers come from that do not say it.
@@ -104,7 +104,7 @@ def units_of_ship(
     return units
 
 
-def _made(one: Thruster, own: Numbers, form: Form, alone: bool) -> Unit | None:
+def _made(one: Thruster, own: Numbers, form: HullDimensions, alone: bool) -> ShipThruster | None:
     """A thruster of any kind."""
     if isinstance(one, FixedPropeller):
         return _fixed(one, own, form)
@@ -125,9 +125,9 @@ def _unit(
     rate: float,
     direction: float,
     screw: Screw | None = None,
-) -> Unit:
+) -> ShipThruster:
     place = number(one.x), number(one.y)
-    return Unit(
+    return ShipThruster(
         name=one.name,
         kind=one.kind,
         fmu=own.fmu,
@@ -142,7 +142,7 @@ def _unit(
     )
 
 
-def _screw(one: FixedPropeller | Azimuth | Tunnel, own: Numbers, form: Form, kind: str) -> Screw | None:
+def _screw(one: FixedPropeller | Azimuth | Tunnel, own: Numbers, form: HullDimensions, kind: str) -> Screw | None:
     """Propeller of a thruster, what is missing estimated; None, and a problem, where too little is known."""
     if one.diameter is None or (one.power is None and one.thrust is None):
         missing = "diameter" if one.diameter is None else "power or thrust"
@@ -174,7 +174,7 @@ def _share(one: FixedPropeller | Azimuth | Tunnel) -> float:
     return 0.05 + (0.0 if one.thrust else 0.15) + (0.0 if one.rpm else 0.15)
 
 
-def _fixed(one: FixedPropeller, own: Numbers, form: Form) -> Unit | None:
+def _fixed(one: FixedPropeller, own: Numbers, form: HullDimensions) -> ShipThruster | None:
     own.give("direction", one.direction)
     direction = number(one.direction)
     most = number(one.thrust)
@@ -200,36 +200,38 @@ def _fixed(one: FixedPropeller, own: Numbers, form: Form) -> Unit | None:
     return _unit(one, own, least, screw.thrust, screw.thrust / RISE, direction, screw)
 
 
-def _azimuth(one: Azimuth, own: Numbers, form: Form) -> Unit | None:
+def _azimuth(one: Azimuth, own: Numbers, form: HullDimensions) -> ShipThruster | None:
     kind = "ducted" if one.ducted else "open"
     screw = _screw(one, own, form, kind)
     if screw is None:
         return None
     own.give("diameter", one.diameter)
-    own.estimate("water_density", Estimate(form.density, 0.0, "that of the ship's water"))
+    own.estimate("water_density", EstimatedNumber(form.density, 0.0, "that of the ship's water"))
     least = -number(one.thrust_astern, ASTERN[kind] * screw.thrust)
     if not own.give("thrust_max", one.thrust):
         own.estimate("thrust_max", within(screw.thrust, 0.15, "DNV-ST-0111"))
     own.estimate("thrust_min", within(least, 0.15, "as given" if one.thrust_astern else f"{ASTERN[kind]} of ahead"))
     own.estimates(curves(screw) | drive(screw, number(one.rise_time, RISE)))
     own.estimate(
-        "thrust_scale", Estimate(1.0, _share(one), f"1; {_said(one) or 'the curve through the bollard point'}")
+        "thrust_scale", EstimatedNumber(1.0, _share(one), f"1; {_said(one) or 'the curve through the bollard point'}")
     )
     if not own.give("azimuth_rate", one.turning_rate):
-        own.estimate("azimuth_rate", Estimate(TURNING, 0.0, "10 deg/s; assumed"))
-    own.estimate("side_force_coefficient", Estimate(0.8, 0.3, "momentum drag of a ducted unit; assumed for others"))
+        own.estimate("azimuth_rate", EstimatedNumber(TURNING, 0.0, "10 deg/s; assumed"))
+    own.estimate(
+        "side_force_coefficient", EstimatedNumber(0.8, 0.3, "momentum drag of a ducted unit; assumed for others")
+    )
     outwards = HALF_TURN if number(one.y) > 0.0 else -HALF_TURN
     return _unit(one, own, least, screw.thrust, screw.thrust / number(one.rise_time, RISE), outwards, screw)
 
 
-def _tunnel(one: Tunnel, own: Numbers, form: Form) -> Unit | None:
+def _tunnel(one: Tunnel, own: Numbers, form: HullDimensions) -> ShipThruster | None:
     screw = _screw(one, own, form, "tunnel")
     if screw is None:
         return None
     source = f"{screw.thrust:.4g} N at {screw.rpm:.4g} rpm; {_said(one)}".rstrip("; ")
     own.estimate("thrust_coefficient", within(screw.thrust / screw.rpm**2, _share(one), source))
     own.estimate("torque_coefficient", within(screw.torque / screw.rpm**2, 0.1, f"{screw.power:.4g} W at that speed"))
-    own.estimate("speed_loss", Estimate(0.207, 0.1, "1/e left at 2.2 m/s, typical of bow tunnels"))
+    own.estimate("speed_loss", EstimatedNumber(0.207, 0.1, "1/e left at 2.2 m/s, typical of bow tunnels"))
     own.estimate("thrust_max", within(screw.thrust, 0.1, source))
     own.estimate("thrust_min", within(-screw.thrust, 0.1, source))
     own.estimates(drive(screw, number(one.rise_time, RISE)))
@@ -237,7 +239,7 @@ def _tunnel(one: Tunnel, own: Numbers, form: Form) -> Unit | None:
     return _unit(one, own, -screw.thrust, screw.thrust, rate, 0.5 * pi, screw)
 
 
-def _mapped(one: ThrustMap, own: Numbers) -> Unit | None:
+def _mapped(one: ThrustMap, own: Numbers) -> ShipThruster | None:
     if isinstance(one.table, str):
         own.table("thrust_table", one.table)
     else:
@@ -260,24 +262,24 @@ def _mapped(one: ThrustMap, own: Numbers) -> Unit | None:
     return _unit(one, own, least, most, max(most, -least) / RISE, number(one.direction))
 
 
-def _rudder(one: PropellerWithRudder, own: Numbers, form: Form, alone: bool) -> Unit | None:
+def _rudder(one: PropellerWithRudder, own: Numbers, form: HullDimensions, alone: bool) -> ShipThruster | None:
     if one.diameter is None:
         own.problems.append(Problem(own.where, "nothing says diameter.", 'Give that of the propeller: "5.8 m".'))
         return None
     D, density, x = one.diameter.value, form.density, number(one.x)
     own.give("diameter", one.diameter)
-    own.estimate("water_density", Estimate(density, 0.0, "that of the ship's water"))
+    own.estimate("water_density", EstimatedNumber(density, 0.0, "that of the ship's water"))
     KT = USUAL_KT["open"] - 0.05
     if one.thrust is not None and one.rpm is not None:
         KT = one.thrust.value / (density * (one.rpm.value / 60.0) ** 2 * D**4)
     zero = ZERO_THRUST["open"] * KT
     for name, value in (("k0", KT), ("k1", -0.75 * KT / zero), ("k2", -0.25 * KT / zero**2)):
         own.estimate(name, within(value, 0.2, "form of the Wageningen B series, KT 0.30 unless thrust and rpm say it"))
-    area = rudder_area(form) if one.rudder_area is None else Estimate(one.rudder_area.value, 0.0, "")
+    area = rudder_area(form) if one.rudder_area is None else EstimatedNumber(one.rudder_area.value, 0.0, "")
     if not own.give("rudder_area", one.rudder_area):
         own.estimate("rudder_area", area)
     span = number(one.rudder_span, sqrt(1.8 * float(area.value)))
     if not own.give("rudder_x", one.rudder_x):
-        own.estimate("rudder_x", Estimate(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"))
+        own.estimate("rudder_x", EstimatedNumber(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"))
     own.estimates(propeller_and_rudder(form, single=alone, span=span, area=float(area.value), covered=D / span))
     return _unit(one, own, 0.0, 0.0, 0.0, 0.0)

@@ -6,9 +6,9 @@ from pathlib import Path
 from shipcosim.errors import Problem
 from shipcosim.models.ship.hull import CONTRIBUTIONS
 from shipcosim.ships.entries import Entry
-from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.estimates.hull import (
-    Form,
+    HullDimensions,
     added_masses,
     cross_flow_drag,
     inertia_yaw,
@@ -27,7 +27,7 @@ NONE = "none"
 _NO_WAVES = "0.5 0 0 0 0; 0.5 180 0 0 0; 5 0 0 0 0; 5 180 0 0 0"
 
 
-def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> Form | None:
+def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensions | None:
     """Main particulars with a block coefficient; None where something is missing.
 
     Parameters
@@ -56,16 +56,16 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> Form | None:
     filled = number(heavy) / (density * p.hulls * L * B * T)
     block = min(max(number(p.block_coefficient, filled), 0.05), 1.0)  # what cannot be is said by the check
     speed = number(p.service_speed, USUAL_FROUDE * sqrt(GRAVITY * L))
-    return Form(length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed)
+    return HullDimensions(length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed)
 
 
-def vessel_of(ship: ShipFile, form: Form, file: Path, problems: list[Problem]) -> dict[str, Entry]:
+def vessel_of(ship: ShipFile, form: HullDimensions, file: Path, problems: list[Problem]) -> dict[str, Entry]:
     """Parameters of the vessel, given or estimated.
 
     Parameters
     ----------
     ship : ShipFile
-    form : Form
+    form : HullDimensions
         Her main particulars.
     file : Path
         Her file.
@@ -74,7 +74,9 @@ def vessel_of(ship: ShipFile, form: Form, file: Path, problems: list[Problem]) -
     """
     own = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
     own.coefficients(ship.hull)
-    _dimensions(own, ship.particulars or Particulars())
+    p = ship.particulars or Particulars()
+    for name in ("length", "breadth", "draught", "water_density"):
+        own.give(name, getattr(p, name))
     _inertia(own, ship.mass, ship.particulars or Particulars(), form)
     _resistance(own, ship, form)
     _across(own, ship, form)
@@ -82,15 +84,10 @@ def vessel_of(ship: ShipFile, form: Form, file: Path, problems: list[Problem]) -
     return own.entries
 
 
-def _dimensions(own: Numbers, p: Particulars) -> None:
-    for name in ("length", "breadth", "draught", "water_density"):
-        own.give(name, getattr(p, name))
-
-
-def _inertia(own: Numbers, m: Inertia, p: Particulars, form: Form) -> None:
+def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> None:
     """Mass, inertia, added mass."""
     if not own.give("mass", m.mass or p.displacement):
-        own.estimate("mass", Estimate(form.mass, 0.05 * form.mass, "rho C_B L B T"))
+        own.estimate("mass", EstimatedNumber(form.mass, 0.05 * form.mass, "rho C_B L B T"))
     mass = float(own.entries["mass"].value)
     own.give("centre_of_gravity_x", m.centre_of_gravity_x)
     centre = number(m.centre_of_gravity_x)
@@ -110,7 +107,7 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: Form) -> None:
     own.estimates(added_masses(form))
 
 
-def _resistance(own: Numbers, ship: ShipFile, form: Form) -> None:
+def _resistance(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     known = ship.resistance
     if any(name in own.entries for name in ALONG):
         return
@@ -125,7 +122,7 @@ def _resistance(own: Numbers, ship: ShipFile, form: Form) -> None:
     own.estimate("X_uu", drag_coefficient(form, surface, factor))
 
 
-def _across(own: Numbers, ship: ShipFile, form: Form) -> None:
+def _across(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Drag across and manoeuvring derivatives, estimated where the file gives no coefficients at all across."""
     own.give("cross_flow_drag", ship.drag.cross_flow)
     across = {name for _, names in CONTRIBUTIONS.values() for name in names} - {*ALONG, "added_mass_coriolis"}
@@ -136,25 +133,25 @@ def _across(own: Numbers, ship: ShipFile, form: Form) -> None:
         own.estimates(manoeuvring_derivatives(form, float(own.entries["A22"].value)))
 
 
-def _weather(own: Numbers, ship: ShipFile, form: Form) -> None:
+def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     w = ship.wind
     own.give("wind_load_scale", w.scale)
     if w.table is not None and w.table != NONE:
         own.table("wind_table", w.table)
     elif w.table == NONE:
-        own.estimate("wind_table", Estimate("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file"))
+        own.estimate("wind_table", EstimatedNumber("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file"))
     else:
         _wind(own, ship, form)
     if ship.waves.table is not None and ship.waves.table != NONE:
         own.table("drift_table", ship.waves.table)
     elif ship.waves.table == NONE:
-        own.estimate("drift_table", Estimate(_NO_WAVES, 0.0, "none, by the ship file"))
+        own.estimate("drift_table", EstimatedNumber(_NO_WAVES, 0.0, "none, by the ship file"))
     else:
         breadth = number((ship.particulars or Particulars()).breadth)
         own.estimate("drift_table", drift_table(form.length, breadth, form.draught, form.density))
 
 
-def _wind(own: Numbers, ship: ShipFile, form: Form) -> None:
+def _wind(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Blendermann's loads of areas that are given or estimated."""
     w, breadth = ship.wind, number((ship.particulars or Particulars()).breadth)
     both = (w.front_area, front_area(breadth)), (w.side_area, side_area(form.length))
@@ -164,4 +161,6 @@ def _wind(own: Numbers, ship: ShipFile, form: Form) -> None:
     source = found.source + "".join(f"; {one.source}" for one in unknown)
     own.estimate("wind_table", found._replace(source=source))
     share = 0.2 if not unknown else 0.45
-    own.estimate("wind_load_scale", Estimate(1.0, share, "1; the tolerance is of the coefficients and the areas"))
+    own.estimate(
+        "wind_load_scale", EstimatedNumber(1.0, share, "1; the tolerance is of the coefficients and the areas")
+    )

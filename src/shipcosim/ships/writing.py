@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from math import sqrt
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.estimates.resistance import resistance
 from shipcosim.ships.estimates.weather import USUAL_KIND
 from shipcosim.ships.given import number_in
@@ -85,7 +85,7 @@ def usual(answers: Answers, key: str) -> str:
     if key == "speed":
         return Usual(f"{speed * 3600.0 / 1852.0:.2g} kn")
     block = min(max(mass / 1025.0 / (L * B * T), 0.2), 1.0)
-    form = Form(length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed)
+    form = HullDimensions(length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed)
     return Usual(f"{_round(resistance(form) * speed / EFFICIENCY / 1000.0)} kW")
 
 

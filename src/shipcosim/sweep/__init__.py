@@ -11,8 +11,8 @@ from shipcosim import CallableRoom
 from shipcosim.sweep.layout import plan_of
 from shipcosim.sweep.plan import ColumnOf, Plan, PlannedRun
 from shipcosim.sweep.reader import read_study
-from shipcosim.sweep.records import Study
-from shipcosim.sweep.sweeping import Swept, run_study
+from shipcosim.sweep.study_model import Study
+from shipcosim.sweep.study_run import Swept, run_study
 
 __all__ = ["ColumnOf", "Plan", "PlannedRun", "Study", "Swept", "plan_of", "read_study", "run_study"]
 

@@ -62,7 +62,15 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
             blocks = values.reshape(-1, len(columns) + 2)
             known = np.asarray(np.isfinite(blocks).all(axis=1))
             if not known.all():
-                said.append(_left_out(measure.name, levels, known, _done(plan, part).reshape(blocks.shape)))
+                # A sentence on blocks that are not used.
+                done = _done(plan, part).reshape(blocks.shape)
+                open_ = int((~done.all(axis=1)).sum())
+                bad = int((~known).sum()) - open_
+                why = [f"{bad} since a run of it failed or has no value"] if bad else []
+                why += [f"{open_} since not all of it is done"] if open_ else []
+                unknown = int((~known).sum())
+                missing = f"indices without {unknown} of {len(known)} blocks, {', '.join(why)}."
+                said.append(f"{_of(measure.name, levels)}: {missing}")
             if known.sum() >= FEWEST and np.ptp(blocks[known]) > 0.0:
                 rows += _rows(levels, measure.name, columns, blocks[known], plan.study.seed)
             else:
@@ -118,12 +126,3 @@ def _rows(levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarra
 
 def _of(quantity: str, levels: dict[str, Any]) -> str:
     return ", ".join([quantity, *(f"{name} {level}" for name, level in levels.items())])
-
-
-def _left_out(quantity: str, levels: dict[str, Any], known: np.ndarray, done: np.ndarray) -> str:
-    """A sentence on blocks that are not used."""
-    open_ = int((~done.all(axis=1)).sum())
-    bad = int((~known).sum()) - open_
-    why = [f"{bad} since a run of it failed or has no value"] if bad else []
-    why += [f"{open_} since not all of it is done"] if open_ else []
-    return f"{_of(quantity, levels)}: indices without {int((~known).sum())} of {len(known)} blocks, {', '.join(why)}."

@@ -17,8 +17,8 @@ from shipcosim.sweep.levels import Level, Levels
 from shipcosim.sweep.plan import Plan, Swapped
 from shipcosim.sweep.quantities import measures_of
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Study
 from shipcosim.sweep.sampling import samples_of
+from shipcosim.sweep.study_model import Study
 from shipcosim.sweep.tuning import ranges_of
 
 

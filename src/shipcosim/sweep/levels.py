@@ -17,7 +17,7 @@ from shipcosim.scenario.check import event_complaints
 from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Case, Factor, Study
+from shipcosim.sweep.study_model import Case, Factor, Study
 from shipcosim.units import Unit, UnitError, amount, number_in
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from shipcosim.models.control import margins as loops
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Quantity, Study
+from shipcosim.sweep.study_model import Quantity, Study
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System

@@ -24,8 +24,8 @@ from shipcosim.scenario.model import Value
 from shipcosim.ssp import System
 from shipcosim.sweep.levels import Level
 from shipcosim.sweep.quantities import Measure
-from shipcosim.sweep.records import Study
 from shipcosim.sweep.sampling import Samples
+from shipcosim.sweep.study_model import Study
 
 Swapped = tuple[tuple[str, str], ...]
 """Components and the FMUs that they run in place of their own."""

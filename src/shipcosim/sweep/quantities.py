@@ -15,7 +15,7 @@ from shipcosim.scenario.check import expectation_complaints
 from shipcosim.scenario.judge import rows_of, values_of, verdict_on
 from shipcosim.sweep.margin import UNITS, Margin, complaint_of_margin, margin_of
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Quantity, Study
+from shipcosim.sweep.study_model import Quantity, Study
 from shipcosim.units import Unit
 
 if TYPE_CHECKING:

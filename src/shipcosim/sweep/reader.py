@@ -14,7 +14,7 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario.locations import line_of, location_of
 from shipcosim.scenario.reader import complaint_of, read_toml
-from shipcosim.sweep.records import Study
+from shipcosim.sweep.study_model import Study
 
 LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
 """Lists of which a later study replaces what has the same name."""
@@ -119,7 +119,11 @@ def _over(base: Source, own: Source) -> Source:
     """What a study has over the one that it extends; of both where no list says otherwise."""
     files = [*own.files, *base.files]
     shift = len(own.files)
-    content, origins = _merged(_anchored(base), own.content), {}
+    # What the other study says, with the scenario that lies beside it by its path.
+    scenario = base.content.get("scenario")
+    beside = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
+    anchored = base.content | ({"scenario": str(beside)} if beside is not None and beside.is_file() else {})
+    content, origins = _merged(anchored, own.content), {}
     for name in LISTS:
         if not any(_is_list(one.content, name) for one in (base, own)):
             continue
@@ -137,13 +141,6 @@ def _over(base: Source, own: Source) -> Source:
 
 def _items(source: Source, name: str) -> list[tuple[dict[str, Any], tuple[int, int]]]:
     return list(zip(source.content.get(name, []), source.origins.get(name, []), strict=False))
-
-
-def _anchored(base: Source) -> dict[str, Any]:
-    """What the other study says, with the scenario that lies beside it by its path."""
-    scenario = base.content.get("scenario")
-    beside = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
-    return base.content | ({"scenario": str(beside)} if beside is not None and beside.is_file() else {})
 
 
 def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:

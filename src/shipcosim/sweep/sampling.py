@@ -15,7 +15,7 @@ from shipcosim.scenario import units_of
 from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Distribution, Study
+from shipcosim.sweep.study_model import Distribution, Study
 from shipcosim.units import UnitError, number_in
 
 if TYPE_CHECKING:

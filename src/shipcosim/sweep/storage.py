@@ -72,10 +72,15 @@ class Store:
             self.folder.mkdir(parents=True, exist_ok=True)
             about = self._about_there()
             if about is not None and about.get("plan") == self._digest and not force:
-                self._take_up()
+                # Note which runs are done already.
+                table = self._collected()
+                self.done[table["run"].to_numpy()] = True
+                self.failed = sum(bool(error) for error in table["error"].to_pylist())
             else:
                 set_aside(self.folder, [*FILES, *self._pages()], force=force)
-                self._clear()
+                for name in [*FILES, *self._pages()]:
+                    path = self.folder / name
+                    shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
                 self.write_about()
             self._parts.mkdir(exist_ok=True)
 
@@ -167,17 +172,6 @@ class Store:
     def _pages(self) -> list[str]:
         """Folders of runs that were simulated again."""
         return [page.name for page in self.folder.glob("run-*") if page.is_dir()]
-
-    def _clear(self) -> None:
-        for name in [*FILES, *self._pages()]:
-            path = self.folder / name
-            shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
-
-    def _take_up(self) -> None:
-        """Note which runs are done already."""
-        table = self._collected()
-        self.done[table["run"].to_numpy()] = True
-        self.failed = sum(bool(error) for error in table["error"].to_pylist())
 
     def _part(self, rows: list[Row]) -> pyarrow.Table:
         import pyarrow

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.sweep.plan import Plan
-from shipcosim.sweep.records import Summary
+from shipcosim.sweep.study_model import Summary
 
 if TYPE_CHECKING:
     import pandas

@@ -13,8 +13,8 @@ from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.records import Objective, Range, Study
 from shipcosim.sweep.sampling import SampledColumn, Samples
+from shipcosim.sweep.study_model import Objective, Range, Study
 
 if TYPE_CHECKING:
     import pandas
@@ -138,12 +138,10 @@ class Search:
             worse than any other.
         """
         for trial in self._asked:
-            found = _objectives(self._tune.objective, runs[self._samples_of(runs) == trial.number])
+            samples_of = np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
+            found = _objectives(self._tune.objective, runs[samples_of == trial.number])
             worst = [-np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective]
             self._search.tell(trial, worst if found is None else found)
-
-    def _samples_of(self, runs: Any) -> np.ndarray:
-        return np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
 
     def table(self, runs: Any) -> pandas.DataFrame:
         """Trials that are done.

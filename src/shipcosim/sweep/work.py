@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from shipcosim.cosim import Variation
-from shipcosim.cosim.many import OneAfterAnother
+from shipcosim.cosim.variations import OneAfterAnother
 from shipcosim.errors import ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.ssp import System

@@ -7,7 +7,7 @@ from allocation.laws import UNITS
 from allocation.measures import SECTOR
 from shipcosim.models.allocation.power import PowerParameters
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
-from shipcosim.models.allocation.sqp import Unit
+from shipcosim.models.allocation.sqp import AllocatedThruster
 from shipcosim.models.allocation.static_optimum import Optimum, static_optimum
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 
@@ -25,9 +25,9 @@ def best(tau: np.ndarray, without: str | None = None) -> Optimum:
     reversing = dict(least=-most, least_degraded=-most, most=most, first=beam, last=beam)
     reversing |= dict(azimuth_rate=0.0, price=full.tunnel_full_power / most**1.5)
     units = {
-        "port": Unit(x=ship.port_x, y=ship.port_y, thrust_rate=np.inf, **turning),
-        "starboard": Unit(x=ship.starboard_x, y=ship.starboard_y, thrust_rate=np.inf, **turning),
-        "tunnel": Unit(x=ship.tunnel_x, y=0.0, thrust_rate=np.inf, **reversing),
+        "port": AllocatedThruster(x=ship.port_x, y=ship.port_y, thrust_rate=np.inf, **turning),
+        "starboard": AllocatedThruster(x=ship.starboard_x, y=ship.starboard_y, thrust_rate=np.inf, **turning),
+        "tunnel": AllocatedThruster(x=ship.tunnel_x, y=0.0, thrust_rate=np.inf, **reversing),
     }
     left = [units[name] for name in UNITS if name != without]
     return static_optimum(tau, left, [CONES] * len(left), yaw_lever=ship.yaw_lever)

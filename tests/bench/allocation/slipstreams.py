@@ -48,7 +48,7 @@ def quadratic_program(units, first, last, start):
     for k, (x, y, least, most, rate, turn, power) in enumerate(rows):
         interval = (first[k], last[k]) if turn > 0.0 else (units.azimuth[k],) * 2
         degraded = ASTERN if turn > 0.0 else least
-        made.append(sqp.Unit(x, y, least, most, degraded, rate, *interval, turn, power / most**1.5))
+        made.append(sqp.AllocatedThruster(x, y, least, most, degraded, rate, *interval, turn, power / most**1.5))
     design = sqp.designed(tuple(made), 10.0, units.lever, _degraded(units))
     return Law(
         lambda m: sqp.resting((np.zeros(m),) * 3, start),

@@ -16,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-import shipcosim.sweep.running as running
+import shipcosim.sweep.dispatch as running
 from shipcosim.sweep import plan_of, read_study
 from shipcosim.sweep.storage import Store
 from shipcosim.sweep.work import Chunk, Row

@@ -9,7 +9,7 @@ from diagnose import usv
 from scipy.signal import lfilter
 
 from shipcosim.diagnose.ship.form import form_of
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.series import make_table
 
 GRAVITY = 9.81

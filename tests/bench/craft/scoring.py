@@ -4,11 +4,10 @@ from collections import Counter
 
 import numpy as np
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.stages import ReadLog
 
 NEAR = 0.25  # natural logarithm by which a ratio may be off: the bench's own inertia and thrust differ by a tenth
 

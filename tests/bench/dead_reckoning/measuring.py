@@ -95,7 +95,7 @@ def _biased(record, bias):
 def _learned_with(bias, design):
     """Networks that learned from velocities with a bias: standardised these are the same, so only the mean is other."""
     both = (one._replace(velocity_mean=one.velocity_mean + bias) for one in design[:2])
-    return velocity_network.Design(*both, *design[2:])
+    return velocity_network.VelocityNetworks(*both, *design[2:])
 
 
 def _regions(name, record, error):

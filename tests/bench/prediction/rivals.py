@@ -15,7 +15,7 @@ from shipcosim.models.control.observer import DpShip
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.prediction.known import air_velocity
+from shipcosim.models.prediction.predictor_inputs import air_velocity
 from shipcosim.models.prediction.surroundings import SurroundingsParameters
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -7,12 +7,12 @@ import numpy as np
 import torch
 
 from shipcosim.diagnose.inference.linearisation import linearise
+from shipcosim.diagnose.inference.predictions import missing
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.validation.gain import compare, gain
-from shipcosim.diagnose.validation.predictions import missing
 from shipcosim.diagnose.validation.split import in_rows
 from shipcosim.models.core.motion import Motion
 from trial.tools import system, with_drift

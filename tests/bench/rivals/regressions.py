@@ -11,15 +11,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.models.core.motion import Motion
 from trial.tools import system
 
@@ -211,7 +212,7 @@ def _named(problem, findings):
 
 def _finding(hypothesis, values, std):
     estimates = {
-        parameter.name: Estimate(
+        parameter.name: ParameterEstimate(
             values[parameter.paths[0]] * parameter.factor,
             std.get(parameter.paths[0], 0.0) * abs(parameter.factor),
             parameter.unit,

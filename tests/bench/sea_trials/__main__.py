@@ -18,16 +18,15 @@ if __name__ == "__main__":
 from diagnose import ferry, twin
 from diagnose.sea_trials import trials
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
 from shipcosim.diagnose.sea_trials.separation import designed, separations
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import ReadLog
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 
 
 @cache

@@ -5,7 +5,7 @@ from functools import cache
 from pathlib import Path
 
 from shipcosim.diagnose.experiment.manoeuvres import library
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from trial.runs import TOOL, add, answered, drawn, key, pool_of, read_results
 from trial.tools import system
 

@@ -119,9 +119,9 @@ def twin_of(path):
 
 def _compared(path, noise, fit, until):
     """Problem of a log, and predictions on it after some time by the causes of a fit, fitted until then."""
+    from shipcosim.diagnose.checked_log import checked
     from shipcosim.diagnose.inference.fitting import fitted
     from shipcosim.diagnose.inference.problem import identification_problem
-    from shipcosim.diagnose.log.checks.examine import checked
     from shipcosim.diagnose.pipeline import read_measurements
     from shipcosim.diagnose.validation.gain import compare
 

@@ -2,10 +2,10 @@
 
 from craft import draw as draw_craft
 
+from shipcosim.diagnose.checked_log import ReadLog
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.pipeline import problem_of, verdict_on
-from shipcosim.diagnose.stages import ReadLog
 from shipcosim.diagnose.statement import stated
 
 SURE = 0.99

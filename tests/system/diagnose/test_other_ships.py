@@ -8,21 +8,22 @@ from diagnose import ferry, twin, usv
 from scipy.integrate import solve_ivp
 
 import shipcosim as sc
+from shipcosim.diagnose.explanation.null_distribution import healthy_records
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.linearisation import Regressor, advanced, linearise
 from shipcosim.diagnose.inference.noise import first_noise
-from shipcosim.diagnose.inference.null_distribution import healthy_records
 from shipcosim.diagnose.log.checks.examine import examine
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.dynamics import loads, motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, first_motion, record_of
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.motion import Motion
 
-LOSS = Estimate(0.3, 0.02, "1")
+LOSS = ParameterEstimate(0.3, 0.02, "1")
+NORTH_EAST = (("north", -9e3), ("east", 8e3))  # N
 LEFT_TOE = usv.SIDES["left"][1]
 short_ferry = cache(lambda: ferry.log(minutes=5.0))
 short_usv = cache(lambda: usv.log(minutes=3.0))
@@ -133,8 +134,10 @@ def test_the_wind_that_a_fast_craft_meets_is_no_fault_of_its_labels():
 @pytest.mark.parametrize(
     "finding",
     [
-        Finding("tow", parameters={n: Estimate(v, 200.0, "N") for n, v in (("north", -12e3), ("east", 8e3))}),
-        Finding("wave_drift", parameters={n: Estimate(v, 200.0, "N") for n, v in (("north", -9e3), ("east", 8e3))}),
+        Finding("tow", parameters={n: ParameterEstimate(v, 200.0, "N") for n, v in (("north", -12e3), ("east", 8e3))}),
+        Finding(
+            "wave_drift", parameters={n: ParameterEstimate(v, 200.0, "N") for n, v in (("north", -9e3), ("east", 8e3))}
+        ),
         Finding("thruster_interaction", parameters={"loss": LOSS}),
         Finding("thrust_loss", "aft_port", parameters={"loss": LOSS}),
     ],

@@ -6,9 +6,9 @@ from diagnose import twin
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.runs import run_as_log
 from shipcosim.diagnose.replays import replay_log
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table, write_table
@@ -75,7 +75,7 @@ def test_instruments_of_an_extended_system_are_taken_off_its_start_and_put_on_wh
     )
     for name in ("north", "east", "sway"):
         moved[name].attrs = dict(log[name].attrs)
-    arm = {"x": Estimate(3.0, 0.1, "m"), "y": Estimate(0.0, 0.1, "m")}
+    arm = {"x": ParameterEstimate(3.0, 0.1, "m"), "y": ParameterEstimate(0.0, 0.1, "m")}
     extended = extend(ROOT / "ssp" / "kvlcc2_open", [Finding("lever_arm", parameters=arm)], tmp_path)
     after = read_system(str(extended.ssp))
     found = errors_of(replay_log(moved, {"before": tanker, "after": after}, horizon=30.0).tracks)["position"]

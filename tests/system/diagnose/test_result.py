@@ -2,7 +2,9 @@
 
 import json
 
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
+from shipcosim.diagnose.result import Diagnosis
 
 ENTRIES = {
     *("schema", "verdict", "findings", "candidates", "indistinguishable"),
@@ -11,7 +13,7 @@ ENTRIES = {
 CURRENT = Finding(
     "current",
     probability=0.97,
-    parameters={"north": Estimate(0.21, 0.02, "m/s"), "east": Estimate(-0.10, 0.02, "m/s")},
+    parameters={"north": ParameterEstimate(0.21, 0.02, "m/s"), "east": ParameterEstimate(-0.10, 0.02, "m/s")},
 )
 
 

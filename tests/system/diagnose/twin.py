@@ -12,16 +12,16 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from threadpoolctl import threadpool_limits
 
+from shipcosim.diagnose.explanation.search import explain
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.innovations import _process, _steady, _uncertain
 from shipcosim.diagnose.inference.linearisation import STATES
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
-from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind

@@ -13,8 +13,8 @@ from fuzz.seeds import seeds, zipped
 from fuzz.typed import running
 
 from shipcosim.checks import check_any
-from shipcosim.cosim.master.snapshot import read_snapshot
 from shipcosim.errors import MOST_SHOWN, Problem, ShipcosimError
+from shipcosim.snapshot import read_snapshot
 
 
 def checked(folder, files):

@@ -7,7 +7,7 @@ import pytest
 from measured.logs import CHANNELS, FOLDERS, as_table, files
 
 from shipcosim.diagnose.log.channels import ChannelFile
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.names.proposal import propose
 from shipcosim.diagnose.log.reader import columns_of, read_log
 
@@ -28,7 +28,7 @@ def test_the_proposed_channel_file_reads_what_the_one_by_hand_does(craft, tmp_pa
     for path in files(SHARED, craft)[-2:]:
         assert FOLDERS[craft] in str(path)
         by_hand = read_log(as_table(path, tmp_path), CHANNELS / f"{craft}.toml")
-        form = Form(names=NAMES.get(craft))
+        form = FileLayout(names=NAMES.get(craft))
         proposal = propose(columns_of(path, form), THRUSTERS[craft], form)
         log = read_log(path, ChannelFile(proposal.channels(guessed=True), form), THRUSTERS[craft])
         begun = [table["time"].values - table["time"].values[0] for table in (log, by_hand)]

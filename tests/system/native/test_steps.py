@@ -12,9 +12,9 @@ from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter
 from shipcosim.models.core import maths
 from shipcosim.models.core.interpolation import even_table, interp, interp_columns, interp_even
-from shipcosim.models.core.kept import kept
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.sampling import normals, samples_due, tidy_time
-from shipcosim.native import CompiledStep, Untraceable, compiled_steps, kept_records
+from shipcosim.native import CompiledStep, Untraceable, compiled_steps, record_cache
 from shipcosim.native.source import DONE, GIVEN_UP
 
 XS, YS, ZS = (0.0, 1.0, 3.0), (2.0, -1.0, 0.5), (0.0, 0.3, 0.9)
@@ -253,16 +253,16 @@ def test_an_error_of_the_model_leaves_the_memory_and_the_step_to_python():
 
 def test_a_cache_that_is_spoilt_is_made_again(tmp_path, monkeypatch):
     monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path))
-    kept_records._READ.clear()
+    record_cache._READ.clear()
     compiled(Arithmetic)
     records = list((tmp_path / "native").glob("*.record"))
     assert records
     for path in records:
         path.write_bytes(b"nothing")
-    kept_records._READ.clear()
+    record_cache._READ.clear()
     _, step = compiled(Arithmetic)
     assert isinstance(step, CompiledStep)
 
 
 def test_records_follow_the_code_that_writes_them():
-    assert kept_records._OWN_CODE == kept_records._own_code()
+    assert record_cache._OWN_CODE == record_cache._own_code()

@@ -7,11 +7,12 @@ import pytest
 
 import shipcosim as sc
 import shipcosim.diagnose.pipeline  # a module of the room, imported before the room is called
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, Finding
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.results.diagnosis import DiagnosisOfLog
 from shipcosim.results.shown import parts_of
 
-LOST = Finding("thrust_loss", "port", probability=0.97, parameters={"loss": Estimate(0.31, 0.02, "1")})
+LOST = Finding("thrust_loss", "port", probability=0.97, parameters={"loss": ParameterEstimate(0.31, 0.02, "1")})
 
 
 @pytest.fixture

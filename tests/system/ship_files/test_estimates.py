@@ -14,9 +14,9 @@ from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.core.tables import parse
 from shipcosim.models.propulsion.propeller import PropellerParameters, propeller_loads
 from shipcosim.ships.estimates import control, propulsion, resistance, weather
-from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.hull import HullDimensions
 
-HOLTROP = Form(
+HOLTROP = HullDimensions(
     length=205.0, breadth=32.0, draught=10.0, block=37500 / 205 / 320, hulls=1, density=1025.0, speed=25 * 0.5144
 )
 """Example ship of the paper of 1982."""
@@ -83,7 +83,7 @@ def test_the_dp_of_a_ship_of_any_size_is_stable_with_margins(length, thrust):
     mass = 0.012 * 1025.0 * length**3
     matrix = np.diag([1.1 * mass, 1.8 * mass, 0.12 * mass * length**2])
     force = thrust * 9.81 * mass
-    loop = control.Loop(length=length, mass=matrix, reach=(force, force, 0.3 * force * length))
+    loop = control.ControlledShip(length=length, mass=matrix, reach=(force, force, 0.3 * force * length))
     values = {name: estimate.value for name, estimate in control.controller(loop).items()}
     parts = [
         kind(**{name: values[name] for name in kind.__dataclass_fields__})

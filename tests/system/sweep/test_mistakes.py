@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Event, Expectation
 from shipcosim.sweep import plan_of, read_study
-from shipcosim.sweep.records import Study
+from shipcosim.sweep.study_model import Study
 
 WHOLE = """
 description     = "a study with every key"

@@ -42,7 +42,7 @@ from shipcosim.models.control import (
     wave_filter,
 )
 from shipcosim.models.control import pid as control
-from shipcosim.models.core import integrate, interpolation, kept, kinematics, maths
+from shipcosim.models.core import integrate, interpolation, kinematics, maths, memoize
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment import current, gusts, harbour, sinusoids, wave_loads, wave_motion, waves
 from shipcosim.models.environment import earth_fixed_loads as earth
@@ -50,11 +50,11 @@ from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import (
     controlled,
     dead_reckoning,
-    known,
     motion_filter,
     outage,
     own_model,
     own_record,
+    predictor_inputs,
     regions,
     surroundings,
 )
@@ -71,7 +71,7 @@ from shipcosim.models.propulsion import (
 )
 from shipcosim.models.propulsion.failures import Failures
 from shipcosim.models.ship import hull, instruments, mast, rough_form, vessel
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
@@ -163,7 +163,7 @@ LAYER = extreme_learning.Network(
     most=(50.0,) * 6,
 )
 PLAIN = parameters(filtered_pid.FilteredPidParameters, "osv")
-AHEAD_LOOP = controlled.Loop(
+AHEAD_LOOP = controlled.ControlLoop(
     parameters(reference.ReferenceParameters),
     DP_SHIP,
     parameters(control.ControlParameters),
@@ -172,7 +172,7 @@ AHEAD_LOOP = controlled.Loop(
     parameters(controlled.ObserverAhead),
 )
 ASSUMED = parameters(surroundings.SurroundingsParameters)
-RECKONING = motion_filter.Design(
+RECKONING = motion_filter.FilterNumbers(
     **dict(bow=2e-7, stern=1e-7, ahead=4e-5, astern=5e-5, surge_time=40.0, sway_time=30.0, wind_surge_1=-1e-5),
     **dict(wind_surge_3=1e-6, wind_sway_1=-4e-5, wind_sway_3=-2e-6, position_by_position=0.1, position_by_velocity=0.2),
     **dict(velocity_by_position=0.01, velocity_by_velocity=0.05, load_by_position=1e-4, load_by_velocity=5e-4),
@@ -204,11 +204,11 @@ def of_reference(*row):
 
 
 def of_observer(*row):
-    return observer.Estimate(*row, 0.8, 30.0, 0.7), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
+    return observer.StateEstimate(*row, 0.8, 30.0, 0.7), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
 
 
 def of_control(*row):
-    return control.ControlState(*row[:6]), observer.Estimate(*row), control.Desired(*row[6:]), row[3:6]
+    return control.ControlState(*row[:6]), observer.StateEstimate(*row), control.Desired(*row[6:]), row[3:6]
 
 
 def of_filtered_pid(*row):
@@ -263,7 +263,7 @@ def of_monitor(*row):
 
 def of_known(*row):
     ship = Motion(*row)
-    return known.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7)
+    return predictor_inputs.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7)
 
 
 def of_surroundings(*row):
@@ -325,7 +325,7 @@ def of_voting(*row):
 def of_votes(*row):
     """Voting that has gone on for 2 s, and the estimate."""
     state = voting.start(0.0, of_voting(*row), **AIR)
-    estimate = observer.Estimate(*row[6:], *(0.0 * row[0],) * 11)
+    estimate = observer.StateEstimate(*row[6:], *(0.0 * row[0],) * 11)
     later = of_voting(*(1.01 * value for value in row))._replace(position_time=2.0, heading_time=2.0, wind_time=2.0)
     return voting.step(2.4, state, later, estimate, parameters=voting.VotingParameters(), **AIR)
 
@@ -606,7 +606,7 @@ CASES = [
         lambda *row: (monitor.MonitorState(*row),),
         dict(parameters=WATCH),
     ),
-    Case(known.air_velocity, SHIP, lambda *row: (of_known(*row),)),
+    Case(predictor_inputs.air_velocity, SHIP, lambda *row: (of_known(*row),)),
     Case(
         regions.own_errors,
         SHIP,
@@ -704,7 +704,7 @@ def test_gradients_are_finite_even_at_rest(case):
 
 def test_every_function_that_promises_tensors_is_among_the_cases():
     covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
-    covered |= {maths.is_single, maths.repeat, maths.times, kept.kept}  # know no arithmetic
+    covered |= {maths.is_single, maths.repeat, maths.times, memoize.kept}  # know no arithmetic
     covered |= {maths.library_of}  # tells the arithmetics apart
     covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
     covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them

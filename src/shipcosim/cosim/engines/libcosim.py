@@ -193,7 +193,10 @@ class LibcosimSession:
             return []
         self._execution = self._flags = None  # what the observer has written is complete once both are gone
         for name, flags in self._flag_names().items():
-            table = np.loadtxt(_flag_file(self._folder, name), delimiter=",", skiprows=1, ndmin=2)
+            flag_file = next(
+                f for f in self._folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name)
+            )
+            table = np.loadtxt(flag_file, delimiter=",", skiprows=1, ndmin=2)
             for i, flag in enumerate(flags):
                 columns[name, flag] = held(table[:n_rows, 2 + i], table[:n_rows, 1], n_rows)
         return [columns[end] for end in ends]
@@ -237,10 +240,6 @@ class FlagObserver:
 
     def __del__(self):
         _function("cosim_observer_destroy", c_int, [_observer_pointer()])(self._pointer)
-
-
-def _flag_file(folder, name):
-    return next(f for f in folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name))
 
 
 def _function(name, result, arguments):

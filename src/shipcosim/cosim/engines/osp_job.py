@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 
 from shipcosim.cosim.engines.adapter import Job, is_linear, sums, unsupported
-from shipcosim.cosim.master.events import Change
+from shipcosim.cosim.master.events import SignalChange
 from shipcosim.errors import Problem
 from shipcosim.ssp import Connection, Simulator, seconds_text, structure_text
 
@@ -41,7 +41,7 @@ def structure_of(
     return structure_text(simulators, job.connections, step, end_time)
 
 
-def event_of(job: Job, change: Change) -> dict[str, object]:
+def event_of(job: Job, change: SignalChange) -> dict[str, object]:
     """Event of OSP that makes a change of a job."""
     component, variable = change.end
     time = float(seconds_text(job.scenario.step_size * change.step))

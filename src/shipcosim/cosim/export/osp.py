@@ -8,7 +8,7 @@ import numpy as np
 
 from shipcosim.cosim.engines.adapter import Job
 from shipcosim.cosim.engines.osp_job import event_of, structure_of, unsupported_by_libcosim
-from shipcosim.cosim.master.events import Change
+from shipcosim.cosim.master.events import SignalChange
 from shipcosim.cosim.master.plan import KINDS
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
@@ -77,7 +77,7 @@ def osp_events(job: Job) -> list[dict[str, object]]:
     for end, external in job.external.items():
         before = np.concatenate([[external.start], external.values[:-2]])
         for step in np.flatnonzero(external.values[:-1] != before).tolist():
-            events.append(Change(step, "override", end, external.values[step].item()))
+            events.append(SignalChange(step, "override", end, external.values[step].item()))
     return [event_of(job, change) for change in sorted(events, key=lambda change: change.step)]
 
 

@@ -82,7 +82,7 @@ class CompiledMaster(Master):
     """
 
     reasons: Mapping[str, str] = MappingProxyType({})
-    _loop: _Loop | None = None
+    _loop: _CompiledLoop | None = None
 
     def give_back(self) -> None:
         """See `Master.give_back`."""
@@ -103,7 +103,7 @@ class CompiledMaster(Master):
             super().run(grid, actions, external, recorders, progress)
             return
         if (loop := self._loop) is None or not loop.take_anew(external):
-            loop = _Loop(self, grid, external, recorders)
+            loop = _CompiledLoop(self, grid, external, recorders)
         k, first, last, steps, report_at = grid.first, grid.first, grid.last, 16, perf_counter()
         due = sorted(step for step in actions if step > first)
         try:
@@ -143,7 +143,7 @@ class CompiledMaster(Master):
         return "whole numbers of 64 bits are exchanged" if "Long" in self._exchanges else ""
 
 
-class _Loop:
+class _CompiledLoop:
     """The arrays of a run as the compiled loop sees them."""
 
     def __init__(self, master: CompiledMaster, grid: TimeGrid, external, recorders: Recorders):

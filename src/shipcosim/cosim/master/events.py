@@ -18,7 +18,7 @@ from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.scenario import Scenario, whole_steps
 
 
-class Change(NamedTuple):
+class SignalChange(NamedTuple):
     """What an event does to one variable.
 
     Parameters
@@ -39,7 +39,7 @@ class Change(NamedTuple):
     value: Any
 
 
-def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[Change]:
+def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[SignalChange]:
     """Changes in the order in which they act, none from before the time grid's first step."""
     for event in sorted(scenario.events, key=lambda event: event.time):
         step = whole_steps(event.time - grid.start_time, scenario.step_size)
@@ -47,7 +47,7 @@ def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[Change]:
         for action, name, value in event.changes if step >= grid.first else ():
             end = plan.system.split(name)
             items = plan.system.inputs[name].items if end[0] is None else plan.variable(end).items
-            yield Change(step, action, end, items.get(value, value) if isinstance(value, str) else value)
+            yield SignalChange(step, action, end, items.get(value, value) if isinstance(value, str) else value)
 
 
 def event_actions(
@@ -133,7 +133,7 @@ def modifiers_after(
     return after
 
 
-def modify(values: np.ndarray, active: Modifier | None, changes: Sequence[Change]) -> None:
+def modify(values: np.ndarray, active: Modifier | None, changes: Sequence[SignalChange]) -> None:
     """Lay overrides and biases over the values that a signal would have.
 
     Parameters
@@ -142,7 +142,7 @@ def modify(values: np.ndarray, active: Modifier | None, changes: Sequence[Change
         At each step; changed in place.
     active : (scale, shift) or None
         Override or bias that acts from the first step on.
-    changes : sequence of Change
+    changes : sequence of SignalChange
         Their steps count from the first value.
     """
     unmodified = values.copy()

@@ -139,7 +139,8 @@ def couple(
             for c in connections
             if c.source[0] in group
         ]
-        coupled = members[names[-1]].group = CoupledModels(members, wires)
+        coupled = CoupledModels(members, wires)
+        members[names[-1]].close_group = coupled.close
         for name in names:
             instances[name].steps_by(coupled.stepper() if name == names[-1] else _nothing)
 

@@ -84,18 +84,14 @@ def make_components(
             set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
-        instances[name] = ComponentInstance(
-            name, slave, multiple, _fixed_step(component, base_step * multiple), name in feeding
-        )
+        # The step, for an FMU that can take no other one.
+        step = base_step * multiple
+        is_free = component.fmu.capability("canHandleVariableCommunicationStepSize")
+        fixed_step = None if is_free or interface_type_of(component) == "ModelExchange" else step
+        instances[name] = ComponentInstance(name, slave, multiple, fixed_step, name in feeding)
         for kind, exchange in exchanges.items():
             instances[name].prepare(kind, exchange, *plan.rows(kind, name))
     return instances
-
-
-def _fixed_step(component, step):
-    """The step, for an FMU that can take no other one."""
-    is_free = component.fmu.capability("canHandleVariableCommunicationStepSize")
-    return None if is_free or interface_type_of(component) == "ModelExchange" else step
 
 
 def make_string_connections(plan: Plan, components: Components) -> list[StringConnection]:

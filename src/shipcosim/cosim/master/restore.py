@@ -9,12 +9,12 @@ from shipcosim.cosim.master.events import modifiers_after, modifiers_of
 from shipcosim.cosim.master.plan import Plan, label
 from shipcosim.cosim.master.result import hashes, start_values
 from shipcosim.cosim.master.signals import Exchange, Modifier
-from shipcosim.cosim.master.snapshot import Snapshot
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
+from shipcosim.snapshot import Snapshot
 from shipcosim.ssp import System
 
 ABILITIES = ("canGetAndSetFMUstate", "canSerializeFMUstate"), ("canGetAndSetFMUState", "canSerializeFMUState")

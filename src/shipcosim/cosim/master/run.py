@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.master.again import can_rewind, changed_values, with_numbers
 from shipcosim.cosim.master.algorithm import Failure, Master
 from shipcosim.cosim.master.compiled import CompiledMaster
 from shipcosim.cosim.master.events import event_actions, external_values
@@ -26,9 +25,9 @@ from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
 from shipcosim.cosim.master.recorder import Recorder, Recorders
+from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
 from shipcosim.cosim.master.restore import check_fit, check_storable, restore_snapshot, take_snapshot
 from shipcosim.cosim.master.result import Column, attributes_of, columns_of, recorded_rows
-from shipcosim.cosim.master.snapshot import Snapshot, opened, writer
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.instances import Instances
@@ -37,6 +36,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
+from shipcosim.snapshot import Snapshot, opened, writer
 from shipcosim.ssp import System
 
 if TYPE_CHECKING:

@@ -6,12 +6,12 @@ that it ends where the next step begins. libcosim, which counts nanoseconds, get
 """
 
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.scenario.check import step_times
 
 
 @dataclass(frozen=True)
@@ -49,37 +49,6 @@ class TimeGrid:
         """Times of the rows of the table. [s]"""
         first_row = -(-self.first // self.steps_per_row) * self.steps_per_row
         return self.times[first_row : self.last + 1 : self.steps_per_row]
-
-
-def step_times(step_size: float, first: int, last: int, start_time: float = 0.0) -> np.ndarray:
-    """Times of the steps from one number to another, both included.
-
-    Parameters
-    ----------
-    step_size, start_time : float
-        Length of a step, and time of step 0. [s, s]
-    first, last : int
-        Numbers of the steps.
-
-    Returns
-    -------
-    (last - first + 1,) array
-        Times. [s]
-
-    Examples
-    --------
-    >>> step_times(0.05, 0, 3).tolist()
-    [0.0, 0.05, 0.1, 0.15]
-
-    A run that starts on a step of another one has the same times:
-
-    >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
-    True
-    """
-    step, before = Fraction(step_size).limit_denominator(10**12), whole_steps(start_time, step_size)
-    if before is None:
-        return start_time + step_times(step_size, first, last)
-    return np.arange(before + first, before + last + 1) * float(step.numerator) / float(step.denominator)
 
 
 def time_grid_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: float | None = None) -> TimeGrid:

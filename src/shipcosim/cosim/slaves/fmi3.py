@@ -52,7 +52,8 @@ class Slave3(LibrarySlave):
                     return status
                 self._load_arrays(group)
                 group.values[group.positions] = values
-                self._keep_arrays(group)
+                for variable, first in group.arrays:
+                    self._array_values[variable.value_reference] = group.values[first : first + _size(variable)].copy()
                 if (status := group.call()) >= FAILED:
                     return status
             return OK
@@ -150,10 +151,6 @@ class Slave3(LibrarySlave):
             kept = self._array_values.get(variable.value_reference)
             values = _start_values(variable, 0) if kept is None else kept
             group.values[first : first + len(values)] = values
-
-    def _keep_arrays(self, group):
-        for variable, first in group.arrays:
-            self._array_values[variable.value_reference] = group.values[first : first + _size(variable)].copy()
 
     @staticmethod
     def _load(**arguments) -> Any:

@@ -98,15 +98,12 @@ class DirectCalls:
             except BaseException as error:
                 return self._failed(target.failure(error))
             if target.messages:
-                self._pass_on_messages()
+                for message in self.target.messages:
+                    self._log(message.status, message.msg.replace("%%", "%"))
+                self.target.messages.clear()
             return OK
 
         return step
-
-    def _pass_on_messages(self):
-        for message in self.target.messages:
-            self._log(message.status, message.msg.replace("%%", "%"))
-        self.target.messages.clear()
 
     def _failed(self, error):
         self._log(FATAL, str(error))

@@ -25,7 +25,6 @@ from shipcosim.ssp import FmuDescription, Variable
 from shipcosim.ssp.xml.document import is_true
 
 if TYPE_CHECKING:
-    from shipcosim.cosim.slaves.coupled import CoupledModels
     from shipcosim.cosim.slaves.cvode import Cvode
 
 TOLERANCE = 1e-8
@@ -74,8 +73,8 @@ class ModelExchange(LibrarySlave):
     ----------
     followed : frozenset of (kind, name)
         Inputs that follow other components within a step, as `shipcosim.cosim.slaves.coupled` carries them over.
-    group : CoupledModels or None
-        The group that this one makes the steps of; its solver is freed with this one's.
+    close_group : callable or None
+        Frees the solver of the group that this one makes the steps of; called when this one is freed.
     """
 
     DERIVATIVES, NOMINALS = "GetDerivatives", "GetNominalsOfContinuousStates"
@@ -87,7 +86,7 @@ class ModelExchange(LibrarySlave):
         self._solver: Cvode | None = None
         self._next_event, self._is_event_done = inf, False
         self.followed: frozenset[tuple[str, str]] = frozenset()
-        self.group: CoupledModels | None = None
+        self.close_group: Callable[[], None] | None = None
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
 
     def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
@@ -215,9 +214,9 @@ class ModelExchange(LibrarySlave):
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
 
     def _close_solver(self):
-        if self.group is not None:
-            self.group.close()
-            self.group = None
+        if self.close_group is not None:
+            self.close_group()
+            self.close_group = None
         if self._solver is not None:
             self._solver.close()
             self._solver = None
@@ -232,7 +231,14 @@ class ModelExchange(LibrarySlave):
             if self._next_event > self._time + near:
                 if self._time >= end - near:
                     return
-                if not self._solver_step(min(end, self._next_event), near):
+                # Make one step of the solver; whether there is a state or step event where it ends.
+                stop = min(end, self._next_event)
+                assert self._solver is not None
+                reached, has_root = self._solver.step(stop)
+                self._time = stop if abs(reached - stop) <= near else reached
+                self._set_time_and_states(self._time, self._states)
+                solver_step = self._completed_step() or has_root
+                if not solver_step:
                     continue
             self._enter_event_mode()
             self._iterate_event()
@@ -240,14 +246,6 @@ class ModelExchange(LibrarySlave):
             n_events += 1
             if n_events > MOST_EVENTS:
                 raise SlaveError(f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s.")
-
-    def _solver_step(self, stop, near):
-        """Make one step of the solver; whether there is a state or step event where it ends."""
-        assert self._solver is not None  # since the initialisation
-        reached, has_root = self._solver.step(stop)
-        self._time = stop if abs(reached - stop) <= near else reached
-        self._set_time_and_states(self._time, self._states)
-        return self._completed_step() or has_root
 
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""

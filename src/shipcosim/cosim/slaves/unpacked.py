@@ -44,20 +44,18 @@ class UnpackedFmus:
         if fmu not in self._folders:
             self._folders[fmu] = _in_cache(fmu) or self._unpacked(fmu)
         if self._root in self._folders[fmu].parents:
-            self._forget_namesakes(self._folders[fmu])
+            # Forget modules of other FMUs that are named like one in this FMU; who has imported them keeps them.
+            folder = self._folders[fmu]
+            own = {path.stem for path in (folder / "resources").glob("*")}
+            for name in self._imported(self._root) - self._imported(folder):
+                if name.partition(".")[0] in own:
+                    del sys.modules[name]
         return self._folders[fmu]
 
     def _unpacked(self, fmu):
         folder = self._root / str(len(self._folders))
         unpack(fmu, folder)
         return folder
-
-    def _forget_namesakes(self, folder):
-        """Forget modules of other FMUs that are named like one in this FMU; who has imported them keeps them."""
-        own = {path.stem for path in (folder / "resources").glob("*")}
-        for name in self._imported(self._root) - self._imported(folder):
-            if name.partition(".")[0] in own:
-                del sys.modules[name]
 
     @staticmethod
     def _imported(folder):
@@ -72,7 +70,18 @@ def _in_cache(fmu: Path) -> Path | None:
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()[:32]
         folder = (cache() / "unpacked" / digest).resolve()
         if not folder.is_dir():
-            if not _has_a_name_of_its_own(entries(fmu)):
+            # True if all code of an FMU goes by a name that follows from its content; see `fmi.export.bundle`.
+            names = entries(fmu)
+            resources = {
+                name.split("/")[1] for name in names if name.startswith("resources/") and not name.endswith("/")
+            }
+            found = [name.removesuffix(".py") for name in resources if re.fullmatch(r"\w+_[0-9a-f]{16}\.py", name)]
+            has_a_name_of_its_own = len(found) == 1 and resources == {
+                f"{found[0]}.py",
+                f"{found[0]}_code",
+                "slavemodule.txt",
+            }
+            if not has_a_name_of_its_own:
                 return None
             _unpack_into_cache(fmu, folder)
         os.utime(folder)
@@ -97,10 +106,3 @@ def _unpack_into_cache(fmu: Path, folder: Path) -> None:
             raise
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
-
-
-def _has_a_name_of_its_own(names: list[str]) -> bool:
-    """Whether all code of an FMU goes by a name that follows from its content; see `fmi.export.bundle`."""
-    resources = {name.split("/")[1] for name in names if name.startswith("resources/") and not name.endswith("/")}
-    found = [name.removesuffix(".py") for name in resources if re.fullmatch(r"\w+_[0-9a-f]{16}\.py", name)]
-    return len(found) == 1 and resources == {f"{found[0]}.py", f"{found[0]}_code", "slavemodule.txt"}

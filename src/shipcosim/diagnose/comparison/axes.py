@@ -27,7 +27,7 @@ from shipcosim.diagnose.comparison.thresholds import (
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.comparison.regression import Regression
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion

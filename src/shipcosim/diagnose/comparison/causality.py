@@ -17,7 +17,7 @@ from shipcosim.diagnose.numerics import least_squares
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
 
 __all__ = ["blocks", "causal_support"]
 

@@ -11,7 +11,7 @@ from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.models.ship.hull import hull_loads
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Load, Motion

@@ -7,37 +7,37 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.checked_log import CheckedLog
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.crude import CrudeModel, CrudeNumber, crude_numbers, spoken_for
 from shipcosim.diagnose.comparison.crude_fit import crude_model
+from shipcosim.diagnose.comparison.crude_model import CrudeModel, CrudeNumber, crude_numbers, spoken_for
 from shipcosim.diagnose.comparison.discrepancies import discrepancies_of, is_of_damping
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
-from shipcosim.diagnose.comparison.felt import felt_by
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
 from shipcosim.diagnose.comparison.labels import read_labels
-from shipcosim.diagnose.comparison.missing import missing_loads
+from shipcosim.diagnose.comparison.measured_force import felt_by
+from shipcosim.diagnose.comparison.missing_loads import missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
+from shipcosim.diagnose.finding import Discrepancy, Finding
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.result import Discrepancy, Finding
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
-from shipcosim.diagnose.ship.surrogate import with_surrogates
-from shipcosim.diagnose.stages import CheckedLog, ComparedLog, JudgedLog
+from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
 if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import Change, Labels
-    from shipcosim.diagnose.comparison.missing import MissingLoad
+    from shipcosim.diagnose.comparison.labels import LabelError, Labels
+    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LogComparison", "compared", "ratio_finding", "with_crude_model"]
+__all__ = ["ComparedLog", "LogComparison", "compared", "ratio_finding", "with_crude"]
 
 
 @dataclass(frozen=True)
@@ -115,6 +115,18 @@ class LogComparison:
         return spoken_for(cause, said, causes)
 
 
+@dataclass(frozen=True)
+class ComparedLog(CheckedLog):
+    """A checked log held against the simulation; what is grossly wrong is put right, in the log and in the ship.
+
+    Attributes
+    ----------
+    comparison : LogComparison
+    """
+
+    comparison: LogComparison
+
+
 def compared(log: CheckedLog) -> ComparedLog:
     """A checked log held against the simulation: what is grossly wrong is put right before anything else.
 
@@ -152,29 +164,16 @@ def compared(log: CheckedLog) -> ComparedLog:
 
 def _started_with_crude_model(log: ComparedLog) -> ComparedLog:
     """The ship with what is grossly wrong of her: thrust and damping together, or thrust alone."""
-    known = _with_crude(log, log.repaired, log.ship, log.causes)
+    known = with_crude(log.comparison, log.repaired, log.ship, log.causes)
     if known.crude is None:
         return replace(log, comparison=known)
     return replace(log, comparison=replace(known, is_started_with=True), ship=known.crude.on(log.ship))
 
 
-def with_crude_model(log: JudgedLog) -> JudgedLog:
-    """A judged log, where no cause explains it, with what the comparison tells of thrust and damping nevertheless."""
-    found = log.explained.identification
-    comparison = found.comparison
-    unclear = any(fault.alternatives for fault in found.faults)
-    if comparison is None or comparison.obstacles or comparison.findings or unclear:
-        return log
-    if log.judgement.verdict != "unknown" or comparison.ratio is None:
-        return log
-    known = _with_crude(found, found.repaired, found.ship, found.causes)
-    identification = replace(found, comparison=known)
-    return replace(log, explained=replace(log.explained, identification=identification))
-
-
-def _with_crude(log, repaired, ship, causes) -> LogComparison:
+def with_crude(
+    comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel, causes: dict[str, Cause]
+) -> LogComparison:
     """The comparison with the crude model where it predicts better; else with the ratio alone, where that is plain."""
-    comparison = log.comparison
     length = ship.parts["hull"].length
     logged = as_logged(ship, repaired)
     record = record_of(repaired, logged)
@@ -238,7 +237,7 @@ def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
     return replace(log, faults=faults, repaired=right)
 
 
-def _label(change: Change, log: xarray.Dataset):
+def _label(change: LabelError, log: xarray.Dataset):
     """What is wrong with the channels of a change."""
     if len(change.thrusters) == 1:
         return negative(_drives(change.thrusters[0], log)[0])

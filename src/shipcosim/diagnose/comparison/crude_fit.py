@@ -10,10 +10,10 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.crude import CrudeModel, CrudeNumber, HeldOutErrors, crude_numbers
+from shipcosim.diagnose.comparison.crude_model import CrudeModel, CrudeNumber, HeldOutErrors, crude_numbers
 from shipcosim.diagnose.comparison.errors import starts_of
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
-from shipcosim.diagnose.comparison.readings import ahead_of
+from shipcosim.diagnose.comparison.label_hypotheses import ahead_of
 from shipcosim.diagnose.comparison.thresholds import (
     COMMON_SPREAD,
     CRUDE_BLOCK,
@@ -30,14 +30,14 @@ from shipcosim.diagnose.comparison.thresholds import (
     ROUND_MODEL,
     TYPICAL_CURRENT,
 )
-from shipcosim.diagnose.ship.instruments import readings, true_motion
-from shipcosim.diagnose.validation.predictions import predicted, replayable
-from shipcosim.diagnose.validation.thresholds import DRAWS
+from shipcosim.diagnose.inference.predictions import predicted, replayable
+from shipcosim.diagnose.inference.thresholds import DRAWS
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.felt import Felt
     from shipcosim.diagnose.comparison.gains import CommonRatio
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel

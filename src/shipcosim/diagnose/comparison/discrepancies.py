@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.missing import FORCES
+from shipcosim.diagnose.comparison.missing_loads import FORCES
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
     LEAST_DAMPING,
@@ -17,12 +17,12 @@ from shipcosim.diagnose.comparison.thresholds import (
     SURE_OF_GAIN,
     TOLD,
 )
-from shipcosim.diagnose.result import Discrepancy
+from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import Change, Labels
-    from shipcosim.diagnose.comparison.missing import MissingLoad
+    from shipcosim.diagnose.comparison.labels import LabelError, Labels
+    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
 
 __all__ = ["discrepancies_of", "is_of_damping"]
 
@@ -99,7 +99,7 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         yield Discrepancy(f"thrust does not go with its command, but with {why}", None, None, -1.0, 0.0, "1", gained)
 
 
-def in_words(change: Change) -> str:
+def in_words(change: LabelError) -> str:
     """A change of labels: ``left and right exchanged``, ``left running the other way``."""
     if len(change.thrusters) == 2:
         return " and ".join(change.thrusters) + " exchanged"

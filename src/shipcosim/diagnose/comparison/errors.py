@@ -14,14 +14,14 @@ from shipcosim.diagnose.comparison.thresholds import (
     MOST_STARTS,
     SHORTEST_ANSWER,
 )
-from shipcosim.diagnose.ship.instruments import readings, true_motion
+from shipcosim.diagnose.inference.predictions import missing, predicted, replayable
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.time_scales import response_times
-from shipcosim.diagnose.validation.predictions import missing, predicted, replayable
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 

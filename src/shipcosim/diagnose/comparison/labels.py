@@ -16,8 +16,8 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.causality import causal_support
 from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError, LabelHypothesis, changes_of, driven, reading
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
-from shipcosim.diagnose.comparison.readings import Change, Reading, changes_of, driven, reading
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
     ALIKE,
@@ -41,12 +41,12 @@ from shipcosim.diagnose.ship.smoothing import froude_time
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
     from shipcosim.diagnose.comparison.likelihood import Blocks
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Change", "Labels", "Reading", "read_labels"]
+__all__ = ["LabelError", "LabelHypothesis", "Labels", "read_labels"]
 
 
 @dataclass(frozen=True)
@@ -55,11 +55,11 @@ class Labels:
 
     Attributes
     ----------
-    logged : Reading
+    logged : LabelHypothesis
         As logged.
-    best : Reading
+    best : LabelHypothesis
         That explains most; where the labels are wrong the one that is believed.
-    rivals : tuple of Reading
+    rivals : tuple of LabelHypothesis
         Other readings that cannot be told from the best.
     is_wrong : bool
         Whether the labels are wrong beyond doubt, in one way or another.
@@ -69,9 +69,9 @@ class Labels:
         By how much the best reading is better than the logged one. [nats]
     """
 
-    logged: Reading
-    best: Reading
-    rivals: tuple[Reading, ...] = ()
+    logged: LabelHypothesis
+    best: LabelHypothesis
+    rivals: tuple[LabelHypothesis, ...] = ()
     is_wrong: bool = False
     is_judged: bool = True
     margin: float = 0.0
@@ -82,7 +82,7 @@ class Labels:
         return self.is_wrong and not self.rivals
 
     @property
-    def used(self) -> Reading:
+    def used(self) -> LabelHypothesis:
         """The best reading where it is sure, else as logged."""
         return self.best if self.is_sure else self.logged
 
@@ -91,7 +91,7 @@ class Labels:
 class _Weighed:
     """A reading with what each measure says for it, less what its changes cost. [nats]"""
 
-    reading: Reading
+    reading: LabelHypothesis
     fit: float
     foresight: float
     likelihood: float
@@ -147,7 +147,7 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     return labels
 
 
-def _weighed(found: Sequence[Reading], record: Record, felt: Felt, model: ShipModel) -> list[_Weighed]:
+def _weighed(found: Sequence[LabelHypothesis], record: Record, felt: Felt, model: ShipModel) -> list[_Weighed]:
     """Readings with what the three measures say, the logged one first."""
     unit, smooth = froude_time(model.parts["hull"].length), smoothed(felt)
     log = blocks_of(felt, commanded_by(*driven(found[0].units, record, smooth, model)), model)
@@ -161,7 +161,7 @@ def _weighed(found: Sequence[Reading], record: Record, felt: Felt, model: ShipMo
     return weighed
 
 
-def _likelihoods(log: Blocks, commanded: Commanded, one: Reading, unit: float) -> Iterator[float]:
+def _likelihoods(log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: float) -> Iterator[float]:
     """Of a reading with several lags, less what those cost."""
     for lag in LIKELIHOOD_LAGS:
         moved = late(commanded, lag * unit / one.step) if lag else commanded
@@ -198,7 +198,7 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
     return None
 
 
-def _is_contradicted(best: Reading, logged: Reading, axes: Sequence[Axis]) -> bool:
+def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> bool:
     """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
     for axis in axes:
         total = axis.total(logged.commanded)
@@ -209,7 +209,7 @@ def _is_contradicted(best: Reading, logged: Reading, axes: Sequence[Axis]) -> bo
     return False
 
 
-def _explained(best: Reading, logged: Reading, axes: Sequence[Axis]) -> float:
+def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> float:
     """Largest share of the felt force that a reading explains on an axis where it differs from the logged one."""
     shares = [0.0]
     for axis in axes:

@@ -33,7 +33,7 @@ from shipcosim.diagnose.ship.smoothing import froude_time
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["Blocks", "blocks_of", "likelihood_of", "smoothed"]

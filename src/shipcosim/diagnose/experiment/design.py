@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -25,10 +25,9 @@ from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import linearise, rows_first
 from shipcosim.diagnose.inference.parts import beside
-from shipcosim.diagnose.inference.screening import screening_regressors
-from shipcosim.diagnose.result import ExperimentDesign
+from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.dynamics import with_steady_current
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
 
@@ -47,6 +46,15 @@ _MOST = 4  # rivals that are compared
 _ABOUT = 1.5  # times the shortest: about as short
 _ASTRAY = 0.5  # lengths that a ship may be off her track
 _ROOM = 3.0  # lengths that a ship may get away from where she started
+
+
+@dataclass(frozen=True)
+class ExperimentDesign:
+    """A manoeuvre that tells causes apart which the log could not."""
+
+    manoeuvre: str
+    minutes: float
+    separates: tuple[tuple[str, str], ...]
 
 
 def design_experiment(

@@ -8,20 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.search import without_causes
+from shipcosim.diagnose.explanation.verdict import JudgedLog, usual_gain
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.screening import screening_regressors
-from shipcosim.diagnose.inference.search import without_causes
+from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.inference.thresholds import TESTABLE
-from shipcosim.diagnose.inference.verdict import usual_gain
 from shipcosim.diagnose.log.mislabels import THRUSTER_LABELS
 from shipcosim.diagnose.log_faults.clock import is_testable
-from shipcosim.diagnose.ship.form import form_sizes
 from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.diagnose.stages import JudgedLog
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.compared import LogComparison
@@ -66,7 +64,7 @@ def hidden_by_form(log: JudgedLog) -> tuple[str, ...]:
 def _as_known(column: Regressor, model: ShipModel) -> Regressor:
     """A column of a number that is known within its tolerance, whatever the form says."""
     path = next(iter(column.changes))
-    if path not in form_sizes(model) or column.prior != 1.0:
+    if path not in model.form_sizes or column.prior != 1.0:
         return column
     return replace(column, prior=model.tolerances.get(path, 0.0) / model.uncertainties[path])
 

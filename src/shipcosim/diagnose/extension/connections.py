@@ -5,8 +5,8 @@ from math import hypot
 from typing import Any
 
 from shipcosim.diagnose.extension.draft import AXES, Estimated, ExtensionDraft, converted
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.cause import ExtensionRule, OnConnections
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, third_party_fmu_of
 from shipcosim.series import conversion
 from shipcosim.ssp import Connection, System, SystemStructure
@@ -15,7 +15,7 @@ __all__ = ["connect_neighbours", "put_on_connections", "rewire"]
 
 
 def put_on_connections(
-    draft: ExtensionDraft, finding: Finding, component: str, estimate: Estimate, rule: OnConnections
+    draft: ExtensionDraft, finding: Finding, component: str, estimate: ParameterEstimate, rule: OnConnections
 ) -> None:
     """Put a factor on the loads of a component, or an offset on what drives it, since its FMU has no such parameter.
 
@@ -25,7 +25,7 @@ def put_on_connections(
         Changed; a remark says what its connections have.
     finding : Finding
     component : str
-    estimate : Estimate
+    estimate : ParameterEstimate
     rule : OnConnections
     """
     system = draft.structure.checked()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from shipcosim import library
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, parameter
 from shipcosim.ssp.read.parameters import ParameterValue
@@ -23,7 +23,7 @@ class Estimated(NamedTuple):
     std: float = 0.0
 
 
-def converted(estimate: Estimate, unit: str) -> Estimated:
+def converted(estimate: ParameterEstimate, unit: str) -> Estimated:
     """An estimate in another unit."""
     factor, offset = conversion(estimate.unit, unit)
     return Estimated(factor * estimate.estimate + offset, abs(factor) * estimate.std)
@@ -91,7 +91,7 @@ class ExtensionDraft:
         unit = None if unit in (None, "", "1") else unit
         self.values[signal] = parameter(signal, float(given.value), unit, text, tolerance=given.std or None)
 
-    def put_parameter(self, finding: Finding, place: str, name: str, estimate: Estimate) -> None:
+    def put_parameter(self, finding: Finding, place: str, name: str, estimate: ParameterEstimate) -> None:
         """Give a parameter of a component its estimate, in the FMU's unit; a remark where there is none such."""
         parts = self.structure.components
         variable = parts[place].fmu.variables.get(name) if place in parts else None

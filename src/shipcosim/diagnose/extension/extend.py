@@ -9,10 +9,10 @@ from typing import Any
 from shipcosim.diagnose.extension.connections import connect_neighbours, put_on_connections, rewire
 from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
 from shipcosim.diagnose.extension.insertions import add_current, add_force, add_instruments
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
-from shipcosim.diagnose.result import Estimate, Finding
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import SystemStructure, read, write_ssv
 
@@ -147,7 +147,7 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
         draft.remark(finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start")
 
 
-def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str, Estimate]:
+def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str, ParameterEstimate]:
     """Numbers of the ship that a finding has estimates for."""
     found = {}
     for name, estimate in finding.parameters.items():
@@ -161,7 +161,7 @@ def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str,
     return found
 
 
-def _multiplied(draft: ExtensionDraft, paths: Iterable[str], factor: Estimate) -> dict[str, Estimate]:
+def _multiplied(draft: ExtensionDraft, paths: Iterable[str], factor: ParameterEstimate) -> dict[str, ParameterEstimate]:
     """Numbers of the system times a factor; those that are 0, or that the system does not have, are left out."""
     parts, found = draft.structure.checked().components, {}
     for path in paths:
@@ -170,11 +170,11 @@ def _multiplied(draft: ExtensionDraft, paths: Iterable[str], factor: Estimate) -
         value = parts[place].start_value(name) if variable is not None else None
         if variable is not None and isinstance(value, int | float) and value != 0.0:
             size = factor.estimate * value, factor.std * abs(value)
-            found[path] = Estimate(*size, variable.unit or "1")
+            found[path] = ParameterEstimate(*size, variable.unit or "1")
     return found
 
 
-def _rules(cause: Cause, numbers: Mapping[str, Estimate]) -> list[ExtensionRule]:
+def _rules(cause: Cause, numbers: Mapping[str, ParameterEstimate]) -> list[ExtensionRule]:
     """How the system gets a cause: as its file says, else as causes of ours on the same numbers."""
     if cause.extension is not None:
         return [cause.extension]
@@ -182,7 +182,7 @@ def _rules(cause: Cause, numbers: Mapping[str, Estimate]) -> list[ExtensionRule]
     return [rule for rule in ours if set(rule.parameters) & set(numbers)]
 
 
-def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: Mapping[str, Estimate]) -> bool:
+def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: Mapping[str, ParameterEstimate]) -> bool:
     """Put what a rule inserts into the system; whether the onset of the cause went along."""
     if not own or rule.by in ("parameters", "log"):
         return False
@@ -199,13 +199,15 @@ def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: M
     return True
 
 
-def _vector(estimates: Mapping[str, Estimate], north: str, east: str) -> tuple[Estimated, Estimated]:
+def _vector(estimates: Mapping[str, ParameterEstimate], north: str, east: str) -> tuple[Estimated, Estimated]:
     """North and east of a velocity; one that is not given is none. [m/s]"""
     pair = [converted(estimates[name], "m/s") if name in estimates else Estimated(0.0, 0.0) for name in (north, east)]
     return pair[0], pair[1]
 
 
-def _put_parameter(draft: ExtensionDraft, finding: Finding, number: str, estimate: Estimate, cause: Cause) -> None:
+def _put_parameter(
+    draft: ExtensionDraft, finding: Finding, number: str, estimate: ParameterEstimate, cause: Cause
+) -> None:
     """Put a number into the component that has it: as a parameter, else on its connections."""
     place, name = _place(number), number.rpartition(".")[2]
     parts = draft.structure.checked().components

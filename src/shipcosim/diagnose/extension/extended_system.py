@@ -8,26 +8,54 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.result import Finding
-from shipcosim.diagnose.stages import ExtendedSystem, Identification
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.extension.extend import Extension, extend
+from shipcosim.diagnose.finding import Finding
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import read_system
+from shipcosim.ssp import System, SystemStructure, read_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
 
-__all__ = ["Change", "extended_by", "with_findings"]
+__all__ = ["NumberChange", "extended_by", "with_findings"]
 
 
 @dataclass(frozen=True)
-class Change:
+class NumberChange:
     """A number of a system that the extended one has otherwise; before is None where there was none."""
 
     name: str
     before: float | None
     after: float
     unit: str
+
+
+@dataclass(frozen=True)
+class ExtendedSystem:
+    """A system with the named causes in it.
+
+    Attributes
+    ----------
+    given : System
+        That the log was held against.
+    source : path or SystemStructure
+        What is extended.
+    extension : Extension or None
+        None where no cause of the physics was named, or it could not be made.
+    system : System or None
+        The extended system, which can be simulated.
+    changes : tuple of NumberChange
+        Every number that differs.
+    remarks : tuple of str
+        Why it could not be made.
+    """
+
+    given: System
+    source: SystemStructure | str
+    extension: Extension | None = None
+    system: System | None = None
+    changes: tuple[NumberChange, ...] = ()
+    remarks: tuple[str, ...] = ()
 
 
 def with_findings(
@@ -92,4 +120,4 @@ def _change(name, value, given, extended):
     known = extended.components[component].fmu.variables if component in extended.components else extended.inputs
     unit = known[variable].unit if variable in known else ""
     before = float(start) if isinstance(start, int | float) else None
-    return Change(name, before, float(value), "" if unit in (None, "1") else unit)
+    return NumberChange(name, before, float(value), "" if unit in (None, "1") else unit)

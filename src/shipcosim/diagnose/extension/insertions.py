@@ -5,8 +5,8 @@ from dataclasses import fields
 from math import atan2, hypot
 
 from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.cause import ExtensionRule
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.environment import water_of
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.instruments import InstrumentParameters
@@ -19,7 +19,9 @@ RAMP = 30.0
 _Vector = tuple[Estimated, Estimated]
 
 
-def add_force(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, Estimate]) -> None:
+def add_force(
+    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, ParameterEstimate]
+) -> None:
     """Insert an FMU whose loads are added to those on the ship.
 
     Parameters
@@ -38,7 +40,7 @@ def add_force(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, esti
         return
     for into, output in rule.inputs.items():
         draft.structure.connect(f"{draft.ship}.{output}", f"{name}.{into}")
-    zeros = {parameter: Estimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) for parameter in rule.zero}
+    zeros = {parameter: ParameterEstimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) for parameter in rule.zero}
     for parameter, estimate in (zeros | dict(estimates)).items():
         draft.put_parameter(finding, name, parameter, estimate)
     water = water_of(float(draft.structure.parameters[f"{draft.ship}.length"] or 0.0))
@@ -58,7 +60,7 @@ def _unit(draft: ExtensionDraft, component: str, parameter: str) -> str:
 
 
 def add_instruments(
-    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, Estimate]
+    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, ParameterEstimate]
 ) -> None:
     """Put instruments with some errors between the ship and her log.
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import ValidationError
 
+from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
-from shipcosim.diagnose.result import label_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
 

@@ -1,1 +1,1 @@
-"""Linearisation, Kalman filter, noise, evidence, fitting, search and verdict."""
+"""Linearisation, Kalman filter, noise, evidence, fitting, open-loop predictions."""

@@ -7,68 +7,16 @@ cause.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.innovations import Innovations
+    pass
 
-__all__ = ["Gram", "evidence", "gram"]
-
-
-@dataclass(frozen=True)
-class Gram:
-    """Inner products of the innovations' columns, the log's own first; of (..., p + 1, p + 1) arrays.
-
-    Attributes
-    ----------
-    products : (..., 1 + p, 1 + p) array
-    blocks : (b, ..., 1 + p, 1 + p) array
-        The same by consecutive parts of the log.
-    log_determinant : (...) array
-    """
-
-    products: np.ndarray
-    blocks: np.ndarray
-    log_determinant: np.ndarray
-
-    @property
-    def free(self) -> np.ndarray:
-        """Log-likelihood of the log without any parameter, up to a constant."""
-        return -0.5 * (self.products[..., 0, 0] + self.log_determinant)
-
-
-def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) -> Gram:
-    """Inner products of innovations.
-
-    Parameters
-    ----------
-    found : iterable of tuple of int and Innovations
-        First row and innovations of consecutive stretches of a log.
-    rows : int
-        Of the log.
-    parts : int
-        Number of blocks.
-
-    Returns
-    -------
-    Gram
-    """
-    edges = np.linspace(0, rows, parts + 1).astype(int)
-    blocks, log_determinant = [np.zeros(())] * parts, np.zeros(())
-    for first, stretch in found:
-        log_determinant = log_determinant + stretch.log_determinant.sum(0)
-        places = np.clip(edges - first, 0, len(stretch.white))
-        for i, (a, b) in enumerate(zip(places[:-1], places[1:], strict=True)):
-            if b > a:
-                white = np.moveaxis(stretch.white[a:b], 0, -3)
-                flat = white.reshape(*white.shape[:-3], -1, white.shape[-1])
-                blocks[i] = blocks[i] + np.swapaxes(flat, -1, -2) @ flat
-    stacked = np.stack(np.broadcast_arrays(*blocks))
-    return Gram(stacked.sum(0), stacked, log_determinant)
+__all__ = [
+    "evidence",
+]
 
 
 def evidence(

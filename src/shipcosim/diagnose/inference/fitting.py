@@ -12,13 +12,12 @@ from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.innovations import inner_products, smoothed
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
-from shipcosim.diagnose.inference.screening import screening_regressors
+from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.instruments import NONLINEAR
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
-    from shipcosim.diagnose.inference.evidence import Gram
-    from shipcosim.diagnose.inference.innovations import Noise
+    from shipcosim.diagnose.inference.innovations import Gram, Noise
     from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel

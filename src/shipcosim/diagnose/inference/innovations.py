@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.inference import kalman
-from shipcosim.diagnose.inference.evidence import gram
 from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
 from shipcosim.diagnose.inference.parts import in_parts
 from shipcosim.models.control.wave_filter import wave_transition
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.evidence import Gram
     from shipcosim.diagnose.inference.linearisation import Linear
     from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
@@ -310,3 +309,55 @@ def _uncertain(noise: Noise) -> np.ndarray:
 def _lost() -> np.ndarray:
     """What is added where nobody knows what drove the ship over a step."""
     return np.diag([25.0, 25.0, 0.1, 0.25, 0.25, 1e-3, *[0.0] * 12])
+
+
+@dataclass(frozen=True)
+class Gram:
+    """Inner products of the innovations' columns, the log's own first; of (..., p + 1, p + 1) arrays.
+
+    Attributes
+    ----------
+    products : (..., 1 + p, 1 + p) array
+    blocks : (b, ..., 1 + p, 1 + p) array
+        The same by consecutive parts of the log.
+    log_determinant : (...) array
+    """
+
+    products: np.ndarray
+    blocks: np.ndarray
+    log_determinant: np.ndarray
+
+    @property
+    def free(self) -> np.ndarray:
+        """Log-likelihood of the log without any parameter, up to a constant."""
+        return -0.5 * (self.products[..., 0, 0] + self.log_determinant)
+
+
+def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) -> Gram:
+    """Inner products of innovations.
+
+    Parameters
+    ----------
+    found : iterable of tuple of int and Innovations
+        First row and innovations of consecutive stretches of a log.
+    rows : int
+        Of the log.
+    parts : int
+        Number of blocks.
+
+    Returns
+    -------
+    Gram
+    """
+    edges = np.linspace(0, rows, parts + 1).astype(int)
+    blocks, log_determinant = [np.zeros(())] * parts, np.zeros(())
+    for first, stretch in found:
+        log_determinant = log_determinant + stretch.log_determinant.sum(0)
+        places = np.clip(edges - first, 0, len(stretch.white))
+        for i, (a, b) in enumerate(zip(places[:-1], places[1:], strict=True)):
+            if b > a:
+                white = np.moveaxis(stretch.white[a:b], 0, -3)
+                flat = white.reshape(*white.shape[:-3], -1, white.shape[-1])
+                blocks[i] = blocks[i] + np.swapaxes(flat, -1, -2) @ flat
+    stacked = np.stack(np.broadcast_arrays(*blocks))
+    return Gram(stacked.sum(0), stacked, log_determinant)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from shipcosim.diagnose.ship.dynamics import loads, motion_rates, rate_difference
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.models.core.integrate import rk4
 from shipcosim.models.core.motion import Motion
 

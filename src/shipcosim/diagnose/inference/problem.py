@@ -6,13 +6,16 @@ from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
-from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
-from shipcosim.diagnose.inference.form import tuned_noise
-from shipcosim.diagnose.inference.noise import first_noise
+from shipcosim.diagnose.inference.channel_noise import most_white
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
+from shipcosim.diagnose.inference.noise import first_noise, tuned
+from shipcosim.diagnose.inference.screening import screened
+from shipcosim.diagnose.inference.thresholds import GUST_FACTOR, LENGTHS_PER_GYRADIUS, MOST_WALK, TUNED_BESIDE
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.surrogate import with_surrogates
-from shipcosim.diagnose.stages import ComparedLog, Identification
+from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
 if TYPE_CHECKING:
     import xarray
@@ -22,15 +25,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["as_logged", "identification_problem", "identified", "unidentifiable"]
-
-
-def identified(checked: ComparedLog) -> Identification:
-    """A compared log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
-    problem = identification_problem(checked.repaired, checked.ship, checked.causes)
-    ship = replace(checked.ship, third_party=problem.model.third_party)
-    known = (checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
-    return Identification(*known, comparison=checked.comparison)
+__all__ = ["as_logged", "identification_problem", "unidentifiable"]
 
 
 def identification_problem(
@@ -98,3 +93,19 @@ def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
     allowed = [hypothesis for hypothesis in everyone if hypothesis.definition.without_wind == "allowed for"]
     parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]
     return {path: parameter.typical for parameter in parameters for path in parameter.paths}
+
+
+def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
+    """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
+    fit = fit or beside_likeliest(problem)
+    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
+    most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
+    white = np.maximum(most_white(problem.record), problem.noise.white)
+    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most, most_white=white)
+
+
+def beside_likeliest(problem: IdentificationProblem) -> Fit:
+    """The fit with the cause that explains most at first sight, if it does so beyond chance."""
+    fit = fitted(problem)
+    gain, hypothesis, values = screened(problem, fit)[0]
+    return fitted(problem, (hypothesis,), values) if gain > TUNED_BESIDE else fit

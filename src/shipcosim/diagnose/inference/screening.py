@@ -11,18 +11,21 @@ from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside
+from shipcosim.diagnose.inference.regressors import screening_regressors
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
-__all__ = ["DIRECTIONS", "Gain", "gains", "screened", "screening_regressors"]
+__all__ = [
+    "Gain",
+    "gains",
+    "screened",
+]
 
 Gain = tuple[float, "Hypothesis", dict[str, float]]
 """Gain in log-evidence of a hypothesis, and first values of its parameters."""
 
-DIRECTIONS = 12
-"""Directions in which a vector is sought, evenly over the circle."""
 _SLOW, _STILL = 0.35, 0.05  # of the faster end: a vector this short at first sight has no direction; where it starts
 
 
@@ -114,15 +117,3 @@ def _one_way(first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarra
     elif sizes[1] < _SLOW * sizes[0]:
         last = first * max(sizes[1] / sizes[0], _STILL)
     return first, last
-
-
-def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
-    """Groups of regressors by which a hypothesis is first sought: one, or one for each direction of a vector."""
-    parameters = hypothesis.parameters
-    if hypothesis.definition.law == "linear":
-        return [[Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for parameter in parameters]]
-    if hypothesis.definition.law == "turning":
-        return [[Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]]
-    pair, size = (parameters[0].paths[0], parameters[1].paths[0]), parameters[0].typical
-    angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]

@@ -108,3 +108,15 @@ NOISE_WIDTHS = (2.0, 4.0, 8.0)
 """Widths of the kernels that they are compared with. [rows]"""
 SOUND = 0.98
 """Share of the rows that is taken to be sound where they are compared. Assumed."""
+
+# Predictions
+
+FASTEST = 20.0
+"""Speed at which a prediction that runs away is held. [m/s]"""
+FASTEST_TURN = 5.0
+"""Rate of turn at which it is held; boats of 1 m spin at 1. [rad/s]"""
+REFERENCE_JOLTS = 3.0
+"""Times the jolts that the reference is smoothed with, and seconds in which its force may change: the model moves it by
+some 2 cm then."""
+DRAWS = 1000
+"""Draws of the bootstrap."""

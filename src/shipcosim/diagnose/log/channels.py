@@ -11,7 +11,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import ROLES, role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import toml_of
@@ -62,12 +62,12 @@ class ChannelFile:
     ----------
     channels : dict of str to Channel
         By role or connector.
-    form : Form
+    form : FileLayout
         What it says of the form of the log, under ``file``.
     """
 
     channels: dict[str, Channel]
-    form: Form = field(default_factory=Form)
+    form: FileLayout = field(default_factory=FileLayout)
 
 
 def read_channels(path: str | os.PathLike) -> ChannelFile:
@@ -86,12 +86,12 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
         content = toml_of(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
-    channels, problems, form = {}, [], Form()
+    channels, problems, form = {}, [], FileLayout()
     if "file" in content:
         try:
-            form = Form.model_validate(content.pop("file"))
+            form = FileLayout.model_validate(content.pop("file"))
         except ValidationError as error:
-            known = f"It can have {', '.join(Form.model_fields)}."
+            known = f"It can have {', '.join(FileLayout.model_fields)}."
             problems += [replace(_field_problem(f"{path}, file", e), remedy=known) for e in error.errors()]
     for name, entry in content.items():
         where = f"{path}, {name}"
@@ -100,7 +100,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
             channels[name] = Channel.model_validate({"column": entry} if isinstance(entry, str) else entry)
         except ValidationError as error:
             problems += [_field_problem(where, detail) for detail in error.errors()]
-    problems += _together(path, content) if content or form == Form() else ()
+    problems += _together(path, content) if content or form == FileLayout() else ()
     if problems:
         raise ShipcosimError(problems)
     return ChannelFile(channels, form)

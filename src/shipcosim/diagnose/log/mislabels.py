@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import wrap_series
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.samples import quantum
-from shipcosim.diagnose.log.earth import metres_per_degree
+from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
-from shipcosim.diagnose.result import Finding
 
 __all__ = [
     "CHANNEL_UNITS",

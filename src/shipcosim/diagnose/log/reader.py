@@ -12,9 +12,9 @@ import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
 from shipcosim.diagnose.log.channels import Channel, ChannelFile, read_channels
-from shipcosim.diagnose.log.earth import metres_per_degree
-from shipcosim.diagnose.log.files.form import Form
-from shipcosim.diagnose.log.files.messages import brought_together, spread
+from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.files.long_format import brought_together, spread
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
 from shipcosim.diagnose.log.names.guesses import Thrusters
 from shipcosim.diagnose.log.names.proposal import Proposal, propose
@@ -78,7 +78,7 @@ def read_log(
         With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
     """
     given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
-    form = given.form if given else Form()
+    form = given.form if given else FileLayout()
     source = _source_of(log, form)
     columns, proposal = source.columns, None
     if given is None or not given.channels:
@@ -107,16 +107,16 @@ def read_log(
     return table
 
 
-def columns_of(log: str | os.PathLike, form: Form | None = None) -> LogColumns:
+def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogColumns:
     """Columns of a file, one for each channel also where a file has one value a row.
 
     Parameters
     ----------
     log : path
-    form : Form, optional
+    form : FileLayout, optional
         What was said of the file.
     """
-    return spread(read_file(Path(log), form), form or Form())
+    return spread(read_file(Path(log), form), form or FileLayout())
 
 
 def _source_of(log, form):

@@ -19,7 +19,7 @@ from shipcosim.series import make_table
 if TYPE_CHECKING:
     import xarray
 
-    from shipcosim.diagnose.result import Finding
+    from shipcosim.diagnose.finding import Finding
 
 __all__ = ["rate_of", "read_anew", "repaired"]
 

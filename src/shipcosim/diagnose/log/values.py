@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.positions import (
     MINUTES,
     degrees_of_minutes,
@@ -32,7 +32,7 @@ _PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start ane
 _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is. Assumed.
 
 
-def values_of(channel: Channel, name: str, log: LogColumns, form: Form) -> tuple[np.ndarray, str, list[str]]:
+def values_of(channel: Channel, name: str, log: LogColumns, form: FileLayout) -> tuple[np.ndarray, str, list[str]]:
     """Values of a channel, their unit, and what is to be said of them.
 
     Parameters
@@ -43,7 +43,7 @@ def values_of(channel: Channel, name: str, log: LogColumns, form: Form) -> tuple
         Its role, or a connector, which keeps its unit.
     log : LogColumns
         Columns of the file.
-    form : Form
+    form : FileLayout
         What was said of the file.
 
     Raises

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
@@ -35,7 +36,6 @@ from shipcosim.diagnose.log_faults.thresholds import (
     TYPICAL_SEGMENT,
 )
 from shipcosim.diagnose.numerics import survival
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 
@@ -172,7 +172,7 @@ def _most_likely(blocks):
     if not runs or not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1] or abs(value) < SMALLEST_RATE:
         return 0.0, None
     segments = tuple(sorted((float(blocks.edges[a]), float(blocks.edges[b])) for a, b in runs))
-    rate = {"rate": Estimate(1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1")}
+    rate = {"rate": ParameterEstimate(1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1")}
     note = "the ship answers thrusters and wind at another rate than logged"
     return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
 

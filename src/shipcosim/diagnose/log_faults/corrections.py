@@ -10,10 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain
+from shipcosim.diagnose.explanation.unmodelled import is_healthy, unmodelled_gains
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.search import at_first_sight, explain
 from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
-from shipcosim.diagnose.inference.unmodelled import is_healthy, unmodelled_gains
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_in, mislabel_of, possible
 from shipcosim.diagnose.log.repair import repaired
@@ -33,11 +35,9 @@ from shipcosim.diagnose.log_faults.thresholds import (
     ROUNDS_OF_SEGMENT,
     UNIT,
 )
-from shipcosim.diagnose.result import Finding
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.wiring import put_right
-from shipcosim.diagnose.stages import ExplainedLog, Identification
 
 __all__ = [
     "corrected",

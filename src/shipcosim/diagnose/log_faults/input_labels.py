@@ -38,8 +38,8 @@ from shipcosim.diagnose.ship.instruments import LAGS
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.finding import Finding
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.result import Finding
     from shipcosim.diagnose.ship.inputs import Record
 
 __all__ = ["best_run", "likelihood", "suspected_inputs", "where_best", "with_label", "with_refined_segment"]

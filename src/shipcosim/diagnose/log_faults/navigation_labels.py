@@ -34,8 +34,8 @@ from shipcosim.diagnose.ship.stretches import in_stretches
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.diagnose.finding import Finding
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.result import Finding
 
 __all__ = ["Relabelled", "relabelled"]
 

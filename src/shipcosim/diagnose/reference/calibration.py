@@ -9,15 +9,15 @@ from typing import cast
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.form import of_scale, scores_by_scale
+from shipcosim.diagnose.explanation.search import explain
+from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
+from shipcosim.diagnose.explanation.verdict import admissible
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.form import of_scale, scores_by_scale
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.screening import Gain
-from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.inference.thresholds import ENOUGH, FORM_COST
-from shipcosim.diagnose.inference.unmodelled import errors_of_the_fit, unmodelled_gains
-from shipcosim.diagnose.inference.verdict import admissible
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly
 from shipcosim.diagnose.reference.reference import SCHEMA, KnownNumber, Reference, ReferenceLog, fingerprint
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log, values_in
 from shipcosim.diagnose.reference.thresholds import MOST_PIECES
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.replays import findings_of
@@ -30,11 +30,11 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
 
 if TYPE_CHECKING:
+    from shipcosim.diagnose.extension.extended_system import ExtendedSystem
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
     from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.diagnose.stages import ExtendedSystem
 
 __all__ = ["LogErrors", "errors_by_log", "sizes_by_log", "sizes_without", "weather_of"]
 
@@ -106,7 +106,7 @@ def _in(path: str, hypotheses: Sequence[Hypothesis]) -> bool:
 
 def sizes_by_log(
     logs: SeveralLogs, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
-) -> dict[str, dict[str, dict[str, Estimate]]]:
+) -> dict[str, dict[str, dict[str, ParameterEstimate]]]:
     """How large each log by itself would have the causes in the ship: by label, log and parameter.
 
     Parameters
@@ -117,7 +117,7 @@ def sizes_by_log(
     values : mapping of str to float
         By all logs, to start from.
     """
-    found: dict[str, dict[str, dict[str, Estimate]]] = {}
+    found: dict[str, dict[str, dict[str, ParameterEstimate]]] = {}
     for name, problem in logs.problems.items():
         own = [one for _, one in logs.all_within(name, hypotheses)]
         fit = fitted(problem, own, {p: v for p, v in values_in(name, values).items() if _in(p, own)}, rounds=3)

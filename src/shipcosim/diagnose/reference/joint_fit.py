@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-from shipcosim.diagnose.inference.evidence import Gram, evidence
+from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import (
     ROUNDS,
     Fit,
@@ -19,10 +19,11 @@ from shipcosim.diagnose.inference.fitting import (
     own_columns,
     tolerated,
 )
-from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.innovations import Gram, inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside
-from shipcosim.diagnose.inference.screening import Gain, gains, screening_regressors
+from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.screening import Gain, gains
 from shipcosim.diagnose.reference.several_logs import Layout, SeveralLogs, laid_out, values_in
 from shipcosim.diagnose.reference.thresholds import CLOSE
 from shipcosim.diagnose.ship.model import ShipModel

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.validation.gain import share_explained
-from shipcosim.diagnose.validation.thresholds import DRAWS
 
 __all__ = ["joint_baseline", "joint_gain"]
 

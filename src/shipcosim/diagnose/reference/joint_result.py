@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.diagnose.reference.common import RatioOfLogs, Shared
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, ParameterEstimate
+from shipcosim.diagnose.reference.common_findings import RatioOfLogs, Shared
 from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
-from shipcosim.diagnose.result import SCHEMA, Candidate, Diagnosis, Discrepancy, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.result import SCHEMA, Diagnosis
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.extension.extend import Extension
-    from shipcosim.diagnose.extension.extended_system import Change
+    from shipcosim.diagnose.extension.extended_system import NumberChange
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.diagnose.reference.held_out import LogErrors
     from shipcosim.ssp import System
@@ -71,7 +73,7 @@ class JointDiagnosis:
         That the logs were held against.
     extension : Extension or None
         The common causes in the system; None where none was named.
-    changes : tuple of Change
+    changes : tuple of NumberChange
         Every number in which it differs.
     remarks : tuple of str
     basis : JointBasis or None
@@ -90,12 +92,12 @@ class JointDiagnosis:
     prescription: ExperimentDesign | None = None
     left_out: dict[str, str] = field(default_factory=dict)
     relabelled: dict[str, tuple[Finding, ...]] = field(default_factory=dict)
-    sizes: dict[str, dict[str, dict[str, Estimate]]] = field(default_factory=dict)
+    sizes: dict[str, dict[str, dict[str, ParameterEstimate]]] = field(default_factory=dict)
     errors: dict[str, LogErrors] = field(default_factory=dict)
     causes: dict[str, Cause] = field(default_factory=dict, repr=False)
     system: System | None = field(default=None, repr=False)
     extension: Extension | None = None
-    changes: tuple[Change, ...] = ()
+    changes: tuple[NumberChange, ...] = ()
     remarks: tuple[str, ...] = ()
     basis: JointBasis | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)

@@ -8,18 +8,19 @@ from typing import Any, cast
 import numpy as np
 
 from shipcosim.diagnose.experiment.testability import not_testable
+from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
+from shipcosim.diagnose.explanation.search import explain, without_causes
+from shipcosim.diagnose.explanation.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
+from shipcosim.diagnose.explanation.verdict import Judgement, gained, judge, usual_gain
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.null_distribution import healthy_products, on_track
-from shipcosim.diagnose.inference.screening import gains, screening_regressors
-from shipcosim.diagnose.inference.search import explain, without_causes
+from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     FAR_ABOVE_NULL,
     NULL_GAIN_UNKNOWN,
     NULL_GAIN_WITHOUT_WIND,
     TESTABLE,
 )
-from shipcosim.diagnose.inference.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
-from shipcosim.diagnose.inference.verdict import Judgement, gained, judge, usual_gain
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly, screening_layout
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 

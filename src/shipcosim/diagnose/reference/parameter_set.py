@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.reference.reference import KnownNumber, Reference, is_same
-from shipcosim.diagnose.stages import ExtendedSystem
 from shipcosim.ssp import System, SystemStructure, parameter, read, write_ssv
 
 __all__ = ["FILE", "with_calibrated_numbers", "write_parameter_set"]

@@ -21,11 +21,11 @@ from shipcosim.series import write_file
 __all__ = [
     "FILE",
     "SCHEMA",
-    "is_same",
     "KnownNumber",
     "Reference",
     "ReferenceLog",
     "fingerprint",
+    "is_same",
     "read_reference",
     "with_reference",
 ]

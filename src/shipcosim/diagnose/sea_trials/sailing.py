@@ -10,7 +10,7 @@ import numpy as np
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
-from shipcosim.diagnose.ship.instruments import readings, true_motion
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, turned
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.design import CLEAR
-from shipcosim.diagnose.result import ExperimentDesign
+from shipcosim.diagnose.experiment.design import CLEAR, ExperimentDesign
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import blocks, changes_of, known_numbers, predicted, slopes_of
 from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, SOUGHT, covariance_of, is_logarithm

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.result import Estimate, ExperimentDesign, Finding
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -28,8 +29,8 @@ from shipcosim.diagnose.sea_trials.sailing import sailed
 from shipcosim.diagnose.sea_trials.separation import MOST_SETS, Separation, designed, differing, separations
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
-from shipcosim.diagnose.stages import ReadLog
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -222,10 +223,12 @@ def _estimates(found, cause):
     }
 
 
-def estimates(found: SetOfCauses) -> list[Estimate]:
+def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
     """Estimates of a set's parameters in the units of their files."""
     return [
-        Estimate(float(p.factor * (p.neutral + value * p.typical)), float(abs(p.factor * p.typical) * std), p.unit)
+        ParameterEstimate(
+            float(p.factor * (p.neutral + value * p.typical)), float(abs(p.factor * p.typical) * std), p.unit
+        )
         for (_, p), value, std in zip(found.parameters, found.values, found.std, strict=True)
     ]
 

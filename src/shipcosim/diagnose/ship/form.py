@@ -8,9 +8,10 @@ form of one ship differs is learnt.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, make_dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.hull import HullParameters
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.model import ShipModel
+    pass
 
 __all__ = [
     "HullForm",
@@ -49,7 +50,7 @@ def _along(degree: int) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Form:
+class _LoadDeviation:
     @cached_property
     def acts(self) -> bool:
         """Whether any of it is not neutral."""
@@ -57,7 +58,7 @@ class _Form:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HullForm(_Form):
+class HullForm(_LoadDeviation):
     """Drag along the hull, over the model's."""
 
     cross_flow_1: float = _along(1)
@@ -78,7 +79,7 @@ def _round(axis: str, name: str) -> tuple[str, type, float]:
 WindForm = make_dataclass(
     "WindForm",
     [_round(axis, name) for axis in "XYN" for name, *_ in _harmonics()],
-    bases=(_Form,),
+    bases=(_LoadDeviation,),
     frozen=True,
     kw_only=True,
 )
@@ -90,7 +91,7 @@ def _lost(where: str) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThrusterForm(_Form):
+class ThrusterForm(_LoadDeviation):
     """Thrust that a thruster loses at the hull beyond the model's, by where it pushes to, whoever made it."""
 
     across: float = _lost("by one that pushes athwartships; goes with the squared sine")
@@ -120,39 +121,47 @@ SPEED_LOSS = 0.1  # s2/m2 on a ship of 33.9 m, of a tunnel's thrust; half of (1/
 _OF_LENGTH, _GRAVITY = 33.9, 9.81
 
 
-def form_sizes(model: ShipModel) -> dict[str, float]:
+def form_sizes(parts: Mapping[str, Any], vessel: str, drives: Mapping[str, tuple[str, ...]]) -> dict[str, float]:
     """How far each number of a ship's form may be off, of scale 1.
 
     Parameters
     ----------
-    model : ShipModel
+    parts : mapping of str to dataclass
+        Parameter sets of the ship by place.
+    vessel : str
+        Name of the ship's component.
+    drives : mapping of str to tuple of str
+        What a log should have of each thruster.
 
     Returns
     -------
     dict of str to float
         Standard deviation by ``place.name``, in the number's unit.
     """
-    hull, vessel = model.parts["hull"], model.vessel
+    hull = parts["hull"]
     found = {f"hull_form.cross_flow_{degree}": size for degree, size in ALONG.items()}
     found |= {f"wind_form.{axis}_{name}": ROUND[order] for axis in "XYN" for name, order, _ in _harmonics()}
     found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
     found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
-    for name in model.thrusters:
-        if isinstance(model.parts[name], TunnelParameters):
+    for name in drives:
+        if isinstance(parts[name], TunnelParameters):
             found[f"{name}.speed_loss"] = SPEED_LOSS * _OF_LENGTH / hull.length
             continue
         found[f"{name}.thrust_loss"] = DEDUCTION
-        lost = LOST if "azimuth" in model.drives(name) else {}
+        lost = LOST if "azimuth" in drives[name] else {}
         found |= {f"{form_of(name)}.{where}": size for where, size in (lost | {"under_way": UNDER_WAY}).items()}
     return found
 
 
-def form_functions(model: ShipModel) -> dict[str, dict[str, float]]:
+def form_functions(
+    parts: Mapping[str, Any], vessel: str, drives: Mapping[str, tuple[str, ...]]
+) -> dict[str, dict[str, float]]:
     """Functions of a ship's form in words, each with its numbers and how much one adds to its mean square.
 
     Parameters
     ----------
-    model : ShipModel
+    parts, vessel, drives
+        As for `form_sizes`.
 
     Returns
     -------
@@ -160,15 +169,15 @@ def form_functions(model: ShipModel) -> dict[str, dict[str, float]]:
         By function and ``place.name``: mean over the hull or round the circle of the squared share of the model's
         function that the number makes, over the squared number. [1 over the number's unit squared]
     """
-    level, hull = abs(model.parts["hull"].cross_flow_drag), f"{model.vessel}."
+    level, hull = abs(parts["hull"].cross_flow_drag), f"{vessel}."
     found = {"drag across the hull, along her length": {f"hull_form.cross_flow_{k}": 1 / (2 * k + 1) for k in _DEGREES}}
     if level:
         found["drag across the hull, along her length"] |= {f"{hull}cross_flow_drag": 1.0 / level**2}
     found["wind load over the angle"] = {f"{hull}wind_load_scale": 1.0} | {
         f"wind_form.{axis}_{name}": (0.5 if order else 1.0) / 3.0 for axis in "XYN" for name, order, _ in _harmonics()
     }
-    for name in model.thrusters:
-        if "azimuth" in model.drives(name):
+    for name in drives:
+        if "azimuth" in drives[name]:
             mean = {"across": 3 / 8, "to_starboard": 1 / 2, "astern": 3 / 8}
             of_form = {f"{form_of(name)}.{where}": share for where, share in mean.items()}
             found[f"thrust of {name}, over its direction"] = {f"{name}.thrust_loss": 1.0} | of_form

@@ -3,14 +3,17 @@
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
-from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
-from shipcosim.models.ship import instruments
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.model import ShipModel
+    pass
 
-__all__ = ["LAGS", "MOUNTING", "NONLINEAR", "Instruments", "readings", "true_motion"]
+__all__ = [
+    "LAGS",
+    "MOUNTING",
+    "NONLINEAR",
+    "Instruments",
+]
 
 
 @dataclass(frozen=True)
@@ -42,38 +45,3 @@ MOUNTING = ("instruments.heading_bias", "instruments.lever_x")
 """What compass and antenna are off, of a log that nobody has checked: paths of these numbers."""
 NONLINEAR = frozenset({"instruments.wind_lag"})
 """Numbers whose effect is not linear within their tolerance, in quick gusts: every fit linearises about them anew."""
-
-
-def readings(motion: Motion, model: "ShipModel") -> Motion:
-    """What the instruments show of a motion, without noise and lag, heading not wrapped.
-
-    Position and velocity are the antenna's; surge and sway are its velocity over ground resolved with the measured
-    heading.
-
-    Parameters
-    ----------
-    motion : Motion
-    model : ShipModel
-
-    Returns
-    -------
-    Motion
-    """
-    own = model.parts["instruments"]
-    return Motion(*instruments.readings(*motion, **own.errors))._replace(psi=motion.psi + own.heading_bias)
-
-
-def true_motion(seen: Motion, model: "ShipModel") -> Motion:
-    """The motion of which the instruments show this; headings unwrapped as they were.
-
-    Parameters
-    ----------
-    seen : Motion
-    model : ShipModel
-
-    Returns
-    -------
-    Motion
-    """
-    own = model.parts["instruments"]
-    return Motion(*instruments.true_motion(*seen, **own.errors))._replace(psi=seen.psi - own.heading_bias)

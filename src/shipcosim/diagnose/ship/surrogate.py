@@ -1,43 +1,25 @@
-"""Surrogates of third-party FMUs: loads over a log, from co-simulations of an FMU alone, and their derivatives.
-
-The FMU runs along the log with what the log says at its inputs, and again with each of them, and each of its
-parameters, changed a little. The part of its loads that goes with the squared speed of a propeller is a quadratic law
-of thrust, which holds for large changes too; the surrogate is linear in the rest.
-"""
+"""The surrogate of a third-party FMU: its loads over a log, and their derivatives by all inputs and parameters."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.cosim import RunOptions, simulate
-from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, ThirdPartyFmu, ThirdPartyPart, drives_of, number_of
 from shipcosim.models.core.maths import Arithmetic
-from shipcosim.models.core.motion import Load, Motion
-from shipcosim.scenario import Scenario
-from shipcosim.series import make_table
-from shipcosim.ssp import Connection, Signal, System
+from shipcosim.models.core.motion import Load
 
-if TYPE_CHECKING:
-    import xarray
+__all__ = ["QuadraticThrust", "Surrogate", "ThirdPartyPart", "without_holes"]
 
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["QuadraticThrust", "Surrogate", "with_surrogates", "surrogates_of"]
-
-_AXES = ("X", "Y", "N")
-_CHANGE = {"x": 0.1, "y": 0.1, "psi": 2e-3, "azimuth": 2e-3, "r": 1e-3}  # m, rad, rad/s: changes for derivatives
-_CHANGE |= dict.fromkeys(("u", "v", "u_r", "v_r"), 0.01)  # m/s
-_CHANGE_OF_DRIVE = 2e-3  # of the largest speed or thrust
-_CHANGE_OF_PARAMETER = 0.1  # of a tolerance
-_LEAD = 30.0  # s, in which an FMU settles at what the log begins with
-_MOST_STEPS = 250_000  # of all FMUs together
 _MET = 4  # sets of times whose loads are kept: a few MB each
-_NEAR = 0.05  # of the largest speed, and in rad: for other inputs than these another surrogate is made
+
+
+@dataclass(frozen=True)
+class ThirdPartyPart:
+    """Numbers of the part of a third-party FMU; `part_of` gives it its fields."""
 
 
 class QuadraticThrust(NamedTuple):
@@ -141,7 +123,7 @@ class Surrogate:
         asked = np.asarray(time, float).tobytes()
         found = self.met.get(asked)
         if found is None:
-            at = (_without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
+            at = (without_holes(self.rows, time) - self.time[0]) / (self.time[1] - self.time[0])
             at = np.clip(at, 0.0, self.time.size - 1.0)
             low = np.minimum(np.asarray(at).astype(int), self.time.size - 2)
             share = at - low
@@ -152,18 +134,6 @@ class Surrogate:
             self.met[asked] = found
         return found
 
-    def fits(self, record: Record, units: Mapping[str, np.ndarray]) -> bool:
-        """Whether the surrogate was built for these times and similar inputs."""
-        inside = self.rows[0] <= record.time[0] and record.time[-1] <= self.rows[-1] + 1e-6
-        clock = _without_holes(self.rows, record.time)
-        near = {kind: _NEAR * max(np.abs(self.about.get(kind, 0.0)).max(), 1.0) for kind in ("rpm", "thrust")}
-        near["azimuth"] = _NEAR
-        return inside and all(
-            np.sqrt(np.mean((units[kind] - np.interp(clock, self.time, values)) ** 2)) < near[kind]
-            for kind, values in self.about.items()
-            if kind in DRIVES
-        )
-
 
 def _offsets(given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> list[tuple[str, str, float]]:
     """Offsets of the inputs: quantity, number of the part, sign."""
@@ -171,202 +141,6 @@ def _offsets(given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> list[tupl
     return [one for one in wrong if one[0] in given and hasattr(part, one[1])]
 
 
-def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipModel:
-    """The ship with surrogates of her third-party FMUs over a log.
-
-    Parameters
-    ----------
-    model : ShipModel
-    record : Record
-        Of one log.
-    motion : Motion
-        Near the measured one.
-
-    Returns
-    -------
-    ShipModel
-        Itself where all is known.
-    """
-    if not model.third_party:
-        return model
-    units = {name: drives_of(*pair) for name, pair in record.units.items()}
-    new = {
-        name: one
-        for name, one in model.third_party.items()
-        if one.surrogate is None or not one.surrogate.fits(record, units.get(name, {}))
-    }
-    surrogates = surrogates_of(new, record.time, units, motion) if new else {}
-    third_party = model.third_party | {name: replace(new[name], surrogate=one) for name, one in surrogates.items()}
-    parts, tolerances = dict(model.parts), dict(model.tolerances)
-    for name, one in third_party.items():
-        if "rpm" in one.drives:
-            parts[name] = replace(parts[name], rpm_max=one.built_surrogate.rpm_max)
-            tolerances[f"{name}.rpm_offset"] = 5e-4 * one.built_surrogate.rpm_max
-    return replace(model, parts=parts, tolerances=tolerances, third_party=third_party)
-
-
-def surrogates_of(
-    third_party: Mapping[str, ThirdPartyFmu],
-    time: np.ndarray,
-    units: Mapping[str, Mapping[str, np.ndarray]],
-    motion: Motion,
-) -> dict[str, Surrogate]:
-    """Surrogates of several FMUs, from one co-simulation.
-
-    Parameters
-    ----------
-    third_party : dict of str to ThirdPartyFmu
-    time : (n,) array
-        Even, but for holes between stretches. [s]
-    units : dict of str to dict of str to (n,) array
-        By third-party FMU: what drives it, as `drives_of` gives it.
-    motion : Motion
-        (n,) arrays, through still water.
-
-    Returns
-    -------
-    dict of str to Surrogate
-    """
-    moved = dict(zip(MOTION, (*motion, motion.u, motion.v), strict=True))
-    given = {name: {**moved, **units.get(name, {})} for name in third_party}
-    runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
-    clock = _without_holes(time, time)
-    fine = _fine(clock, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0))
-    fed = {name: {q: np.interp(fine, clock, values) for q, values in each.items()} for name, each in given.items()}
-    table = _simulated(runs, third_party, fed, fine)
-    return {
-        name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name], time)
-        for name, one in third_party.items()
-    }
-
-
-class _Run(NamedTuple):
-    """One copy of an FMU, with one input or one parameter changed by something."""
-
-    of: str
-    name: str
-    quantity: str = ""
-    number: str = ""
-    by: float = 0.0
-
-
-def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Iterator[_Run]:
-    """All copies of an FMU: as it is, and with each of its inputs and parameters changed."""
-    yield _Run(name, name)
-    for quantity in dict.fromkeys(link.quantity for link in one.links):
-        by = _CHANGE.get(quantity) or _CHANGE_OF_DRIVE * max(np.abs(given[quantity]).max(), 1.0)
-        yield _Run(name, f"{name} with another {quantity}", quantity, by=by)
-    for number, variable in one.parameters.items():
-        by = _CHANGE_OF_PARAMETER * one.component.tolerances[variable]
-        yield _Run(name, f"{name} with another {variable}", number=number, by=by)
-
-
-def _without_holes(rows: np.ndarray, time: np.ndarray) -> np.ndarray:
+def without_holes(rows: np.ndarray, time: np.ndarray) -> np.ndarray:
     """Times of a log as if its stretches followed each other at the even times of their rows."""
     return rows[0] + (rows[1] - rows[0]) * np.interp(time, rows, np.arange(rows.size))
-
-
-def _fine(time: np.ndarray, runs: int, step: float) -> np.ndarray:
-    """Times of the run: a quarter of the rows' step or the system's own, coarser where there are many copies."""
-    row, span = time[1] - time[0], time[-1] - time[0]
-    wanted = max(0.25 * row, step, min(row, runs * span / _MOST_STEPS))
-    h = step * max(int(wanted / step + 1e-6), 1) if step else wanted
-    return time[0] + h * np.arange(int(np.ceil(span / h - 1e-6)) + 1)
-
-
-def _simulated(
-    runs: Sequence[_Run],
-    third_party: Mapping[str, ThirdPartyFmu],
-    fed: Mapping[str, Mapping[str, np.ndarray]],
-    fine: np.ndarray,
-) -> xarray.Dataset:
-    """Table of a co-simulation of all copies, settled beforehand; rows are those of the times and one more."""
-    h = fine[1] - fine[0]
-    lead, components, connections, inputs, columns = int(np.ceil(_LEAD / h)), {}, [], {}, {}
-    for run in runs:
-        one = third_party[run.of]
-        start = dict(one.component.start)
-        if run.number:
-            variable = one.parameters[run.number]
-            start[variable] = number_of(one.component, variable) + run.by
-        components[run.name] = replace(one.component, name=run.name, start=start, step_size=None)
-        for link in one.links:
-            place = f"{run.of} {link.quantity}"
-            off = link.factor * run.by if link.quantity == run.quantity else 0.0
-            connections.append(Connection((None, place), (run.name, link.variable), link.factor, link.offset + off))
-            inputs[place] = Signal(place, "Real")
-            columns[place] = np.concatenate([np.full(lead, fed[run.of][link.quantity][0]), fed[run.of][link.quantity]])
-    clock = h * np.arange(lead + fine.size + 1)
-    table = make_table(clock, [(name, np.append(values, values[-1]), "", "") for name, values in columns.items()])
-    system = System("parts alone", "parts alone", components, tuple(connections), inputs)
-    found = simulate(system, Scenario(stop_time=float(clock[-1]), step_size=float(h)), RunOptions(inputs=table))
-    return found.isel(time=slice(lead + 1, None))  # what a step makes of a row is there at its end
-
-
-def _surrogate(
-    one: ThirdPartyFmu,
-    runs: Sequence[_Run],
-    table: xarray.Dataset,
-    fine: np.ndarray,
-    fed: Mapping[str, np.ndarray],
-    rows: np.ndarray,
-) -> Surrogate:
-    """The surrogate of a third-party FMU from the runs of its copies."""
-    base, *others = (_on_ship(one, run.name, table) for run in runs)
-    quantities = [run.quantity for run in runs if run.quantity]
-    nominal = {n: number_of(one.component, v) for n, v in one.parameters.items()}
-    rest = np.stack([base, *((other - base) / run.by for other, run in zip(others, runs[1:], strict=True))])
-    about, thrust, most = {q: fed[q] for q in quantities}, QuadraticThrust(), 1.0
-    if "rpm" in about:
-        top = next(one.component.fmu.variables[x.variable].maximum for x in one.links if x.quantity == "rpm")
-        factor = next(link.factor for link in one.links if link.quantity == "rpm")
-        logged = float(max(np.abs(fed["rpm"]).max(), 1.0))
-        most = max(abs(top / factor), logged) if top and np.isfinite(top) and top < 1e6 else logged
-        thrust = fitted_thrust(base, fed["rpm"], fed["azimuth"], "azimuth" in about)
-        ideal = thrust.loads(fed["rpm"], fed["azimuth"])
-        rest[0] -= ideal[0]
-        for quantity, slopes in zip(("rpm", "azimuth"), ideal[1:], strict=True):
-            if quantity in about:
-                rest[1 + quantities.index(quantity)] -= slopes
-    return Surrogate(fine, about, nominal, rest, thrust, most, rows)
-
-
-def _on_ship(one: ThirdPartyFmu, name: str, table: xarray.Dataset) -> np.ndarray:
-    """Load of a copy on the ship, (3, k) array."""
-    found = np.zeros((3, table.sizes["time"]))
-    for axis, output, factor, offset in one.loads:
-        found[_AXES.index(axis)] += factor * table[f"{name}.{output}"].values + offset
-    return found
-
-
-def fitted_thrust(load: np.ndarray, rpm: np.ndarray, azimuth: np.ndarray, turns: bool) -> QuadraticThrust:
-    """The quadratic law of thrust that fits loads best.
-
-    Parameters
-    ----------
-    load : (3, k) array
-        [N, N, N.m]
-    rpm, azimuth : (k,) array
-        [rpm, rad]
-    turns : bool
-        Whether the thrust turns with the direction.
-
-    Returns
-    -------
-    QuadraticThrust
-        Without thrust where the loads do not go with the squared speed.
-    """
-    square = rpm * np.abs(rpm)
-    scale = square @ square
-    if scale == 0.0:
-        return QuadraticThrust()
-    axis = 0.0 if turns else float(np.arctan2(load[1] @ square, load[0] @ square))
-    along = np.cos(axis + azimuth) * load[0] + np.sin(axis + azimuth) * load[1]
-    both = along @ square / scale
-    ways = [square * where for where in (rpm > 0.0, rpm < 0.0)]
-    ahead, astern = (max(along @ way / (way @ way), 0.0) if way @ way > 0.01 * scale else both for way in ways)
-    if both <= 0.0 or min(ahead, astern) <= 0.0:
-        return QuadraticThrust()
-    levers = np.stack([load[1], -load[0]], axis=-1)
-    x, y = np.linalg.lstsq(levers, load[2], rcond=1e-6)[0]
-    return QuadraticThrust(float(ahead), float(astern), axis, float(x), float(y))

@@ -8,6 +8,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, make_dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from shipcosim.diagnose.ship.surrogate import ThirdPartyPart
 from shipcosim.errors import Problem
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.parameters import quantity
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DRIVES",
-    "ThirdPartyPart",
     "Link",
     "ThirdPartyFmu",
     "drives_of",
@@ -35,11 +35,6 @@ MOTION = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r")
 """Outputs of the ship that a log tells."""
 _UNITS = {"rpm": ("rpm", "rad/s", "rev/s", "rev/min"), "thrust": ("N", "kN"), "azimuth": ("rad", "deg")}
 _KNOWN = 0.02  # of the thrust, where nobody says more (assumed)
-
-
-@dataclass(frozen=True)
-class ThirdPartyPart:
-    """Numbers of the part of a third-party FMU; `part_of` gives it its fields."""
 
 
 class Link(NamedTuple):

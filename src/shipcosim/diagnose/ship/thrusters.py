@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DpThruster",
+    "dp_thruster_of",
     "fixed_of",
     "neighbours_of",
     "neighbours_placed",
-    "dp_thruster_of",
     "thruster_loads",
     "with_thrust",
 ]

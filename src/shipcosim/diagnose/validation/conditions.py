@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.search import without_causes
-from shipcosim.diagnose.stages import JudgedLog, PredictedLog
+from shipcosim.diagnose.explanation.search import without_causes
+from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.validation.gain import Comparison, compare
-from shipcosim.diagnose.validation.missing_force import missing_forces
+from shipcosim.diagnose.validation.missing_force import MissingForce, missing_forces
 from shipcosim.diagnose.validation.split import is_idle, sorted_by, starts, without_headings
 from shipcosim.diagnose.validation.thresholds import FEWEST_PREDICTIONS, LEAST_TRAINED
 
@@ -18,6 +18,30 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
+
+
+@dataclass(frozen=True)
+class PredictedLog:
+    """A judged log with predictions on rows that nothing was fitted on, in array form.
+
+    Attributes
+    ----------
+    judged : JudgedLog
+    is_named : bool
+        Whether causes were named that predictions are made with; else only the plain model is compared.
+    comparison : Comparison or None
+        On the rows that were held out in time; None where there are too few.
+    held_out : dict of str to Comparison
+        By condition that was held out of the fit wherever in the log it is.
+    force : MissingForce
+        What the model lacks.
+    """
+
+    judged: JudgedLog
+    is_named: bool
+    comparison: Comparison | None
+    held_out: dict[str, Comparison]
+    force: MissingForce
 
 
 def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:

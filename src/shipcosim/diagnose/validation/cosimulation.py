@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.cosim import replay
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.inference.predictions import missing, predicted
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
-from shipcosim.diagnose.validation.predictions import missing, predicted
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
 from shipcosim.diagnose.validation.thresholds import INPUT_DELAY, MOST, STEP, WEATHER_RATE
 from shipcosim.errors import Problem, ShipcosimError

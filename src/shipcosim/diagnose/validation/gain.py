@@ -10,8 +10,7 @@ import xarray
 
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.linearisation import linearise
-from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.validation.predictions import (
+from shipcosim.diagnose.inference.predictions import (
     earth_fixed,
     missing,
     observed,
@@ -20,8 +19,10 @@ from shipcosim.diagnose.validation.predictions import (
     replayable,
     restarted,
 )
+from shipcosim.diagnose.inference.thresholds import DRAWS
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.validation.split import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
-from shipcosim.diagnose.validation.thresholds import BLOCK, DRAWS, FADES
+from shipcosim.diagnose.validation.thresholds import BLOCK, FADES
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:

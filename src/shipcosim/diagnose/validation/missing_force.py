@@ -10,8 +10,8 @@ import xarray
 
 from shipcosim.diagnose.inference.innovations import smoothed
 from shipcosim.diagnose.inference.parts import linearised_by_parts
+from shipcosim.diagnose.inference.predictions import mass_matrix
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
-from shipcosim.diagnose.validation.predictions import mass_matrix
 from shipcosim.diagnose.validation.thresholds import FEWEST_SECTOR_ROWS, FORCE_TIME, SECTORS
 from shipcosim.models.core.kinematics import to_body, to_ned
 

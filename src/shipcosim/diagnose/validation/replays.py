@@ -4,17 +4,42 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 
+import xarray
+
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import Fit
-from shipcosim.diagnose.result import Estimate, Finding
-from shipcosim.diagnose.stages import ExtendedSystem, PredictedLog, SimulatedLog
+from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
 
 __all__ = ["findings_of", "with_cosimulation"]
+
+
+@dataclass(frozen=True)
+class SimulatedLog:
+    """Predictions as co-simulations of the given and the extended system, or in array form where that was not possible.
+
+    Attributes
+    ----------
+    errors : xarray.Dataset or None
+        As of a `Comparison`; None where the log has too few rows.
+    held_out : dict of str to xarray.Dataset
+        By condition that was held out of the fit.
+    is_simulated : bool
+    remarks : tuple of str
+        Why they were not co-simulated.
+    """
+
+    errors: xarray.Dataset | None
+    held_out: dict[str, xarray.Dataset]
+    is_simulated: bool
+    remarks: tuple[str, ...] = ()
 
 
 def with_cosimulation(
@@ -71,7 +96,9 @@ def findings_of(fit: Fit) -> list[Finding]:
             hypothesis.cause,
             hypothesis.component,
             parameters={
-                of.name: Estimate(fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit)
+                of.name: ParameterEstimate(
+                    fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit
+                )
                 for of in hypothesis.parameters
             },
         )

@@ -32,8 +32,6 @@ FADES = (0.0, 1.0 / 40.0)
 """Rates at which the force of a bias observer fades in a prediction; the best on the training rows is taken. [1/s]"""
 BLOCK = 120.0
 """Blocks of the bootstrap: two of the longest horizon. [s]"""
-DRAWS = 1000
-"""Draws of the bootstrap."""
 FEWEST_INTERVAL_BLOCKS = 3
 """Fewest blocks for an interval of a part of the predictions."""
 
@@ -45,16 +43,6 @@ SECTORS = 24
 """Sectors of an angle in which the force is averaged."""
 FEWEST_SECTOR_ROWS = 5
 """Fewest rows of a sector."""
-
-# Predictions
-
-FASTEST = 20.0
-"""Speed at which a prediction that runs away is held. [m/s]"""
-FASTEST_TURN = 5.0
-"""Rate of turn at which it is held; boats of 1 m spin at 1. [rad/s]"""
-REFERENCE_JOLTS = 3.0
-"""Times the jolts that the reference is smoothed with, and seconds in which its force may change: the model moves it by
-some 2 cm then."""
 
 # Co-simulations
 

@@ -10,14 +10,15 @@ import numpy as np
 import xarray
 
 from shipcosim.cosim import replay
+from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
-from shipcosim.diagnose.ship.instruments import Instruments, readings, true_motion
+from shipcosim.diagnose.ship.instruments import Instruments
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table
 from shipcosim.diagnose.validation.gain import Predictor
-from shipcosim.diagnose.validation.predictions import predicted, replayable
 from shipcosim.diagnose.validation.thresholds import (
     LEAST_SHARE,
     LONGEST_HORIZON,
@@ -31,8 +32,8 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
+    from shipcosim.diagnose.explanation.verdict import JudgedLog
     from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.diagnose.stages import JudgedLog
 
 __all__ = [
     "Tracks",

@@ -16,7 +16,7 @@ import numpy as np
 from shipcosim.learn.dead_reckoning.worlds import Record
 from shipcosim.learn.training import Progress
 from shipcosim.models.prediction import motion_filter
-from shipcosim.models.prediction.motion_filter import Design
+from shipcosim.models.prediction.motion_filter import FilterNumbers
 from shipcosim.models.prediction.outage import Measured
 
 MASS_SURGE, MASS_SWAY = (
@@ -83,7 +83,7 @@ def reckoned(record: Record, law: Any, design: Any, valid: np.ndarray | None = N
         Of (worlds, n) arrays.
     law : module
         With `start` and `step`: `motion_filter` or `velocity_network`.
-    design : Design
+    design : FilterNumbers
         Of that law; of the filter also with (m, 1) arrays for m designs at once.
     valid : (worlds, n) array, optional
         1 where GNSS works, else as recorded. [1]
@@ -100,7 +100,7 @@ def reckoned(record: Record, law: Any, design: Any, valid: np.ndarray | None = N
     return found
 
 
-def design_of(change: np.ndarray) -> Design:
+def design_of(change: np.ndarray) -> FilterNumbers:
     """Numbers of the filter, from how far each is from where it starts.
 
     Parameters
@@ -110,14 +110,14 @@ def design_of(change: np.ndarray) -> Design:
 
     Returns
     -------
-    Design
+    FilterNumbers
         Of (...) arrays.
     """
     found = {}
-    for position, name in enumerate(Design._fields):
+    for position, name in enumerate(FilterNumbers._fields):
         one, at_start = change[..., position], (KNOWN | GAINS)[name]
         found[name] = at_start + one * abs(at_start) if name in SIGNED else at_start * np.exp(one)
-    return Design(**found)
+    return FilterNumbers(**found)
 
 
 def residuals(record: Record, change: np.ndarray) -> np.ndarray:
@@ -143,14 +143,14 @@ def residuals(record: Record, change: np.ndarray) -> np.ndarray:
             shrunk = (1.0 + (north * north + east * east) / ROBUST**2) ** -0.25  # the cost grows as the distance
             errors += [shrunk * north, shrunk * east]
     found = np.concatenate(errors, axis=1)
-    spread = np.array([WEIGHT[name] for name in Design._fields])
+    spread = np.array([WEIGHT[name] for name in FilterNumbers._fields])
     return np.concatenate([found / np.sqrt(found.shape[1] / 2), PRIOR * change / spread], axis=1)
 
 
 ROBUST, PRIOR = 1.0, 0.05  # m; 1, assumed: 400 outages worth of metres against one prior
 
 
-def fitted(record: Record, progress: Progress, iterations: int = 20) -> tuple[Design, list[dict[str, float]]]:
+def fitted(record: Record, progress: Progress, iterations: int = 20) -> tuple[FilterNumbers, list[dict[str, float]]]:
     """Numbers of the filter learned from records.
 
     Parameters
@@ -164,19 +164,19 @@ def fitted(record: Record, progress: Progress, iterations: int = 20) -> tuple[De
 
     Returns
     -------
-    tuple of Design and list of dict
+    tuple of FilterNumbers and list of dict
         The numbers, and the cost at each iteration.
 
     References
     ----------
     Marquardt, An algorithm for least-squares estimation of nonlinear parameters, J. SIAM 11, 1963.
     """
-    return _descended(lambda change: residuals(record, change), len(Design._fields), progress, iterations)
+    return _descended(lambda change: residuals(record, change), len(FilterNumbers._fields), progress, iterations)
 
 
 def _descended(
     of: Callable[[np.ndarray], np.ndarray], size: int, progress: Progress, iterations: int
-) -> tuple[Design, list[dict[str, float]]]:
+) -> tuple[FilterNumbers, list[dict[str, float]]]:
     """Levenberg and Marquardt's method with slopes by finite differences, all in one call."""
     change, damping, history = np.zeros(size), 1e-2, []
     for number in range(1, iterations + 1):

@@ -27,7 +27,7 @@ BATCH, HELD_OUT = 64, 0.1
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PaperIITraining:
     """One kind of networks.
 
     Parameters
@@ -52,8 +52,8 @@ class Recipe:
 
 
 RECIPES = {
-    "paper-ii": Recipe("Dead reckoning of paper II: LSTM of 43 units for surge and 26 for sway"),
-    "paper-ii-single-layer": Recipe(
+    "paper-ii": PaperIITraining("Dead reckoning of paper II: LSTM of 43 units for surge and 26 for sway"),
+    "paper-ii-single-layer": PaperIITraining(
         "Dead reckoning of paper II with a single layer of 55 sigmoids for surge and 93 for sway",
         recurrent=False,
         width=(55, 93),
@@ -97,12 +97,12 @@ def features_of(record: Record) -> np.ndarray:
     return np.stack([law.features(one, FULL_POWER, FULL_COMMAND) for one in samples], axis=1)
 
 
-def trained(recipe: Recipe, record: Record, progress: Progress) -> tuple[dict[str, np.ndarray], list[dict]]:
+def trained(recipe: PaperIITraining, record: Record, progress: Progress) -> tuple[dict[str, np.ndarray], list[dict]]:
     """Networks of both velocities, trained from scratch.
 
     Parameters
     ----------
-    recipe : Recipe
+    recipe : PaperIITraining
         How.
     record : Record
         Of (worlds, n) arrays, with GNSS.

@@ -14,7 +14,7 @@ from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress
 from shipcosim.models.prediction import motion_filter as filter_law
 from shipcosim.models.prediction import velocity_network as network_law
-from shipcosim.models.prediction.motion_filter import Design
+from shipcosim.models.prediction.motion_filter import FilterNumbers
 
 CALIBRATED_FOR = 720.0  # s, with four of the drills
 UNLEARNED = {
@@ -66,11 +66,15 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
     """
     size = size or Size()
     if name in UNLEARNED:
-        return _unlearned(name, progress)
+        progress(1, 1)
+        region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
+        notes = ("Its region is no more than a guess: half a metre at once, three metres after a minute.",)
+        arrays = _arrays(design_of(name)) | region | {"region.sea_share": np.array(1.0)}
+        return Trained(arrays, UNLEARNED[name], 0, {"worlds": 0}, {}, [], notes)
     return _filter(progress, size) if name == FILTER else _networks(name, progress, size)
 
 
-def design_of(name: str) -> Design:
+def design_of(name: str) -> FilterNumbers:
     """Numbers of the filter that nothing was learned for.
 
     Parameters
@@ -80,22 +84,14 @@ def design_of(name: str) -> Design:
 
     Returns
     -------
-    Design
+    FilterNumbers
         Numbers.
     """
-    known = Design(**KNOWN, **GAINS)
+    known = FilterNumbers(**KNOWN, **GAINS)
     return known._replace(surge_time=1e-3, sway_time=1e-3, **STILL) if name == "last-position" else known
 
 
 STILL = {"position_by_velocity": 0.0, "velocity_by_position": 0.0, "velocity_by_velocity": 0.0, "position_in_sea": 0.0}
-
-
-def _unlearned(name, progress):
-    progress(1, 1)
-    region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
-    notes = ("Its region is no more than a guess: half a metre at once, three metres after a minute.",)
-    arrays = _arrays(design_of(name)) | region | {"region.sea_share": np.array(1.0)}
-    return Trained(arrays, UNLEARNED[name], 0, {"worlds": 0}, {}, [], notes)
 
 
 def _filter(progress, size):
@@ -160,7 +156,7 @@ def _about(size: Size, record: Record, kind: str) -> dict:
     }
 
 
-def _arrays(design: Design) -> dict[str, np.ndarray]:
+def _arrays(design: FilterNumbers) -> dict[str, np.ndarray]:
     return {name: np.array(float(one)) for name, one in design._asdict().items()}
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from shipcosim.cosim import simulate, system_of
 from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
 from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
-from shipcosim.learn.true_ships import DAMPING, MEMORY, POWER, SPEEDS, STRIPS, WIND, Form, factors, sailed
+from shipcosim.learn.true_ships import DAMPING, MEMORY, POWER, SPEEDS, STRIPS, WIND, TrueLoads, factors, sailed
 from shipcosim.models.core.tables import text
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
@@ -194,7 +194,7 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
     quadratic = [values[f"vessel.{name}"] for name in ("X_uu", "Y_modvv", "N_modrr")]
     damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
     half = 0.5 * distance
-    form = Form(along, around, powers, damping, memory)
+    form = TrueLoads(along, around, powers, damping, memory)
     return values | {
         "vessel.cross_flow_drag": CROSS_FLOW * distance,
         "vessel.Y_modvv": (1.0 - half) * quadratic[1],

@@ -31,7 +31,7 @@ def fit(
         What is minimised.
     outputs : int
         Of a network.
-    recipe : Recipe
+    recipe : DockingTraining or PaperIIITraining
         With members, width, layers, dropout, epochs, batch, learning_rate, decay and noise.
     progress : callable
         Is told how many steps are done, and of how many.

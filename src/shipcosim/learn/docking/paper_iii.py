@@ -23,7 +23,7 @@ RATES, LAYERS, LEAST_NODES = (1e-4, 1e-1), (1, 2), 10
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PaperIIITraining:
     """How the ensemble is trained; members of 3, and what is searched in are the paper's.
 
     Parameters
@@ -79,7 +79,7 @@ def squares(given: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
     return ((given - torch.nan_to_num(target)) ** 2 * there).sum() / there.sum()
 
 
-def draws(recipe: Recipe) -> list[Recipe]:
+def draws(recipe: PaperIIITraining) -> list[PaperIIITraining]:
     """Sets of numbers that the search tries: uniform in the logarithms of learning rate and nodes."""
     rng = np.random.default_rng(recipe.seed)
     found = []
@@ -92,15 +92,18 @@ def draws(recipe: Recipe) -> list[Recipe]:
 
 
 def fit(
-    found: tuple[np.ndarray, np.ndarray], choice: tuple[np.ndarray, np.ndarray], recipe: Recipe, progress: Progress
-) -> tuple[dict[str, np.ndarray], list[dict[str, float]], list[tuple[Recipe, float]]]:
+    found: tuple[np.ndarray, np.ndarray],
+    choice: tuple[np.ndarray, np.ndarray],
+    recipe: PaperIIITraining,
+    progress: Progress,
+) -> tuple[dict[str, np.ndarray], list[dict[str, float]], list[tuple[PaperIIITraining, float]]]:
     """Search and train the ensemble.
 
     Parameters
     ----------
     found, choice : tuples of two arrays
         Inputs and targets, to train on and to choose by.
-    recipe : Recipe
+    recipe : PaperIIITraining
         How.
     progress : callable
         Is told how far it is, and of how much.

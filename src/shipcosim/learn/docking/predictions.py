@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.learn.docking import ours, paper_iii
+from shipcosim.learn.docking import distance_ensemble, paper_iii
 from shipcosim.learn.docking.inputs import Replay
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.prediction import docking
@@ -45,8 +45,8 @@ def by_paper_iii(replay: Replay, arrays: Mapping[str, np.ndarray]) -> Predicted:
 
 def by_ours(replay: Replay, arrays: Mapping[str, np.ndarray], hull: HullParameters) -> Predicted:
     """By our hybrid."""
-    trained, found = docking.trained_of(arrays), ours.features(replay, hull)
-    given = ours.given_by(trained, found)
+    trained, found = docking.trained_of(arrays), distance_ensemble.features(replay, hull)
+    given = distance_ensemble.given_by(trained, found)
     share = docking.share_of(found, given, trained)
     learned = docking.corrected(replay.own.ship, replay.ours, given)
     return Predicted(docking.blended(replay.kinetic, learned, share), share)

@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.cosim import system_of
 from shipcosim.learn.datasets import digest
-from shipcosim.learn.docking import dockings, ours, paper_iii, predictions, regions
+from shipcosim.learn.docking import distance_ensemble, dockings, paper_iii, predictions, regions
 from shipcosim.learn.docking.inputs import ShipModel, replay
 from shipcosim.learn.docking.records import Record
 from shipcosim.learn.results import Trained
@@ -18,7 +18,7 @@ from shipcosim.models.prediction.helm import HelmParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters
 
-OURS, PAPER_III = ours.Recipe(), paper_iii.Recipe()
+OURS, PAPER_III = distance_ensemble.DockingTraining(), paper_iii.PaperIIITraining()
 COMPONENT = "docking_predictor"
 """Of the system, whose parameters the predictor has."""
 SETS = {"training": dockings.TRAINING, "choices": dockings.CHOICES[:12], "calibration": dockings.CALIBRATION[:16]}
@@ -52,7 +52,7 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
     ----------
     learn : callable
         `learn_ours` or `learn_paper_iii`.
-    recipe : Recipe
+    recipe : DockingTraining or PaperIIITraining
         How; that of `learn`.
     progress : callable
         Is told how far it is.
@@ -66,7 +66,9 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
     return learn(records, ship(), recipe, part_of(progress, SAILING, 1.0 - SAILING))
 
 
-def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.Recipe, progress: Progress) -> Trained:
+def learn_ours(
+    records: dict[str, list[Record]], model: ShipModel, recipe: distance_ensemble.DockingTraining, progress: Progress
+) -> Trained:
     """Our predictor, learned from records.
 
     Parameters
@@ -75,7 +77,7 @@ def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.
         By `SETS`.
     model : ShipModel
         The ship as she knows herself.
-    recipe : Recipe
+    recipe : DockingTraining or PaperIIITraining
         How.
     progress : callable
         Is told how far it is.
@@ -86,8 +88,11 @@ def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.
         Weights, regions of this predictor and of the kinetic one, and report.
     """
     replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {name: (ours.features(one, model.hull), ours.targets(one)) for name, one in replayed.items()}
-    arrays, epochs = ours.fit(pairs["training"], pairs["choices"], recipe, progress)
+    pairs = {
+        name: (distance_ensemble.features(one, model.hull), distance_ensemble.targets(one))
+        for name, one in replayed.items()
+    }
+    arrays, epochs = distance_ensemble.fit(pairs["training"], pairs["choices"], recipe, progress)
     calibration = replayed["calibration"]
     predicted = predictions.by_ours(calibration, arrays, model.hull)
     arrays["widths"] = regions.calibrated(predicted, calibration)
@@ -99,7 +104,7 @@ def learn_ours(records: dict[str, list[Record]], model: ShipModel, recipe: ours.
 
 
 def learn_paper_iii(
-    records: dict[str, list[Record]], model: ShipModel, recipe: paper_iii.Recipe, progress: Progress
+    records: dict[str, list[Record]], model: ShipModel, recipe: paper_iii.PaperIIITraining, progress: Progress
 ) -> Trained:
     """The networks of paper III, learned from records.
 

@@ -32,7 +32,7 @@ STARTS = (1, 2, 3, 4, 5, 7, 9, 12, 16, 20)
 
 
 @dataclass(frozen=True)
-class Recipe:
+class DriftTraining:
     """How it is trained.
 
     Parameters
@@ -93,7 +93,7 @@ def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
 SIZE = len(COEFFICIENTS) + len(STATES) + len(REST)
 
 
-def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: Recipe) -> torch.Tensor:
+def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTraining) -> torch.Tensor:
     """What predictions miss, nearly in proportion where it is much.
 
     Parameters
@@ -104,7 +104,7 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: Recipe) -> t
         Records.
     ship : Ship
         The ship's own model.
-    recipe : Recipe
+    recipe : DriftTraining
         For the pull.
 
     Returns
@@ -118,7 +118,9 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: Recipe) -> t
     return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (numbers * numbers).sum()
 
 
-def fit(sailed: Sailed, ship: Ship, recipe: Recipe, progress: Progress) -> tuple[np.ndarray, list[dict[str, float]]]:
+def fit(
+    sailed: Sailed, ship: Ship, recipe: DriftTraining, progress: Progress
+) -> tuple[np.ndarray, list[dict[str, float]]]:
     """Steps of Adam down the loss.
 
     Parameters
@@ -127,7 +129,7 @@ def fit(sailed: Sailed, ship: Ship, recipe: Recipe, progress: Progress) -> tuple
         Records of the training worlds.
     ship : Ship
         The ship's own model.
-    recipe : Recipe
+    recipe : DriftTraining
         How.
     progress : callable
         Is told how many steps are done, and of how many.

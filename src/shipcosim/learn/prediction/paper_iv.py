@@ -28,7 +28,7 @@ NOTES = (
 
 
 @dataclass(frozen=True)
-class Recipe:
+class PaperIVTraining:
     """How the networks are trained.
 
     Parameters
@@ -92,7 +92,7 @@ def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np
 
 
 def fit(
-    inputs: np.ndarray, targets: np.ndarray, recipe: Recipe, progress: Progress
+    inputs: np.ndarray, targets: np.ndarray, recipe: PaperIVTraining, progress: Progress
 ) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
     """Train the ensemble, all networks at once.
 
@@ -100,7 +100,7 @@ def fit(
     ----------
     inputs, targets : (n, 9), (n, 3) array
         As `samples` gives them; `recipe.samples` of them are drawn.
-    recipe : Recipe
+    recipe : PaperIVTraining
         How.
     progress : callable
         Is told how many epochs are done, and of how many at most.

@@ -11,12 +11,12 @@ import numpy as np
 import torch
 
 from shipcosim.learn.prediction.drift import SCALES
-from shipcosim.learn.prediction.paper_iv import Recipe, arrays_of, first_weights
+from shipcosim.learn.prediction.paper_iv import PaperIVTraining, arrays_of, first_weights
 from shipcosim.learn.prediction.rollouts import HORIZONS, Sailed, Ship, known_of, mapped
 from shipcosim.learn.training import Progress, repeatable
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.prediction import paper_iv
-from shipcosim.models.prediction.known import air_velocity
+from shipcosim.models.prediction.predictor_inputs import air_velocity
 
 LENGTH = 60
 """Of a rollout. [s]"""
@@ -134,7 +134,7 @@ def loss(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stret
 
 
 def fit(
-    scales: dict[str, np.ndarray], data: Stretches, ship: Ship, recipe: Recipe, steps: int, progress: Progress
+    scales: dict[str, np.ndarray], data: Stretches, ship: Ship, recipe: PaperIVTraining, steps: int, progress: Progress
 ) -> tuple[dict[str, np.ndarray], list[float]]:
     """Train the ensemble from the first weights of one-step training.
 
@@ -146,7 +146,7 @@ def fit(
         Pieces of records.
     ship : Ship
         The ship's own model.
-    recipe : Recipe
+    recipe : PaperIVTraining
         Members, width, seed and learning rate.
     steps : int
         Of Adam, each with all pieces. [1]

@@ -9,7 +9,7 @@ import torch
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import drift_off, own_model, own_record
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 

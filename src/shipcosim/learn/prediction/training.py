@@ -18,8 +18,10 @@ from shipcosim.models.prediction.own_model import Learned
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters
 
-OURS = drift.Recipe("Our drift predictor of the DP ship: beliefs that her own record corrects", tuple(range(1, 25)))
-PAPER_IV = paper_iv.Recipe("The drift predictor of paper IV for the DP ship", tuple(range(1, 13)))
+OURS = drift.DriftTraining(
+    "Our drift predictor of the DP ship: beliefs that her own record corrects", tuple(range(1, 25))
+)
+PAPER_IV = paper_iv.PaperIVTraining("The drift predictor of paper IV for the DP ship", tuple(range(1, 13)))
 NOTES = (
     "Targets are the ships' own later estimates of place and heading; no true state, current or wind is used.",
     "An epoch is a step of the optimiser with all worlds.",
@@ -86,7 +88,7 @@ def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe
     ----------
     learn : callable
         `ours` or `as_paper_iv`.
-    recipe : Recipe
+    recipe : DriftTraining or PaperIVTraining
         How; that of `learn`.
     progress : callable
         Is told how far it is.
@@ -100,14 +102,14 @@ def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe
     return learn(records, recipe, part_of(progress, SAILING, 1.0 - SAILING))
 
 
-def ours(records: Sequence[worlds.Record], recipe: drift.Recipe, progress: Progress) -> Trained:
+def ours(records: Sequence[worlds.Record], recipe: drift.DriftTraining, progress: Progress) -> Trained:
     """Our predictor, learned from records of worlds.
 
     Parameters
     ----------
     records : sequence of Record
         Of the recipe's worlds.
-    recipe : Recipe
+    recipe : DriftTraining or PaperIVTraining
         How.
     progress : callable
         Is told how far it is.
@@ -152,14 +154,14 @@ def limits(learned: Learned, sailed: Sailed, about: Ship) -> np.ndarray:
     return found.reshape(len(drift_off.MEASURES), -1).max(axis=1)
 
 
-def as_paper_iv(records: Sequence[worlds.Record], recipe: paper_iv.Recipe, progress: Progress) -> Trained:
+def as_paper_iv(records: Sequence[worlds.Record], recipe: paper_iv.PaperIVTraining, progress: Progress) -> Trained:
     """The networks of paper IV, learned from records of worlds.
 
     Parameters
     ----------
     records : sequence of Record
         Of the recipe's worlds.
-    recipe : Recipe
+    recipe : DriftTraining or PaperIVTraining
         How.
     progress : callable
         Is told how far it is.

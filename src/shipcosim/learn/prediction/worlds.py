@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim import simulate, system_of
-from shipcosim.learn.true_ships import DAMPING, MEMORY, NOISE, POWER, SPEEDS, STRIPS, WIND, Form, factors, sailed
+from shipcosim.learn.true_ships import DAMPING, MEMORY, NOISE, POWER, SPEEDS, STRIPS, WIND, TrueLoads, factors, sailed
 from shipcosim.scenario import Event, Scenario
 
 TRAINING, CALIBRATION, TUNING = range(1, 200), range(200, 300), range(300, 400)
@@ -242,7 +242,7 @@ def _form(rng: np.random.Generator, distance: float, values: dict[str, float]) -
     along = factors(rng, 5, STRIPS, distance)
     powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
     around = factors(rng, (8, 3), WIND, distance)
-    return Form(along, around, powers, damping, memory).values() | {
+    return TrueLoads(along, around, powers, damping, memory).values() | {
         "vessel.memory_time": float(rng.uniform(*MEMORY_TIMES)),
     }
 

@@ -36,7 +36,7 @@ class ExtendedParameters(AllocationParameters):
     )
 
 
-class Design(NamedTuple):
+class ComponentInverses(NamedTuple):
     """Configuration matrix of the force components and the generalised inverses of its parts.
 
     Parameters
@@ -52,7 +52,7 @@ class Design(NamedTuple):
     inverses: tuple
 
 
-def design(parameters: ExtendedParameters) -> Design:
+def design(parameters: ExtendedParameters) -> ComponentInverses:
     """Weighted generalised inverses for all sets of free units.
 
     Parameters
@@ -62,7 +62,7 @@ def design(parameters: ExtendedParameters) -> Design:
 
     Returns
     -------
-    Design
+    ComponentInverses
         What `step` needs.
 
     Notes
@@ -90,7 +90,7 @@ def design(parameters: ExtendedParameters) -> Design:
             weighted = scale[:, None] * np.array(effect).T * (price * free)
             inverse = price[:, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale
             inverses.append(tuple(map(tuple, inverse.tolist())))
-    return Design(effect, tuple(inverses))
+    return ComponentInverses(effect, tuple(inverses))
 
 
 def at_rest(tau: Load, *, parameters: ExtendedParameters) -> Allocated:
@@ -122,7 +122,7 @@ def step(
     h: float,
     *,
     parameters: ExtendedParameters,
-    design: Design,
+    design: ComponentInverses,
     shares: tuple = (1.0, 1.0, 1.0),
 ) -> Allocated:
     """Commands for a requested load, `h` after the last ones.
@@ -139,7 +139,7 @@ def step(
         Time since the last commands, for the limits of the rates. [s]
     parameters : ExtendedParameters
         Units, limits and weights.
-    design : Design
+    design : ComponentInverses
         Made of the same parameters by `design`.
     shares : tuple of three floats or (...) arrays or tensors
         Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]

@@ -16,7 +16,7 @@ from shipcosim.models.allocation.neural import Units
 _DEGREES = 180.0 / pi
 
 
-class Unit(NamedTuple):
+class FloatThruster(NamedTuple):
     """A unit as `neural.Units` has it, and what follows from its numbers alone.
 
     Parameters
@@ -52,8 +52,8 @@ class Floats(NamedTuple):
 
     Parameters
     ----------
-    units : tuple of Unit
-        The units. [as of Unit]
+    units : tuple of FloatThruster
+        The units. [as of FloatThruster]
     lever : float
         As of `neural.Units`. [m]
     largest : float
@@ -100,7 +100,9 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     for front, behind in np.argwhere(kept < 1.0).tolist():
         bearing, tandem = float(u.bearing[front, behind]), float(kept[front, behind])
         pairs.append((front, behind, bearing, tandem, 130.0 / tandem**3))
-    return Floats(tuple(Unit(*row) for row in zip(*columns, strict=True)), u.lever, largest, tuple(pairs), weights)
+    return Floats(
+        tuple(FloatThruster(*row) for row in zip(*columns, strict=True)), u.lever, largest, tuple(pairs), weights
+    )
 
 
 def propose(

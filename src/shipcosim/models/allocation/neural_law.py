@@ -16,7 +16,7 @@ from shipcosim.models.core.maths import Arithmetic, library_of, where
 from shipcosim.models.core.motion import Load
 
 
-class Design(NamedTuple):
+class NeuralLaw(NamedTuple):
     """What a step needs of the parameters.
 
     Parameters
@@ -36,7 +36,7 @@ class Design(NamedTuple):
     units: Units
     numbers: tuple
     weights: tuple
-    safety: sqp.Design
+    safety: sqp.OptimalProblem
     floats: Floats
 
 
@@ -67,7 +67,7 @@ class Remembered(NamedTuple):
     proposed: tuple
 
 
-def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, lever_degraded: float) -> Design:
+def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, lever_degraded: float) -> NeuralLaw:
     """Design for some units and a trained network.
 
     Parameters
@@ -85,7 +85,7 @@ def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, 
 
     Returns
     -------
-    Design
+    NeuralLaw
         What `step` needs.
 
     Raises
@@ -103,13 +103,13 @@ def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, 
         raise ValueError(f"the network was trained for {trained} units, the ship has {len(units.x)}")
     rows = zip(*(np.asarray(values).tolist() for values in units[:10]), least_degraded, strict=True)
     safety = sqp.designed(tuple(_unit(*row) for row in rows), 0.0, units.lever, lever_degraded)
-    return Design(units, numbers, weights, safety, floats_of(units, weights))
+    return NeuralLaw(units, numbers, weights, safety, floats_of(units, weights))
 
 
 def _unit(x, y, azimuth, turn, first, last, least, most, rate, full_power, degraded):
     """A unit as the quadratic program knows it."""
     interval = (first, last) if turn > 0.0 else (azimuth, azimuth)
-    return sqp.Unit(x, y, least, most, degraded, rate, *interval, turn, max(full_power, 1.0) / most**1.5)
+    return sqp.AllocatedThruster(x, y, least, most, degraded, rate, *interval, turn, max(full_power, 1.0) / most**1.5)
 
 
 def resting(tau: Load, azimuths: tuple) -> Remembered:
@@ -136,7 +136,7 @@ def resting(tau: Load, azimuths: tuple) -> Remembered:
 
 
 def step(
-    state: Remembered, tau: Load, available: tuple, h: float, *, design: Design, shares: tuple | None = None
+    state: Remembered, tau: Load, available: tuple, h: float, *, design: NeuralLaw, shares: tuple | None = None
 ) -> Remembered:
     """Commands for a requested load, `h` after the last ones.
 
@@ -150,7 +150,7 @@ def step(
         Whether the units can be used; one that cannot gives 0 at once and keeps its angle. [1]
     h : float
         Time since the last commands. [s]
-    design : Design
+    design : NeuralLaw
         Made by `designed`.
     shares : tuple of floats or (...) arrays, optional
         Shares of their limits of thrust that power leaves to the units. [1]

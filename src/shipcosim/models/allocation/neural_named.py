@@ -12,7 +12,7 @@ import numpy as np
 from shipcosim.angles import wrap
 from shipcosim.models.allocation import neural_law
 from shipcosim.models.allocation.neural import Units
-from shipcosim.models.allocation.neural_law import Design, Remembered, resting
+from shipcosim.models.allocation.neural_law import NeuralLaw, Remembered, resting
 from shipcosim.models.allocation.optimal import OptimalParameters
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
@@ -82,7 +82,7 @@ def units_of(parameters: NeuralParameters, full_power: tuple = (1.0, 1.0, 1.0)) 
     )
 
 
-def design(parameters: NeuralParameters, arrays: dict) -> Design:
+def design(parameters: NeuralParameters, arrays: dict) -> NeuralLaw:
     """What the law needs of the parameters and of a trained network.
 
     Parameters
@@ -94,7 +94,7 @@ def design(parameters: NeuralParameters, arrays: dict) -> Design:
 
     Returns
     -------
-    Design
+    NeuralLaw
         Port, starboard and tunnel.
 
     References
@@ -135,7 +135,7 @@ def step(
     h: float,
     *,
     parameters: NeuralParameters,
-    design: Design,
+    design: NeuralLaw,
     shares: tuple = (1.0, 1.0, 1.0),
 ) -> Remembered:
     """Commands for a requested load, `h` after the last ones.
@@ -152,7 +152,7 @@ def step(
         Time since the last commands. [s]
     parameters : NeuralParameters
         Units and limits.
-    design : Design
+    design : NeuralLaw
         Made of the same parameters by `design`.
     shares : tuple of three floats or (...) arrays
         Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]

@@ -12,7 +12,7 @@ import numpy as np
 from shipcosim.models.allocation import neural_law
 from shipcosim.models.allocation.fixed_angles import UNITS
 from shipcosim.models.allocation.neural import Units
-from shipcosim.models.allocation.neural_law import Design, Remembered, resting
+from shipcosim.models.allocation.neural_law import NeuralLaw, Remembered, resting
 from shipcosim.models.allocation.optimal_units import OptimalUnitsParameters
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
@@ -77,7 +77,7 @@ def _chosen(parameters, name, numbers):
     return np.array(parameters.of_units(name))[list(numbers)]
 
 
-def design(parameters: NeuralUnitsParameters, arrays: dict) -> Design:
+def design(parameters: NeuralUnitsParameters, arrays: dict) -> NeuralLaw:
     """What the law needs of the parameters and of a trained network.
 
     Parameters
@@ -89,7 +89,7 @@ def design(parameters: NeuralUnitsParameters, arrays: dict) -> Design:
 
     Returns
     -------
-    Design
+    NeuralLaw
         The units that there are.
 
     References
@@ -130,7 +130,7 @@ def step(
     h: float,
     *,
     parameters: NeuralUnitsParameters,
-    design: Design,
+    design: NeuralLaw,
 ) -> Remembered:
     """Commands for a requested load, `h` after the last ones.
 
@@ -146,7 +146,7 @@ def step(
         Time since the last commands. [s]
     parameters : NeuralUnitsParameters
         Units and limits.
-    design : Design
+    design : NeuralLaw
         Made of the same parameters by `design`.
 
     Returns

@@ -8,7 +8,7 @@ fixed angles `port_azimuth` and `starboard_azimuth` are those of laws that turn 
 from dataclasses import dataclass
 from math import pi
 
-from shipcosim.models.allocation.sqp import Design, Turned, Unit, designed, power_step, resting
+from shipcosim.models.allocation.sqp import AllocatedThruster, OptimalProblem, Turned, designed, power_step, resting
 from shipcosim.models.allocation.units import NamedUnits
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
@@ -45,7 +45,7 @@ class OptimalParameters(NamedUnits):
     )
 
 
-def design(parameters: OptimalParameters) -> Design:
+def design(parameters: OptimalParameters) -> OptimalProblem:
     """What the law needs of the parameters.
 
     Parameters
@@ -55,7 +55,7 @@ def design(parameters: OptimalParameters) -> Design:
 
     Returns
     -------
-    Design
+    OptimalProblem
         Port, starboard and tunnel.
 
     References
@@ -69,9 +69,9 @@ def design(parameters: OptimalParameters) -> Design:
     most, across = p.tunnel_thrust_max, 0.5 * pi
     tunnel = -most, most, -most, p.thrust_rate_max, across, across, 0.0, p.tunnel_price
     units = (
-        Unit(p.port_x, p.port_y, *force, *port),
-        Unit(p.starboard_x, p.starboard_y, *force, *starboard),
-        Unit(p.tunnel_x, 0.0, *tunnel),
+        AllocatedThruster(p.port_x, p.port_y, *force, *port),
+        AllocatedThruster(p.starboard_x, p.starboard_y, *force, *starboard),
+        AllocatedThruster(p.tunnel_x, 0.0, *tunnel),
     )
     return designed(units, p.turning_time, p.yaw_lever, p.yaw_lever_degraded)
 
@@ -105,7 +105,7 @@ def step(
     h: float,
     *,
     parameters: OptimalParameters,
-    design: Design,
+    design: OptimalProblem,
     shares: tuple = (1.0, 1.0, 1.0),
 ) -> Turned:
     """Commands for a requested load, `h` after the last ones.
@@ -122,7 +122,7 @@ def step(
         Time since the last commands, for the limits of the rates. [s]
     parameters : OptimalParameters
         Units and limits.
-    design : Design
+    design : OptimalProblem
         Made of the same parameters by `design`.
     shares : tuple of three floats or (...) arrays or tensors
         Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import inf
 
 from shipcosim.models.allocation.fixed_angles import UNITS, FixedAngleParameters
-from shipcosim.models.allocation.sqp import Design, Turned, Unit, designed, power_step, resting
+from shipcosim.models.allocation.sqp import AllocatedThruster, OptimalProblem, Turned, designed, power_step, resting
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
 
@@ -80,7 +80,7 @@ class OptimalUnitsParameters(FixedAngleParameters):
     )
 
 
-def design(parameters: OptimalUnitsParameters) -> Design:
+def design(parameters: OptimalUnitsParameters) -> OptimalProblem:
     """What the law needs of the parameters.
 
     Parameters
@@ -90,7 +90,7 @@ def design(parameters: OptimalUnitsParameters) -> Design:
 
     Returns
     -------
-    Design
+    OptimalProblem
         Unit 1 to 6.
 
     References
@@ -109,8 +109,8 @@ def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, first, last, leas
     price = specific_power * max(high, -low, 1.0) ** -0.5
     if azimuth_rate > 0.0:
         first, last = (first, last) if last > first else (-inf, inf)
-        return Unit(x, y, min(least, high), high, low, thrust_rate, first, last, azimuth_rate, price)
-    return Unit(x, y, low, high, low, thrust_rate, azimuth, azimuth, 0.0, price)
+        return AllocatedThruster(x, y, min(least, high), high, low, thrust_rate, first, last, azimuth_rate, price)
+    return AllocatedThruster(x, y, low, high, low, thrust_rate, azimuth, azimuth, 0.0, price)
 
 
 def at_rest(tau: Load, *, parameters: OptimalUnitsParameters) -> Turned:
@@ -142,7 +142,7 @@ def step(
     h: float,
     *,
     parameters: OptimalUnitsParameters,
-    design: Design,
+    design: OptimalProblem,
     shares: tuple = (1.0,) * UNITS,
 ) -> Turned:
     """Commands for a requested load, `h` after the last ones.
@@ -159,7 +159,7 @@ def step(
         Time since the last commands, for the limits of the rates. [s]
     parameters : OptimalUnitsParameters
         Units and limits.
-    design : Design
+    design : OptimalProblem
         Made of the same parameters by `design`.
     shares : tuple of six floats or (...) arrays or tensors
         Shares of their limits of thrust that power leaves to the units. [1]

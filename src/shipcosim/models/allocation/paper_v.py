@@ -30,7 +30,7 @@ class PaperVParameters(NamedUnits):
     """Two azimuth thrusters and a tunnel thruster; what the network knows of them lies in its weights."""
 
 
-class Design(NamedTuple):
+class Encoder(NamedTuple):
     """What `step` needs of the training.
 
     Parameters
@@ -67,7 +67,7 @@ class PaperVState(NamedTuple):
     saturated : bool
         True where a missing unit or a lack of power changes what the network commands. [1]
     commands : tuple of five floats
-        Last outputs of the network, as `Design.ranges`. [N, N, rad, N, rad]
+        Last outputs of the network, as `Encoder.ranges`. [N, N, rad, N, rad]
     memory : tuple of Memory
         Memory of the network. [1]
     since : float
@@ -85,7 +85,7 @@ class PaperVState(NamedTuple):
     since: float
 
 
-def design(arrays: Mapping[str, np.ndarray]) -> Design:
+def design(arrays: Mapping[str, np.ndarray]) -> Encoder:
     """What `step` needs, from what training left.
 
     Parameters
@@ -95,7 +95,7 @@ def design(arrays: Mapping[str, np.ndarray]) -> Design:
 
     Returns
     -------
-    Design
+    Encoder
         What `step` needs. [as its fields]
 
     Raises
@@ -104,7 +104,7 @@ def design(arrays: Mapping[str, np.ndarray]) -> Design:
         An array is missing.
     """
     plain = (arrays["mean"], arrays["std"], arrays["ranges"], float(arrays["sample_time"]))
-    return Design(network_of(arrays, "encoder"), *plain)
+    return Encoder(network_of(arrays, "encoder"), *plain)
 
 
 def at_rest(tau: Load, *, parameters: PaperVParameters) -> PaperVState:
@@ -135,7 +135,7 @@ def step(
     h: float,
     *,
     parameters: PaperVParameters,
-    design: Design,
+    design: Encoder,
     shares: tuple = (1.0, 1.0, 1.0),
 ) -> PaperVState:
     """Commands for a requested load, `h` after the last ones.
@@ -152,7 +152,7 @@ def step(
         Time since the last commands. [s]
     parameters : PaperVParameters
         Places and limits.
-    design : Design
+    design : Encoder
         What training left.
     shares : tuple of three floats
         Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]

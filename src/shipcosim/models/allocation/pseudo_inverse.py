@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import clip, cos, pi, sin, where
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
 
@@ -24,7 +24,7 @@ class AllocationParameters(NamedUnits):
     tunnel_weight: float = required("1", "price of the tunnel's thrust", minimum=1e-6)
 
 
-class Design(NamedTuple):
+class ThrusterInverses(NamedTuple):
     """Thruster configuration matrix and the generalised inverses of its parts.
 
     Parameters
@@ -70,7 +70,7 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
 
 
 @kept(8)
-def design(parameters: AllocationParameters) -> Design:
+def design(parameters: AllocationParameters) -> ThrusterInverses:
     """Weighted generalised inverses for all sets of free units.
 
     Parameters
@@ -80,7 +80,7 @@ def design(parameters: AllocationParameters) -> Design:
 
     Returns
     -------
-    Design
+    ThrusterInverses
         What `step` needs.
 
     Notes
@@ -102,7 +102,7 @@ def design(parameters: AllocationParameters) -> Design:
         for lever in (p.yaw_lever, p.yaw_lever_degraded)
         for k in range(8)
     ]
-    return Design(b, tuple(inverses))
+    return ThrusterInverses(b, tuple(inverses))
 
 
 def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
@@ -125,7 +125,9 @@ def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
     Definition.
     """
     zero = 0.0 * tau[0]
-    return Allocated((zero,) * 3, _azimuths(parameters), zero, zero, zero, zero > 0.0)
+    # Angles of port, starboard and tunnel. [rad]
+    azimuths = parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
+    return Allocated((zero,) * 3, azimuths, zero, zero, zero, zero > 0.0)
 
 
 def step(
@@ -135,7 +137,7 @@ def step(
     h: float,
     *,
     parameters: AllocationParameters,
-    design: Design,
+    design: ThrusterInverses,
     shares: tuple = (1.0, 1.0, 1.0),
 ) -> Allocated:
     """Commands for a requested load, `h` after the last ones.
@@ -152,7 +154,7 @@ def step(
         Time since the last commands, for the rate limit. [s]
     parameters : AllocationParameters
         Units, limits and weights.
-    design : Design
+    design : ThrusterInverses
         Made of the same parameters by `design`.
     shares : tuple of three floats or (...) arrays or tensors
         Shares of their limits of thrust that power leaves to port, starboard and tunnel. What exceeds them is taken
@@ -181,11 +183,6 @@ def step(
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
-def _azimuths(parameters):
-    """Angles of port, starboard and tunnel. [rad]"""
-    return parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
-
-
 def _limits(shares, parameters):
     """Least and largest thrust of port, starboard and tunnel. [N]"""
     p, (port, starboard, tunnel) = parameters, shares
@@ -203,7 +200,14 @@ def _within_limits(tau, available, limits, *, design):
         given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = a != given[0], b != given[1], c != given[2]
-        if not _anywhere(over[0] | over[1] | over[2]):
+        # True if a condition holds for any element.
+        condition = over[0] | over[1] | over[2]
+        anywhere = (
+            condition
+            if isinstance(condition, bool)
+            else bool(condition.any() if hasattr(condition, "any") else condition)
+        )
+        if not anywhere:
             break
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
@@ -239,13 +243,6 @@ def _choose(index, rows):
     for number, row in enumerate(rows[1:], 1):
         chosen = [where(index == number, new, old) for new, old in zip(row, chosen, strict=True)]
     return chosen
-
-
-def _anywhere(condition):
-    """Whether a condition holds for any element."""
-    return (
-        condition if isinstance(condition, bool) else bool(condition.any() if hasattr(condition, "any") else condition)
-    )
 
 
 def _float(value):

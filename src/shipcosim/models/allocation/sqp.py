@@ -27,7 +27,7 @@ _TIGHT = 1e-6  # load that is missed for the dearest unit's price, over the larg
 _NEAR = 1e-4  # N that are missed for one newton of distance from a proposed command
 
 
-class Unit(NamedTuple):
+class AllocatedThruster(NamedTuple):
     """A thruster as the law knows it.
 
     Parameters
@@ -60,13 +60,13 @@ class Unit(NamedTuple):
     price: float
 
 
-class Design(NamedTuple):
+class OptimalProblem(NamedTuple):
     """What a step needs of the parameters.
 
     Parameters
     ----------
-    units : tuple of Unit
-        The units; one whose `most` is 0 is none. [as of Unit]
+    units : tuple of AllocatedThruster
+        The units; one whose `most` is 0 is none. [as of AllocatedThruster]
     turning_time : float
         Time constant of turning towards the cheapest direction. [s]
     yaw_lever, yaw_lever_degraded : float
@@ -106,19 +106,19 @@ class Turned(NamedTuple):
     marginal: tuple
 
 
-def designed(units: tuple, turning_time: float, yaw_lever: float, yaw_lever_degraded: float) -> Design:
+def designed(units: tuple, turning_time: float, yaw_lever: float, yaw_lever_degraded: float) -> OptimalProblem:
     """Design for some units.
 
     Parameters
     ----------
-    units : tuple of Unit
-        The units. [as of Unit]
+    units : tuple of AllocatedThruster
+        The units. [as of AllocatedThruster]
     turning_time, yaw_lever, yaw_lever_degraded : float
-        As of `Design`. [s, m, m]
+        As of `OptimalProblem`. [s, m, m]
 
     Returns
     -------
-    Design
+    OptimalProblem
         What `power_step` and `nearest_step` need.
 
     References
@@ -126,7 +126,7 @@ def designed(units: tuple, turning_time: float, yaw_lever: float, yaw_lever_degr
     Definition.
     """
     dearest = max(1.5 * unit.price * sqrt(max(unit.most, -unit.least, 0.0)) for unit in units)
-    return Design(units, turning_time, yaw_lever, yaw_lever_degraded, max(dearest, 1e-9))
+    return OptimalProblem(units, turning_time, yaw_lever, yaw_lever_degraded, max(dearest, 1e-9))
 
 
 def resting(tau: Load, azimuths: tuple) -> Turned:
@@ -152,7 +152,7 @@ def resting(tau: Load, azimuths: tuple) -> Turned:
 
 
 def power_step(
-    state: Turned, tau: Load, available: tuple, h: float, *, design: Design, shares: tuple | None = None
+    state: Turned, tau: Load, available: tuple, h: float, *, design: OptimalProblem, shares: tuple | None = None
 ) -> Turned:
     """Commands that meet a requested load at the least power, `h` after the last ones.
 
@@ -166,7 +166,7 @@ def power_step(
         Whether the units can be used; one that cannot gives 0 at once and keeps its angle. [1]
     h : float
         Time since the last commands, for the limits of the rates. [s]
-    design : Design
+    design : OptimalProblem
         The units.
     shares : tuple of floats or (...) arrays or tensors, optional
         Shares of their limits of thrust that power leaves to the units; what exceeds them is taken back at once,
@@ -195,7 +195,7 @@ def nearest_step(
     available: tuple,
     h: float,
     *,
-    design: Design,
+    design: OptimalProblem,
     shares: tuple | None = None,
 ) -> Turned:
     """Admissible commands nearest to proposed ones among those that meet a requested load best.
@@ -228,7 +228,9 @@ def nearest_step(
 
 def _step(state, tau, available, h, design, shares, slack, proposed):
     """Both programs: changes of thrust and angle, then thrusts at the new angles."""
-    whole = _all(available, design)
+    # True if no unit is missing.
+    missing = sum(where(on, 0.0, 1.0) for on, unit in zip(available, design.units, strict=True) if unit.most > 0.0)
+    whole = missing < 0.5
     around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
     unmet, changes = tau, []
     for at in around:
@@ -280,7 +282,7 @@ class _Around(NamedTuple):
     """A unit at its last command, and the bounds of the next."""
 
     index: int
-    unit: Unit
+    unit: AllocatedThruster
     thrust: Arithmetic
     azimuth: Arithmetic
     effect: tuple[Arithmetic, Arithmetic, Arithmetic]
@@ -359,7 +361,7 @@ def _nearest(at, thrusts, azimuths):
     return 1.0, clip(thrusts[at.index], at.low, at.high) - f, 1.0 / (arm * arm), clip(atan2(s, c), at.left, at.right)
 
 
-def _effect(unit: Unit, s: Arithmetic, c: Arithmetic) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def _effect(unit: AllocatedThruster, s: Arithmetic, c: Arithmetic) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     """Load of one newton at an angle of given sine and cosine."""
     return c, s, unit.x * s - unit.y * c
 
@@ -367,9 +369,3 @@ def _effect(unit: Unit, s: Arithmetic, c: Arithmetic) -> tuple[Arithmetic, Arith
 def _less(tau, effect, f):
     """A load without that of a thrust."""
     return tau[0] - effect[0] * f, tau[1] - effect[1] * f, tau[2] - effect[2] * f
-
-
-def _all(available, design):
-    """Whether no unit is missing."""
-    missing = sum(where(on, 0.0, 1.0) for on, unit in zip(available, design.units, strict=True) if unit.most > 0.0)
-    return missing < 0.5

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.sqp import Unit
+from shipcosim.models.allocation.sqp import AllocatedThruster
 
 _ROUNDS = 120
 _TIGHT = 1e-7  # load that is missed for the dearest unit's price, over the largest thrust
@@ -39,7 +39,11 @@ class Optimum(NamedTuple):
 
 
 def static_optimum(
-    tau: np.ndarray, units: Sequence[Unit], cones: Sequence[Sequence[tuple[float, float]]], *, yaw_lever: float
+    tau: np.ndarray,
+    units: Sequence[AllocatedThruster],
+    cones: Sequence[Sequence[tuple[float, float]]],
+    *,
+    yaw_lever: float,
 ) -> Optimum:
     """Commands of the least power for each of some loads.
 
@@ -47,7 +51,7 @@ def static_optimum(
     ----------
     tau : (n, 3) array
         Loads: X, Y, N. [N, N, N.m]
-    units : sequence of Unit
+    units : sequence of AllocatedThruster
         The units. One with an azimuth rate turns and gives 0 or more, whatever its `least` says; any other has the
         direction `first` and reverses to its `least`.
     cones : sequence of sequences of pairs of float

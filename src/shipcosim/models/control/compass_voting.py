@@ -14,7 +14,7 @@ from typing import NamedTuple
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, exp, minimum, where
 from shipcosim.models.core.parameters import quantity
-from shipcosim.models.ship.telegrams import Heading
+from shipcosim.models.ship.sensor_messages import Heading
 
 _DEGREE = 0.017453292519943295
 

@@ -91,7 +91,10 @@ def progress(x: float, y: float, u: float, leg: int, *, fairway: FairwayParamete
             break
         leg += 1
     beside = (y - y_0) * cos(course) - (x - x_0) * sin(course)
-    return Progress(leg, left + _beyond(points, leg), beside, course)
+    # Length of the legs after this one. [m]
+    rest = points[leg + 1 :]
+    beyond = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in zip(rest, rest[1:], strict=False))
+    return Progress(leg, left + beyond, beside, course)
 
 
 def _early(points: Sequence, leg: int, course: float, u: float, yaw_rate: float) -> float:
@@ -99,9 +102,3 @@ def _early(points: Sequence, leg: int, course: float, u: float, yaw_rate: float)
     (x_1, y_1), (x_2, y_2) = points[leg + 1], points[leg + 2]
     turn = min(abs(wrap(atan2(y_2 - y_1, x_2 - x_1) - course)), 0.6 * pi)
     return abs(u) * (tan(0.5 * turn) / yaw_rate + 8.0)  # 8 s until she turns
-
-
-def _beyond(points, leg):
-    """Length of the legs after this one. [m]"""
-    rest = points[leg + 1 :]
-    return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in zip(rest, rest[1:], strict=False))

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.control import observer, pid
-from shipcosim.models.control.observer import DpShip, Estimate, Measurement, ObserverParameters
+from shipcosim.models.control.observer import DpShip, Measurement, ObserverParameters, StateEstimate
 from shipcosim.models.control.pid import ControlParameters, ControlState, Desired
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
@@ -63,7 +63,7 @@ class Margins(NamedTuple):
     delay: float
 
 
-class Loop(NamedTuple):
+class OpenLoop(NamedTuple):
     """The open loop as a periodic linear system, x[k+1] = A[k] x[k] + B d, load on the ship y = C x.
 
     Parameters
@@ -93,7 +93,7 @@ class Loop(NamedTuple):
 
 def linear_loop(
     ship: DpShip, parameters: ObserverParameters, law: ControlParameters, delays: Delays, wave_frequency: float
-) -> Loop:
+) -> OpenLoop:
     """The linear open loop of all three axes.
 
     Parameters
@@ -111,7 +111,7 @@ def linear_loop(
 
     Returns
     -------
-    Loop
+    OpenLoop
         The open loop.
     """
     h, period = parameters.sample_period, round(parameters.position_period / parameters.sample_period)
@@ -140,15 +140,15 @@ def linear_loop(
     b, w, rows = np.zeros((n, 3)), np.zeros((n, 6)), np.eye(n)
     b[body], w[past.start : past.start + 6] = push, np.eye(6)
     request = rows[controller.stop - 3 : controller.stop]
-    return Loop(tuple(transitions), b, w, rows[thrust], request, np.linalg.inv(_mass(ship)), h)
+    return OpenLoop(tuple(transitions), b, w, rows[thrust], request, np.linalg.inv(_mass(ship)), h)
 
 
-def open_loop(loop: Loop, axis: int, frequencies: np.ndarray) -> np.ndarray:
+def open_loop(loop: OpenLoop, axis: int, frequencies: np.ndarray) -> np.ndarray:
     """Loop gain L of one axis, the other two closed.
 
     Parameters
     ----------
-    loop : Loop
+    loop : OpenLoop
         The open loop.
     axis : int
         0 surge, 1 sway, 2 yaw. [1]
@@ -166,12 +166,12 @@ def open_loop(loop: Loop, axis: int, frequencies: np.ndarray) -> np.ndarray:
     return -_responses(closed, push, loop.thrust[[axis]], frequencies, loop.sample)[:, 0, 0]
 
 
-def margins(loop: Loop, axis: int) -> Margins:
+def margins(loop: OpenLoop, axis: int) -> Margins:
     """Margins of one axis, the other two closed.
 
     Parameters
     ----------
-    loop : Loop
+    loop : OpenLoop
         The open loop.
     axis : int
         0 surge, 1 sway, 2 yaw. [1]
@@ -196,12 +196,12 @@ def margins(loop: Loop, axis: int) -> Margins:
     )
 
 
-def wave_suppression(loop: Loop, axis: int, frequencies: np.ndarray, law: ControlParameters) -> np.ndarray:
+def wave_suppression(loop: OpenLoop, axis: int, frequencies: np.ndarray, law: ControlParameters) -> np.ndarray:
     """Response of the requested load to wave motion, over that of the same law without observer and filters.
 
     Parameters
     ----------
-    loop : Loop
+    loop : OpenLoop
         The open loop; here it is closed.
     axis : int
         0 surge, 1 sway, 2 yaw. [1]
@@ -224,12 +224,12 @@ def wave_suppression(loop: Loop, axis: int, frequencies: np.ndarray, law: Contro
     return np.abs(loop.per_mass[axis] @ asked.T) / plain
 
 
-def is_stable(loop: Loop) -> bool:
+def is_stable(loop: OpenLoop) -> bool:
     """Whether the closed loop is stable.
 
     Parameters
     ----------
-    loop : Loop
+    loop : OpenLoop
         The open loop; here it is closed.
 
     Returns
@@ -269,7 +269,7 @@ def _controller(ship, parameters, law, wave_frequency, new):
     own, measured = _ESTIMATE + _CONTROL, x[_ESTIMATE + _CONTROL :]
     zero = np.zeros(x.shape[1])
     pace = np.minimum(1.0, (zero + wave_frequency) / parameters.full_frequency)
-    estimate = Estimate(*x[:_ESTIMATE])._replace(wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace)
+    estimate = StateEstimate(*x[:_ESTIMATE])._replace(wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace)
     state = ControlState(*x[_ESTIMATE:own])
     allocated = state[-3:]
     estimate = observer.step(

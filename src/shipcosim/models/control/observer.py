@@ -18,8 +18,8 @@ import numpy as np
 from shipcosim.angles import wrap
 from shipcosim.models.control.wave_filter import AxisNoise, filter_at, filter_table
 from shipcosim.models.core.interpolation import EvenTable
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, clip, cos, minimum, sin
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import required
 
@@ -98,7 +98,7 @@ class Measurement(NamedTuple):
     heading_new: Arithmetic = 1.0
 
 
-class Estimate(NamedTuple):
+class StateEstimate(NamedTuple):
     """Estimated state: low-frequency ship, bias load, wave motion in body axes with its rate.
 
     Parameters
@@ -146,7 +146,7 @@ class Estimate(NamedTuple):
     pace: Arithmetic = 1.0
 
 
-class Design(NamedTuple):
+class ObserverConstants(NamedTuple):
     """What the observer computes once from its parameters.
 
     Parameters
@@ -162,7 +162,7 @@ class Design(NamedTuple):
 
 
 @kept(8)
-def design(ship: DpShip, parameters: ObserverParameters) -> Design:
+def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
     """Gains, wave models and inverse of the mass matrix for a ship.
 
     Parameters
@@ -174,7 +174,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
 
     Returns
     -------
-    Design
+    ObserverConstants
         What `step` needs.
 
     Notes
@@ -211,10 +211,10 @@ def design(ship: DpShip, parameters: ObserverParameters) -> Design:
         -ship.mass_sway_yaw / determinant,
         ship.mass_sway / determinant,
     )
-    return Design(filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse)
+    return ObserverConstants(filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse)
 
 
-def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
+def at_rest(measured: Motion, *, parameters: ObserverParameters) -> StateEstimate:
     """Estimate at the start: the ship as measured, standing still, no bias, no waves.
 
     Parameters
@@ -226,30 +226,30 @@ def at_rest(measured: Motion, *, parameters: ObserverParameters) -> Estimate:
 
     Returns
     -------
-    Estimate
+    StateEstimate
         The estimate.
     """
     zero = 0.0 * measured.x
-    still = Estimate(measured.x, measured.y, measured.psi, *(zero,) * 15)
+    still = StateEstimate(measured.x, measured.y, measured.psi, *(zero,) * 15)
     assumed = zero + parameters.wave_frequency
     frequency, power, pace = _paced(assumed, assumed * assumed, parameters)
     return still._replace(wave_frequency=frequency, wave_power=power, pace=pace)
 
 
 def step(
-    estimate: Estimate,
+    estimate: StateEstimate,
     measurement: Measurement,
     load: Load,
     *,
     ship: DpShip,
     parameters: ObserverParameters,
-    design: Design,
-) -> Estimate:
+    design: ObserverConstants,
+) -> StateEstimate:
     """Estimate one sample later: predicted with the known load, corrected with the measurement at its end.
 
     Parameters
     ----------
-    estimate : Estimate
+    estimate : StateEstimate
         Estimate at the start.
     measurement : Measurement
         Measurement at the end.
@@ -259,12 +259,12 @@ def step(
         The ship.
     parameters : ObserverParameters
         Periods and ages of the measurements, and limits of the wave frequency.
-    design : Design
+    design : ObserverConstants
         Made of the same ship and parameters by `design`.
 
     Returns
     -------
-    Estimate
+    StateEstimate
         Estimate at the end.
     """
     filters = filter_at(estimate.wave_frequency, design.filters)
@@ -272,7 +272,13 @@ def step(
     predicted = _predict(estimate, acceleration, dt=parameters.sample_period, wave=filters.wave)
     innovations = _innovations(predicted, acceleration, measurement, parameters, filters)
     corrected = _correct(predicted, innovations, ship=ship, filters=filters)
-    swings = _swings(corrected, parameters.sample_period)
+    # Wave motion in surge, sway and yaw a sample later, integrated from its rates with forgetting.
+    keep = 1.0 - parameters.sample_period * FORGETTING
+    swings = (
+        keep * corrected.surge_swing + parameters.sample_period * corrected.u_wave,
+        keep * corrected.sway_swing + parameters.sample_period * corrected.v_wave,
+        keep * corrected.yaw_swing + parameters.sample_period * corrected.r_wave,
+    )
     frequency, power, pace = _paced(*_wave_frequency(corrected, swings, parameters), parameters)
     surge, sway, yaw = swings
     return corrected._replace(
@@ -381,12 +387,6 @@ def _correct(e, innovations, *, ship, filters):
         v_wave=e.v_wave + g.rate_position * sway + g.rate_velocity * dv,
         r_wave=e.r_wave + k.rate_position * yaw + k.rate_velocity * dr,
     )
-
-
-def _swings(e, h):
-    """Wave motion in surge, sway and yaw a sample later, integrated from its rates with forgetting."""
-    keep = 1.0 - h * FORGETTING
-    return keep * e.surge_swing + h * e.u_wave, keep * e.sway_swing + h * e.v_wave, keep * e.yaw_swing + h * e.r_wave
 
 
 def _wave_frequency(e, swings, parameters):

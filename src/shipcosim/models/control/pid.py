@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.control.observer import DpShip, Estimate
+from shipcosim.models.control.observer import DpShip, StateEstimate
 from shipcosim.models.control.reference import ReferenceState
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum
@@ -124,7 +124,7 @@ def known_load(state: ControlState, allocated: Load) -> Load:
 
 def step(
     state: ControlState,
-    estimate: Estimate,
+    estimate: StateEstimate,
     desired: Desired | ReferenceState,
     wind_load: Load,
     h: float,
@@ -138,7 +138,7 @@ def step(
     ----------
     state : ControlState
         State at the last sample.
-    estimate : Estimate
+    estimate : StateEstimate
         Low-frequency ship.
     desired : Desired or ReferenceState
         Desired motion.
@@ -189,12 +189,12 @@ def step(
     return ControlState(*wind, *_smoothed(state, wanted, h, parameters=parameters))
 
 
-def errors(estimate: Estimate, desired: Desired | ReferenceState) -> tuple[Arithmetic, Arithmetic]:
+def errors(estimate: StateEstimate, desired: Desired | ReferenceState) -> tuple[Arithmetic, Arithmetic]:
     """Distance from the desired to the estimated position, and estimated less desired heading.
 
     Parameters
     ----------
-    estimate : Estimate
+    estimate : StateEstimate
         Low-frequency ship.
     desired : Desired or ReferenceState
         Desired motion.

@@ -18,7 +18,7 @@ from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum, minimum, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
-from shipcosim.models.ship.telegrams import Fix
+from shipcosim.models.ship.sensor_messages import Fix
 
 PAIRS = ((0, 1), (0, 2), (1, 2))
 _PAIRS_OF = (((0, 1), (1, 2)), ((0, 0), (2, 2)), ((1, 0), (2, 1)))  # of each reference: number of the pair, other one

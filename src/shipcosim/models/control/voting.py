@@ -11,7 +11,7 @@ from typing import NamedTuple
 from shipcosim.angles import wrap
 from shipcosim.models.control import compass_voting, position_voting
 from shipcosim.models.control.compass_voting import CompassVote, CompassVotingParameters
-from shipcosim.models.control.observer import Estimate, Measurement
+from shipcosim.models.control.observer import Measurement, StateEstimate
 from shipcosim.models.control.position_voting import PositionVote, PositionVotingParameters
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic, exp, minimum, where
@@ -19,7 +19,7 @@ from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
-from shipcosim.models.ship.telegrams import Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Telegrams, Wind
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,12 +125,12 @@ def step(
     t: float,
     state: VotingState,
     telegrams: Telegrams,
-    estimate: Estimate,
+    estimate: StateEstimate,
     *,
     parameters: VotingParameters,
     mast: MastParameters,
     wind: WindParameters,
-) -> tuple[VotingState, Estimate]:
+) -> tuple[VotingState, StateEstimate]:
     """Voting a sample later, on the telegrams that came; what came when is the same for all variations.
 
     Parameters
@@ -141,7 +141,7 @@ def step(
         State at the last sample.
     telegrams : Telegrams
         What the sensors give out.
-    estimate : Estimate
+    estimate : StateEstimate
         Of the observer at t.
     parameters : VotingParameters
         Limits.

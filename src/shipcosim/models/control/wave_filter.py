@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, library_of, times
+from shipcosim.models.core.memoize import kept
 
 
 class AxisGains(NamedTuple):

@@ -12,8 +12,8 @@ from zlib import crc32
 
 import numpy as np
 
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, is_single, row_of
+from shipcosim.models.core.memoize import kept
 
 _BLOCK = 256
 _TOLERANCE = 1e-6  # of a period: the time of a master that adds up its steps falls short by 5e-10 s in 1100 s

@@ -9,8 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, cos, is_single, maximum, pi, sqrt
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, per_seed, tensors_if_any, total
 

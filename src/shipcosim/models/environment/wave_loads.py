@@ -11,8 +11,8 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.interpolation import interp
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, floor, library_of, minimum, pi, row_of, sincos, where
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.tables import parse
 from shipcosim.models.environment.sinusoids import column, total

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, exp, is_single, sin, sincos, where
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.sinusoids import column, total
 from shipcosim.models.environment.wave_loads import DriftTable, drift_at

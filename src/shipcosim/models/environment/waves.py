@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.models.core.kept import kept
 from shipcosim.models.core.maths import Arithmetic, cos, is_single, library_of, pi, sincos
+from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, tensors_if_any, total
 

@@ -12,7 +12,7 @@ from shipcosim.models.allocation import pseudo_inverse
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
 from shipcosim.models.allocation.units import Allocated
 from shipcosim.models.control import observer, pid, reference
-from shipcosim.models.control.observer import DpShip, Estimate
+from shipcosim.models.control.observer import DpShip, StateEstimate
 from shipcosim.models.control.pid import ControlParameters, ControlState
 from shipcosim.models.control.reference import ReferenceParameters, ReferenceState
 from shipcosim.models.core.kinematics import to_body, to_ned
@@ -21,7 +21,7 @@ from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.dead_reckoning import advance
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import through_water
@@ -40,7 +40,7 @@ class ObserverAhead:
     )
 
 
-class Loop(NamedTuple):
+class ControlLoop(NamedTuple):
     """The DP loop as the ship knows it.
 
     Parameters
@@ -63,7 +63,7 @@ class Loop(NamedTuple):
     ship: DpShip
     law: ControlParameters
     units: AllocationParameters
-    design: pseudo_inverse.Design
+    design: pseudo_inverse.ThrusterInverses
     observer: ObserverAhead
 
 
@@ -86,7 +86,7 @@ def predict(
     longest_step: float,
     hull: HullParameters,
     wind: WindParameters,
-    loop: Loop,
+    loop: ControlLoop,
 ) -> tuple[Motion, ...]:
     """Motion of the ship ahead in time, with her controller.
 
@@ -102,7 +102,7 @@ def predict(
         Longest step; each stretch up to a horizon is divided into equal steps. [s]
     hull, wind : HullParameters, WindParameters
         The ship.
-    loop : Loop
+    loop : ControlLoop
         Her DP.
 
     Returns
@@ -160,7 +160,7 @@ def _later(now, known, around, available, h, hull, wind, loop):
     bias = _bias(now, motion, known, around, load, h, hull, loop)
     fed = tuple(known.wind_believed * one for one in load)
     pace = observer.pace(known.wave_frequency, loop.observer.full_frequency)
-    estimate = Estimate(*motion[:6], *bias, pace=pace)
+    estimate = StateEstimate(*motion[:6], *bias, pace=pace)
     control = pid.step(now.control, estimate, desired, fed, h, ship=loop.ship, parameters=loop.law)
     allocated = pseudo_inverse.step(now.allocated, control[3:], available, h, parameters=loop.units, design=loop.design)
     return _Now(motion, desired, control, allocated, bias, given)

@@ -8,7 +8,7 @@ from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import times, where
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations, through_water
@@ -58,7 +58,11 @@ def predict(
     Equations of motion as `ship.vessel`; integration as `core.integrate.midpoint_motion`.
     """
     ship, current = known.ship, (surroundings.current_north, surroundings.current_east)
-    motion, thrusters = (*ship, *through_water(ship.psi, ship.u, ship.v, *current)), _delivered(known, surroundings)
+    # What thrusters give: what they are told and their error, or nothing.
+    acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
+    X, Y, N = [where(acting, error, 0.0 * error) for error in surroundings.thrust_error]
+    delivered = known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N
+    motion, thrusters = (*ship, *through_water(ship.psi, ship.u, ship.v, *current)), delivered
     predictions, before = [], 0.0
     for horizon in horizons:
         steps = int(ceil((horizon - before) / longest_step))
@@ -67,13 +71,6 @@ def predict(
         predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
-
-
-def _delivered(known, surroundings):
-    """What thrusters give: what they are told and their error, or nothing."""
-    acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
-    X, Y, N = [where(acting, error, 0.0 * error) for error in surroundings.thrust_error]
-    return known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N
 
 
 def advance(

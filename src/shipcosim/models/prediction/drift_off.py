@@ -20,9 +20,9 @@ from shipcosim.models.core.maths import Arithmetic, clip, hypot, sqrt, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import dead_reckoning, own_record, surroundings
-from shipcosim.models.prediction.known import Known
 from shipcosim.models.prediction.own_model import COEFFICIENT, CURRENT, FORCE, MOMENT, Learned
 from shipcosim.models.prediction.own_record import Record
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings, SurroundingsParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import through_water

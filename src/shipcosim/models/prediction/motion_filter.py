@@ -15,7 +15,7 @@ from shipcosim.models.prediction.outage import Measured
 SEA_TIME = 60.0  # s, over which the roughness of the sea is averaged; assumed
 
 
-class Design(NamedTuple):
+class FilterNumbers(NamedTuple):
     """Numbers of the filter.
 
     Parameters
@@ -90,17 +90,17 @@ class State(NamedTuple):
     lost_for: Arithmetic
 
 
-def design(arrays: Mapping) -> Design:
+def design(arrays: Mapping) -> FilterNumbers:
     """The filter's numbers from what training left.
 
     Parameters
     ----------
     arrays : mapping of str to array
-        By the names of `Design`. [as Design]
+        By the names of `FilterNumbers`. [as Design]
 
     Returns
     -------
-    Design
+    FilterNumbers
         [as its fields]
 
     Raises
@@ -112,17 +112,17 @@ def design(arrays: Mapping) -> Design:
     ----------
     Definition.
     """
-    return Design(*(float(arrays[name]) for name in Design._fields))
+    return FilterNumbers(*(float(arrays[name]) for name in FilterNumbers._fields))
 
 
-def start(measured: Measured, *, design: Design) -> State:
+def start(measured: Measured, *, design: FilterNumbers) -> State:
     """State at the start: where GNSS says, at rest.
 
     Parameters
     ----------
     measured : Measured
         Floats, (...) arrays or tensors.
-    design : Design
+    design : FilterNumbers
         Numbers of the filter; they give the shape alone.
 
     Returns
@@ -137,7 +137,7 @@ def start(measured: Measured, *, design: Design) -> State:
     return State(measured.x + zero, measured.y + zero, *(zero,) * 8)
 
 
-def step(state: State, measured: Measured, h: float, *, design: Design) -> State:
+def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -> State:
     """State a sample later.
 
     Parameters
@@ -148,7 +148,7 @@ def step(state: State, measured: Measured, h: float, *, design: Design) -> State
         What is aboard now.
     h : float
         Time between the samples. [s]
-    design : Design
+    design : FilterNumbers
         Numbers of the filter.
 
     Returns

@@ -13,7 +13,6 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, atan2, cos, exp, library_of, maximum, sin, sqrt, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
-from shipcosim.models.prediction.known import Known, air_velocity
 from shipcosim.models.prediction.own_model import (
     COEFFICIENTS,
     FASTEST,
@@ -27,6 +26,7 @@ from shipcosim.models.prediction.own_model import (
     moved,
     thrust_told,
 )
+from shipcosim.models.prediction.predictor_inputs import Known, air_velocity
 from shipcosim.models.ship.hull import HullParameters
 
 DIRECTIONS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))

@@ -14,7 +14,7 @@ from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.prediction.known import Known, air_velocity
+from shipcosim.models.prediction.predictor_inputs import Known, air_velocity
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
 

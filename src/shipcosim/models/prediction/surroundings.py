@@ -15,7 +15,7 @@ from shipcosim.models.core.maths import Arithmetic, exp, maximum, sqrt
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.prediction.known import Known, air_velocity
+from shipcosim.models.prediction.predictor_inputs import Known, air_velocity
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.vessel import through_water
 

@@ -53,7 +53,7 @@ class Regressor(NamedTuple):
     velocity_std: float
 
 
-class Design(NamedTuple):
+class VelocityNetworks(NamedTuple):
     """Both networks, and what turns commands into power.
 
     Parameters
@@ -96,7 +96,7 @@ class State(NamedTuple):
     history: np.ndarray
 
 
-def design(arrays: Mapping[str, np.ndarray]) -> Design:
+def design(arrays: Mapping[str, np.ndarray]) -> VelocityNetworks:
     """The networks from what training left.
 
     Parameters
@@ -107,7 +107,7 @@ def design(arrays: Mapping[str, np.ndarray]) -> Design:
 
     Returns
     -------
-    Design
+    VelocityNetworks
         [as its fields]
 
     Raises
@@ -115,7 +115,7 @@ def design(arrays: Mapping[str, np.ndarray]) -> Design:
     KeyError
         An array is missing.
     """
-    return Design(
+    return VelocityNetworks(
         surge=_regressor(arrays, "surge"),
         sway=_regressor(arrays, "sway"),
         full_power=arrays["full_power"],
@@ -150,7 +150,7 @@ def features(measured: Measured, full_power: np.ndarray, full_command: np.ndarra
     measured : Measured
         Floats or (...) arrays.
     full_power, full_command : (3,) array
-        As `Design`. [W, units of the maps]
+        As `VelocityNetworks`. [W, units of the maps]
 
     Returns
     -------
@@ -165,14 +165,14 @@ def features(measured: Measured, full_power: np.ndarray, full_command: np.ndarra
     return np.stack(np.broadcast_arrays(*found), axis=-1)
 
 
-def start(measured: Measured, *, design: Design) -> State:
+def start(measured: Measured, *, design: VelocityNetworks) -> State:
     """State at the start: where GNSS says, with this sample as all of the history.
 
     Parameters
     ----------
     measured : Measured
         Floats or (...) arrays. [as its fields]
-    design : Design
+    design : VelocityNetworks
         The networks. [as its fields]
 
     Returns
@@ -184,7 +184,7 @@ def start(measured: Measured, *, design: Design) -> State:
     return State(measured.x, measured.y, zero, zero, zero, zero, np.stack([now] * HISTORY, axis=-2))
 
 
-def step(state: State, measured: Measured, h: float, *, design: Design) -> State:
+def step(state: State, measured: Measured, h: float, *, design: VelocityNetworks) -> State:
     """State a sample later: p <- p + R(ψ) v h with the networks' v, or the position of GNSS where it works.
 
     Parameters
@@ -195,7 +195,7 @@ def step(state: State, measured: Measured, h: float, *, design: Design) -> State
         What is aboard now. [as its fields]
     h : float
         Time between the samples, that of the training. [s]
-    design : Design
+    design : VelocityNetworks
         The networks. [as its fields]
 
     Returns

@@ -20,7 +20,7 @@ from shipcosim.models.core.maths import Arithmetic, atan2, exp, hypot, maximum, 
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.core.sampling import normals, samples_due
 from shipcosim.models.ship.mast import MastParameters, wind_at_mast
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -176,21 +176,39 @@ class SensorFailures(NamedTuple):
 
 
 class Channel(NamedTuple):
-    """State of like sensors between samples.
+    """State of position references, or of compasses and rate gyro, between samples.
 
     Parameters
     ----------
     wander : tuple
-        Gauss-Markov errors, or latest samples of the wind's components from ahead and from starboard, zeros before them
-        until there are as many as the mean is of. [m, rad, m/s]
+        Gauss-Markov errors. [m, rad]
     drift : tuple
-        Drifts by failure so far, or the number of samples of the wind. [m, rad, 1]
+        Drifts by failure so far. [m, rad]
     history : tuple
         Latest samples, of all like sensors each, the newest last: as many as latency and period ask for. [m, m/s, rad]
     """
 
     wander: tuple
     drift: tuple
+    history: tuple
+
+
+class Anemometer(NamedTuple):
+    """State of the anemometer between samples.
+
+    Parameters
+    ----------
+    components : tuple
+        Latest samples of the wind's components from ahead and from starboard, zeros before them until there are as many
+        as the mean is of. [m/s]
+    count : float
+        How many of them are samples. [1]
+    history : tuple
+        Latest means, the newest last: as many as latency and period ask for. [m/s, rad]
+    """
+
+    components: tuple
+    count: float
     history: tuple
 
 
@@ -201,8 +219,10 @@ class SensorState(NamedTuple):
     ----------
     taken : int
         Ticks so far, counted from t = 0. [1]
-    positions, headings, wind : Channel
-        Of position references; of compasses and rate gyro; of the anemometer.
+    positions, headings : Channel
+        Of position references; of compasses and rate gyro.
+    wind : Anemometer
+        Of the anemometer.
     telegrams : Telegrams
         What the sensors give out until the next tick.
     """
@@ -210,7 +230,7 @@ class SensorState(NamedTuple):
     taken: int
     positions: Channel
     headings: Channel
-    wind: Channel
+    wind: Anemometer
     telegrams: Telegrams
 
 
@@ -248,7 +268,9 @@ def start(
     compasses = Channel(wander, (0.0,) * 2, (headings,))
     compasses = compasses._replace(history=(_headings(compasses, numbers[1], truth, failures, p),) * _length(clocks[1]))
     air = _air(truth, mast)
-    wind = Channel((*((0.0, 0.0),) * (_spans(p) - 1), air), (1.0,), (Wind(*air, 1.0),))
+    # Samples of the wind in its mean.
+    spans = max(1, round(p.wind_average_time / p.period))
+    wind = Anemometer((*((0.0, 0.0),) * (spans - 1), air), 1.0, (Wind(*air, 1.0),))
     wind = wind._replace(history=(_wind(wind, numbers[2], failures, p),) * _length(clocks[2]))
     return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, p))
 
@@ -301,16 +323,12 @@ def _ticked(state, truth, failures, p, mast):
     numbers, rates = _numbers(p, k, 1), [failure.rate for failure in failures.compasses]
     headings = _moved(headings, numbers, p.heading_wander, rates, p.period)
     headings = _noted(headings, _headings(headings, numbers, truth, failures, p))
-    count = minimum(wind.drift[0] + 1.0, float(len(wind.wander)))
-    wind = Channel((*wind.wander[1:], _air(truth, mast)), (count,), wind.history)
+    # The anemometer measures at every tick: the oldest sample of its mean gives way to the newest.
+    count = minimum(wind.count + 1.0, float(len(wind.components)))
+    wind = Anemometer((*wind.components[1:], _air(truth, mast)), count, wind.history)
     if k % p.clocks[2][0] == 0:
         wind = _noted(wind, _wind(wind, _numbers(p, k, 2), failures, p))
     return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p))
-
-
-def _spans(p):
-    """Samples of the wind in its mean."""
-    return max(1, round(p.wind_average_time / p.period))
 
 
 def _length(clock):
@@ -343,7 +361,7 @@ def _moved(channel, numbers, wander, rates, period):
 
 def _noted(channel, sample):
     """History with a new sample."""
-    return Channel(channel.wander, channel.drift, (*channel.history[1:], sample))
+    return channel._replace(history=(*channel.history[1:], sample))
 
 
 def _fixes(channel, numbers, truth, failures, p):
@@ -373,10 +391,12 @@ def _headings(channel, numbers, truth, failures, p):
     return tuple(found), truth.r + p.yaw_rate_noise_std * numbers[4]
 
 
-def _wind(channel, numbers, failures, p):
-    """Sample of the anemometer: the mean of what it had."""
-    failure, last = failures.wind, channel.history[-1]
-    ahead, starboard = (sum(component) / channel.drift[0] for component in zip(*channel.wander, strict=True))
+def _wind(anemometer, numbers, failures, p):
+    """Mean over the averaging window, with noise and failure."""
+    failure, last = failures.wind, anemometer.history[-1]
+    # Mean of the components, not of speed and direction, which has no mean across the bow.
+    samples = zip(*anemometer.components, strict=True)
+    ahead, starboard = (sum(component) / anemometer.count for component in samples)
     fresh = (
         hypot(ahead, starboard) * (1.0 + p.wind_speed_noise * numbers[0]) * failure.scale,
         wrap(atan2(starboard, ahead) + p.wind_from_noise_std * numbers[1] + failure.offset),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from shipcosim.native.leaves import Flat, made_like
+from shipcosim.native.number_rows import Flat, made_like
 from shipcosim.native.recording import Block, Call, Recording, typed
 
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from importlib.resources import files
 from typing import Any
 
+from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import procedure_of
 from shipcosim.native.export.variants import Variant
 from shipcosim.native.recording import Recording
-from shipcosim.native.sayings import parts
 from shipcosim.native.source import Writer, kept_sizes, literal, operand
 from shipcosim.native.symbols import Symbol
 

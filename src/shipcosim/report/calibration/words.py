@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedLog, CalibratedShip
 from shipcosim.diagnose.reference.reference import KnownNumber
-from shipcosim.diagnose.reference.remaining import RemainingErrors
+from shipcosim.diagnose.reference.remaining_errors import RemainingErrors
 from shipcosim.report.theme.numbers import metres, plain
 
 __all__ = ["error_rows", "log_rows", "moved", "moved_rows", "sentence", "untold"]

@@ -10,7 +10,7 @@ from shipcosim.capability import Capability, notation
 from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACTOR
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.sectors import sectors
-from shipcosim.capability.thrust import BETA_MISC, Thruster, ventilation
+from shipcosim.capability.thrust import BETA_MISC, ventilation
 from shipcosim.capability.vessel import Particular
 from shipcosim.report.capability.figures import capability_figures, limiting_condition, load_figures
 from shipcosim.report.theme.numbers import plain
@@ -162,6 +162,9 @@ def _thrusters(capability: Capability) -> Table:
         asked = limits[thruster.name]
         left = BETA_MISC * ventilation(thruster, hull, condition, DIRECTIONS) * thruster.ahead / 1e3
         ends = (plain(left.min()), plain(left.max()))
+        # Directions in which a thruster must not push, since its race would hit another that works.
+        found = sectors(thruster, capability.vessel.thrusters, ())
+        forbidden = ", ".join(f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in found) or "–"
         rows.append(
             (
                 thruster.name,
@@ -171,7 +174,7 @@ def _thrusters(capability: Capability) -> Table:
                 f"{plain(thruster.ahead / 1e3)} kN",
                 f"{' to '.join(dict.fromkeys(ends))} kN",
                 f"{plain(asked.ahead / 1e3)} kN",
-                _forbidden(thruster, capability.vessel.thrusters),
+                forbidden,
             )
         )
     effective = f"thrust in condition {condition.number}"
@@ -186,12 +189,6 @@ def _thrusters(capability: Capability) -> Table:
         "forbidden",
     )
     return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6, 7))
-
-
-def _forbidden(thruster: Thruster, all_of_them: tuple[Thruster, ...]) -> str:
-    """Directions in which a thruster must not push, since its race would hit another that works."""
-    found = sectors(thruster, all_of_them, ())
-    return ", ".join(f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in found) or "–"
 
 
 def _conditions() -> Table:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.diagnose.inference.summary import LAGS, Evidence
+from shipcosim.diagnose.explanation.summary import LAGS, Evidence
 from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme import palette

@@ -3,8 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from shipcosim.diagnose.inference.summary import Evidence
-from shipcosim.diagnose.result import Candidate, Diagnosis
+from shipcosim.diagnose.explanation.summary import Evidence
+from shipcosim.diagnose.finding import Candidate
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.cause_figures import (
     estimate_figure,
     evidence_figure,

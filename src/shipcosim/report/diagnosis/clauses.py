@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 
-from shipcosim.diagnose.result import Estimate
+from shipcosim.diagnose.finding import ParameterEstimate
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
 
 __all__ = ["filled"]
 
 
-def filled(text: str, parameters: Mapping[str, Estimate], component: str | None = None) -> str:
+def filled(text: str, parameters: Mapping[str, ParameterEstimate], component: str | None = None) -> str:
     """A text with placeholders for the parameters of a cause, with their estimates.
 
     Parameters
@@ -43,7 +43,7 @@ def filled(text: str, parameters: Mapping[str, Estimate], component: str | None 
 class _Values(dict):
     """What the placeholders of a text stand for."""
 
-    def __init__(self, parameters: Mapping[str, Estimate], component: str | None) -> None:
+    def __init__(self, parameters: Mapping[str, ParameterEstimate], component: str | None) -> None:
         super().__init__({name: _Value(estimate) for name, estimate in parameters.items()}, component=component)
 
     def __missing__(self, key: str) -> str:
@@ -56,7 +56,7 @@ class _Values(dict):
 class _Value:
     """An estimate in a text, by the format that the placeholder asks for."""
 
-    def __init__(self, estimate: Estimate) -> None:
+    def __init__(self, estimate: ParameterEstimate) -> None:
         self.estimate = estimate
 
     def __format__(self, wanted: str) -> str:

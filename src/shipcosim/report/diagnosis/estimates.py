@@ -2,18 +2,18 @@
 
 import math
 
-from shipcosim.diagnose.result import Estimate
+from shipcosim.diagnose.finding import ParameterEstimate
 
 SHOWN = {"1": "", "": ""}
 LARGE = {"N": ("kN", 1e-3), "N.m": ("kN·m", 1e-3)}
 
 
-def plus_minus(estimate: Estimate, absolute: bool = False) -> str:
+def plus_minus(estimate: ParameterEstimate, absolute: bool = False) -> str:
     """An estimate with its standard deviation and unit.
 
     Parameters
     ----------
-    estimate : Estimate
+    estimate : ParameterEstimate
     absolute : bool
         Without the sign, where a word says it.
 
@@ -25,7 +25,7 @@ def plus_minus(estimate: Estimate, absolute: bool = False) -> str:
     return f"{value} ± {std} {unit}".rstrip().replace(" °", "°")
 
 
-def amount(estimate: Estimate, absolute: bool = False, largest: float = 0.0) -> tuple[str, str, str]:
+def amount(estimate: ParameterEstimate, absolute: bool = False, largest: float = 0.0) -> tuple[str, str, str]:
     """Value, standard deviation and unit of an estimate, as texts; `largest` decides on the unit if it is larger.
 
     Returns
@@ -39,7 +39,7 @@ def amount(estimate: Estimate, absolute: bool = False, largest: float = 0.0) -> 
     return f"{value:.{digits}f}".replace("-", "−"), f"{std:.{digits}f}", unit
 
 
-def _scaled(estimate: Estimate, size: float) -> tuple[str, float]:
+def _scaled(estimate: ParameterEstimate, size: float) -> tuple[str, float]:
     if estimate.unit in LARGE and size >= 1000.0:
         return LARGE[estimate.unit]
     return {"deg": "°"}.get(estimate.unit, SHOWN.get(estimate.unit, estimate.unit)), 1.0
@@ -59,18 +59,18 @@ def _digits(std: float, value: float) -> int:
     return min(max(digits, 0), 6)
 
 
-def vector(north: Estimate, east: Estimate) -> str:
+def vector(north: ParameterEstimate, east: ParameterEstimate) -> str:
     """Size and direction of a vector of two estimates, as in "0.17 m/s towards 057°".
 
     Parameters
     ----------
-    north, east : Estimate
+    north, east : ParameterEstimate
 
     Returns
     -------
     str
     """
     size = math.hypot(north.estimate, east.estimate)
-    along = Estimate(size, math.hypot(north.std, east.std) / math.sqrt(2.0), north.unit)
+    along = ParameterEstimate(size, math.hypot(north.std, east.std) / math.sqrt(2.0), north.unit)
     towards = math.degrees(math.atan2(east.estimate, north.estimate)) % 360.0
     return f"{plus_minus(along)} towards {round(towards) % 360:03d}°"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from shipcosim.diagnose.extension.extend import Extension
-from shipcosim.diagnose.extension.extended_system import Change
+from shipcosim.diagnose.extension.extended_system import NumberChange
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Table
@@ -44,13 +44,13 @@ def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     return section_of(diagnosis.extension, diagnosis.changes, any(f.kind == "physics" for f in diagnosis.findings))
 
 
-def section_of(extension: Extension | None, changes: Sequence[Change], is_found: bool) -> ExtensionSection:
+def section_of(extension: Extension | None, changes: Sequence[NumberChange], is_found: bool) -> ExtensionSection:
     """The section of an extended system.
 
     Parameters
     ----------
     extension : Extension or None
-    changes : sequence of Change
+    changes : sequence of NumberChange
     is_found : bool
         Whether a cause of the physics was found, that could have gone into the system.
     """

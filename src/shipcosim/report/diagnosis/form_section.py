@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from shipcosim.diagnose.result import FormNumber, LoadForm
+from shipcosim.diagnose.explanation.summary import FormNumber, LoadForm
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Table
 

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
-from shipcosim.diagnose.result import Finding
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import as_variable, thinned
 from shipcosim.report.theme.figures import TIME, line, rounded
@@ -40,7 +40,11 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
     -------
     list of Figure
     """
-    raw, used = _ordered(log), _on_log_time(clean)
+    # The rows in the order of their times; rows without a time are left out.
+    time = log["time"].values
+    rows = np.flatnonzero(np.isfinite(time))
+    ordered = _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
+    raw, used = ordered, _on_log_time(clean)
     faults = [f for f in findings if f.kind == "data"]
     named = {channel for _, channels, _ in GROUPS for channel in channels}
     groups = [*GROUPS, *_thrusters([str(n) for n in log.data_vars if n not in named], log)]
@@ -84,13 +88,6 @@ def track_figure(clean: Dataset) -> Figure | None:
         "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"},
     }
     return Figure("Track", "m", (line("track", east, north, palette.BLUE), *marks), axes)
-
-
-def _ordered(log: Dataset) -> Dataset:
-    """The rows in the order of their times; rows without a time are left out."""
-    time = log["time"].values
-    rows = np.flatnonzero(np.isfinite(time))
-    return _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
 
 
 def _on_log_time(clean: Dataset) -> Dataset:

@@ -39,7 +39,9 @@ def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
     seen = tracks.measured
     traces = [line("measured", seen["time"].values, seen[role].values, palette.MEASURED, width=3.0)]
     for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
-        traces.append(line(name, _times(one), joined(one, role), colour, width=1.2))
+        time = one["start_time"].values[:, None] + one["time"].values
+        times = np.hstack([time, np.full((len(time), 1), np.nan)]).ravel()
+        traces.append(line(name, times, joined(one, role), colour, width=1.2))
     return Figure(title, unit, tuple(traces), {"xaxis": TIME})
 
 
@@ -47,11 +49,6 @@ def joined(one: Dataset, role: str) -> NDArray:
     """A channel of all predictions one after another, with a hole between them."""
     values = one[role].values
     return np.hstack([values, np.full((len(values), 1), np.nan)]).ravel()
-
-
-def _times(one: Dataset) -> NDArray:
-    time = one["start_time"].values[:, None] + one["time"].values
-    return np.hstack([time, np.full((len(time), 1), np.nan)]).ravel()
 
 
 def error_rows(errors: Dataset) -> Table:

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
-from shipcosim.diagnose.result import Diagnosis, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
 from shipcosim.report.theme.numbers import span
@@ -122,7 +124,7 @@ def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
     """What is wrong at first sight, largest first: in words, its size, and what share of the error it explains."""
     rows = []
     for one in diagnosis.discrepancies:
-        size = plus_minus(Estimate(one.estimate, one.std, one.unit)) if one.std else ""
+        size = plus_minus(ParameterEstimate(one.estimate, one.std, one.unit)) if one.std else ""
         rows.append((one.what, size, f"{100.0 * one.share:.0f} %" if one.share else ""))
     return rows
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
-from shipcosim.diagnose.reference.common import Shared
+from shipcosim.diagnose.reference.common_findings import Shared
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
-from shipcosim.diagnose.result import Finding
 from shipcosim.report.diagnosis.words import listed, manoeuvre_step, size_rows, title, told
 from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import Outcome

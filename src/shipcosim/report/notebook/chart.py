@@ -143,11 +143,13 @@ def _grid(sheet: Sheet, scale: _Scale, tall: float) -> None:
         sheet.draw("line", x1=_LEFT, x2=_LEFT + wide, y1=y, y2=y, stroke=GRID)
         sheet.write(tick_text(at), _LEFT - 6.0, y + 4.0, text_anchor="end")
     sheet.write("east [m]", _LEFT + wide / 2, scale.top + tall + 32.0, text_anchor="middle")
-    sheet.write("north [m]", 14.0, scale.top + tall / 2, text_anchor="middle", transform=_upright(scale.top + tall / 2))
-
-
-def _upright(y: float) -> str:
-    return f"rotate(-90 14 {y:.1f})"
+    sheet.write(
+        "north [m]",
+        14.0,
+        scale.top + tall / 2,
+        text_anchor="middle",
+        transform=f"rotate(-90 14 {(scale.top + tall / 2):.1f})",
+    )
 
 
 def _outlines(path: Path, size: tuple[float, float] | None) -> list[tuple[NDArray, NDArray]]:

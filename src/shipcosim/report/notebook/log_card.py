@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from xarray import Dataset
 
-from shipcosim.diagnose.result import Finding
+from shipcosim.diagnose.finding import Finding
 from shipcosim.report.diagnosis.words import title, where
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.theme.numbers import plain

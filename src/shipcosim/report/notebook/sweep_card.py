@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.sheet import COLOURS, GRID, INK, Sheet, tick_text, ticks
@@ -61,17 +60,13 @@ def _picture(tables: StudyTables) -> str:
         return _TOP + (1.0 - share) * (_TALL - _TOP - _BELOW)
 
     _frame(sheet, quantity, [(at, across(at)) for at in ticks(low, high)], [(at, down(at)) for at in ticks(0.0, 1.0)])
-    x, y = _stairs(across(reached), share)
+    # A curve that stays until the next value.
+    x, y = np.repeat(across(reached), 2)[1:], np.repeat(share, 2)[:-1]
     colour = COLOURS[palette.BLUE]
     for edge in (-half, half):
         sheet.curve(x, down(np.clip(y + edge, 0.0, 1.0)), colour, "2 3", 0.8)
     sheet.curve(x, down(y), colour, width=2.0)
     return str(sheet)
-
-
-def _stairs(x: NDArray, y: NDArray) -> tuple[NDArray, NDArray]:
-    """A curve that stays until the next value."""
-    return np.repeat(x, 2)[1:], np.repeat(y, 2)[:-1]
 
 
 def _frame(sheet: Sheet, quantity: Column, columns: list[tuple[float, float]], rows: list[tuple[float, float]]) -> None:

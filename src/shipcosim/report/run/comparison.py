@@ -193,9 +193,13 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
     ]
     sections = _sections(pair)
     choice = [str(name) for name in merged.data_vars]
+    facts = tuple(
+        Fact(name, f"{parsed(table.attrs.get('scenario', '')) or 'run'}, {_span(table)}")
+        for name, table in zip(pair.names, pair.tables, strict=True)
+    )
     return RunPage(
         title=f"{pair.names[0]} and {pair.names[1]}",
-        facts=_facts(pair),
+        facts=facts,
         outcome=_outcome(pair, found),
         links=links(runs, sections),
         data=drawn_data(drawn, choice, runs, sections, ()),
@@ -248,13 +252,6 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
             for name, dash in zip(pair.names, ("solid", "dot"), strict=True)
         ]
     return replace(panel, lines=tuple(both), bands=())
-
-
-def _facts(pair: Pair) -> tuple[Fact, ...]:
-    return tuple(
-        Fact(name, f"{parsed(table.attrs.get('scenario', '')) or 'run'}, {_span(table)}")
-        for name, table in zip(pair.names, pair.tables, strict=True)
-    )
 
 
 def _span(table: Dataset) -> str:

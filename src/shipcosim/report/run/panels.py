@@ -8,7 +8,7 @@ from xarray import Dataset
 from shipcosim.report.run.bands import Band, bands_of, distance_bands
 from shipcosim.report.run.derived import ERRORS, FROM_EXPECTED, FROM_REFERENCE, desired
 from shipcosim.report.run.roles import Roles
-from shipcosim.report.run.vessels import Unit, find_units, start_values
+from shipcosim.report.run.vessels import DrawnThruster, find_units, start_values
 from shipcosim.report.run.zones import Zone, angle_zones, thrust_zones
 from shipcosim.report.theme import palette
 from shipcosim.scenario import Verdict
@@ -68,9 +68,13 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
     tuple of Section
     """
     motion = _motion(shown, roles, verdicts)
+    # A panel for every signal with an expectation that no other panel shows with its limits.
+    drawn = {line.signal for panel in motion for line in panel.lines}
+    signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
+    expected = [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
     made = {
         "Reference and error": motion,
-        "Other expectations": _expected(shown, verdicts, {line.signal for panel in motion for line in panel.lines}),
+        "Other expectations": expected,
         "Forces on the ship": _loads(shown, roles),
         "Thrusters": _thrusters(shown, roles),
         "Allocation": _allocation(shown, roles),
@@ -131,12 +135,6 @@ def _speeds(shown: Dataset, roles: Roles) -> list[Panel]:
     return speeds + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
 
 
-def _expected(shown: Dataset, verdicts: Sequence[Verdict], drawn: set[str | None]) -> list[Panel]:
-    """A panel for every signal with an expectation that no other panel shows with its limits."""
-    signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
-    return [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
-
-
 def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
     """Forces and moment by source, with what the controller asks for."""
     panels = []
@@ -175,7 +173,7 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
 
 
-def _azimuths(shown: Dataset, units: Sequence[Unit]) -> list[Panel]:
+def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
     """Angles: of all units in one panel where no sector, or the same, is forbidden to them; else of each in its own."""
     turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
     alike = len({unit.sectors for unit in turning}) < 2
@@ -199,7 +197,7 @@ def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
     return panels + _panel(shown, "Time of an allocation", _coloured(dict.fromkeys(times, "by the clock")))
 
 
-def _angles(units: Sequence[Unit]) -> list[Line]:
+def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
     lines = []
     for k, unit in enumerate(units):
         colour = palette.CYCLE[k % len(palette.CYCLE)]

@@ -29,19 +29,16 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     -------
     list of str
     """
-    said = [*parsed(table.attrs.get("remarks", "[]")), *_not_reached(table), *_not_finite(shown)]
+    # Expectations that a part of a run did not get to.
+    missed = parsed(table.attrs.get("not_reached", "[]"))
+    end = float(table["time"].values[-1]) if missed else 0.0
+    not_reached = [f"Not reached: {claim}. The run ended at {end:g} s." for claim in missed]
+    said = [*parsed(table.attrs.get("remarks", "[]")), *not_reached, *_not_finite(shown)]
     said += _failures(shown, roles) + _alarms(shown, roles)
     return said + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
 
 
 _DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
-
-
-def _not_reached(table: Dataset) -> list[str]:
-    """Expectations that a part of a run did not get to."""
-    missed = parsed(table.attrs.get("not_reached", "[]"))
-    end = float(table["time"].values[-1]) if missed else 0.0
-    return [f"Not reached: {claim}. The run ended at {end:g} s." for claim in missed]
 
 
 def _not_finite(shown: Dataset) -> list[str]:

@@ -13,7 +13,7 @@ from shipcosim.angles import unwrap_series
 from shipcosim.report.run.predictions import predicted_tracks
 from shipcosim.report.run.roles import find_roles
 from shipcosim.report.run.track import hull_outline, outline_rows, symbol_size
-from shipcosim.report.run.vessels import Unit, Vessel, find_vessels, in_unit, start_values
+from shipcosim.report.run.vessels import DrawnThruster, Vessel, find_vessels, in_unit, start_values
 from shipcosim.report.theme.display import is_constant
 from shipcosim.report.theme.packing import LEVELS, packed_series
 from shipcosim.scenario import Verdict
@@ -185,7 +185,7 @@ def _aim(names: tuple[str, str, str | None], columns: _Columns) -> list[str | No
     return None if north is None or east is None else [north, east, columns.add(names[2], "deg", DEGREES)]
 
 
-def _unit(unit: Unit, columns: _Columns, to_scale: bool) -> dict[str, Any] | None:
+def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> dict[str, Any] | None:
     """A thruster: bars need its thrust; vectors its force in body axes, its place, and a ship to scale around it."""
     thrust = columns.add(unit.thrust, "kN")
     if thrust is None:
@@ -206,7 +206,7 @@ def _unit(unit: Unit, columns: _Columns, to_scale: bool) -> dict[str, Any] | Non
     }
 
 
-def _force(unit: Unit, columns: _Columns) -> list[str] | None:
+def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
     """Columns of the force on the ship, forward and to starboard: as put out, else thrust along the azimuth."""
     if unit.force is not None:
         put_out = [columns.add(name, "kN") for name in unit.force]

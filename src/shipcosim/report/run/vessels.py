@@ -24,7 +24,7 @@ Pose = tuple[str, str, str]
 
 
 @dataclass(frozen=True)
-class Unit:
+class DrawnThruster:
     """A thruster: its signals, None where there is none, and what the start values say of it.
 
     Attributes
@@ -71,7 +71,7 @@ class Vessel:
         Signals north, east, heading of "reference" and "set point".
     size : (float, float), optional
         Length and breadth. [m, m]
-    units : tuple of Unit
+    units : tuple of DrawnThruster
         Thrusters.
     """
 
@@ -80,7 +80,7 @@ class Vessel:
     velocity: tuple[str | None, ...]
     aims: dict[str, tuple[str, str, str | None]]
     size: tuple[float, float] | None
-    units: tuple[Unit, ...]
+    units: tuple[DrawnThruster, ...]
 
 
 def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
@@ -132,12 +132,6 @@ def _plain(connector: str) -> str:
     return re.sub(r"[^a-z0-9]", "", connector.lower())
 
 
-def _spellings(axis: str, endings: Iterable[str] = ("",)) -> set[str]:
-    """Names, as `_plain` gives them, under which an axis is known."""
-    words = [a + word + b for word in AXES[axis] for a in AROUND for b in AROUND if not (a and b)]
-    return {word + ending for word in words for ending in endings}
-
-
 def _poses(table: Dataset, names: list[str]) -> list[Pose]:
     """Signals of every position that has an east beside its north and a heading near it."""
     found = []
@@ -161,7 +155,10 @@ def _moves(table: Dataset, pose: Pose) -> bool:
 
 
 def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
-    return _plain(name.rpartition(".")[2]) in _spellings(axis, endings)
+    # Names, as `_plain` gives them, under which an axis is known.
+    words = [a + word + b for word in AXES[axis] for a in AROUND for b in AROUND if not (a and b)]
+    spellings = {word + ending for word in words for ending in endings}
+    return _plain(name.rpartition(".")[2]) in spellings
 
 
 def _beside(north: str, names: list[str]) -> list[str]:
@@ -261,7 +258,7 @@ def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]
     return found
 
 
-def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Unit, ...]:
+def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[DrawnThruster, ...]:
     """Thrusters of these signals.
 
     Parameters
@@ -273,12 +270,12 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Uni
 
     Returns
     -------
-    tuple of Unit
+    tuple of DrawnThruster
     """
     roles = find_roles(names)
     force = {unit: [roles.signal(unit, f"tau_{axis}") for axis in "XY"] for unit in roles.thrusters}
     return tuple(
-        Unit(
+        DrawnThruster(
             name=unit,
             thrust=join(unit, "thrust"),
             force=(force[unit][0] or "", force[unit][1] or "") if all(force[unit]) else None,

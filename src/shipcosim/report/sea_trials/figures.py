@@ -28,9 +28,9 @@ def track_figure(found: SeaTrialStudy, before: list[NDArray], after: list[NDArra
             looks += [("with the causes", after[i], palette.BLUE, 1.3)]
         for name, motion, colour, width in looks:
             across, ahead = _turned(motion)
-            drawn = line(
-                name, across, ahead, colour, width=width, legendgroup=name, showlegend=not _is_drawn(traces, name)
-            )
+            # True if a trace of that name is among them.
+            is_drawn = any(trace["name"] == name for trace in traces)
+            drawn = line(name, across, ahead, colour, width=width, legendgroup=name, showlegend=not is_drawn)
             traces.append(drawn | {"hovertemplate": f"{_angle(trial)}: {name}", "named": False})
     layout = {
         "xaxis": {"title": {"text": "to starboard"}},
@@ -41,11 +41,6 @@ def track_figure(found: SeaTrialStudy, before: list[NDArray], after: list[NDArra
         "From where the order was given. The measured circles drift with the current; the model sails in still water."
     )
     return Figure("Turning circles", "m", tuple(traces), layout, note, height=520)
-
-
-def _is_drawn(traces: list[dict], name: str) -> bool:
-    """Whether a trace of that name is among them."""
-    return any(trace["name"] == name for trace in traces)
 
 
 def _chosen(trials: tuple[SeaTrial, ...]) -> list[int]:

@@ -117,11 +117,16 @@ def page_of(tables: StudyTables) -> StudyPage:
     drawn = (*plots, *(view.distance for view in tracks))
     rows = _kept_rows(tables, list(runs.values()))
     errors = tuple(ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables))
+    has_views = bool(tracks or plots)
+    has_errors = bool(errors)
+    has_summary = len(tables.summary) > 0
+    absent = {"views": not has_views, "failed": not has_errors, "summary": not has_summary}
+    links = tuple(Link(anchor, title) for anchor, title in SECTIONS.items() if not absent.get(anchor))
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
         facts=words.facts(tables),
         outcome=words.outcome(tables, runs, summary),
-        links=_links(bool(tracks or plots), bool(errors), len(tables.summary) > 0),
+        links=links,
         data=_data(tables, runs, rows, tracks, drawn),
         remarks=tuple(map(str, tables.about.get("remarks") or ())),
         key_figures=words.key_figures(tables, runs, summary),
@@ -159,11 +164,6 @@ def _views(tables: StudyTables) -> tuple[tuple[TracksView, ...], tuple[Figure, .
     return tuple(tracks), tuple(plots), tuple(undrawn)
 
 
-def _links(has_views: bool, has_errors: bool, has_summary: bool) -> tuple[Link, ...]:
-    absent = {"views": not has_views, "failed": not has_errors, "summary": not has_summary}
-    return tuple(Link(anchor, title) for anchor, title in SECTIONS.items() if not absent.get(anchor))
-
-
 def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
     """Rows that the page has room for: failed ones, at most half of all, and the others evenly spaced."""
     varying = [column.values for column in columns if column.is_number and not column.levels]
@@ -190,6 +190,10 @@ def _data(
     texts = [str(error) for error in kept["error"][failed]] if "error" in kept else []
     different = list(dict.fromkeys(texts))
     place = {text: k for k, text in enumerate(different)}
+    # The column whose values colour the lines at first: what is true or false, else a factor of few levels.
+    truths = [c.name for c in columns.values() if c.is_truth and len(c.levels) > 1]
+    factors = [c.name for c in columns.values() if c.role == "factor" and 1 < len(c.levels) <= len(palette.CYCLE)]
+    coloured = next(iter([*truths, *factors]), "")
     return {
         "runs": packed_series(kept["run"].to_numpy(float), EXACT),
         "columns": [_packed(column, rows) for column in columns.values()],
@@ -198,7 +202,7 @@ def _data(
         "errorOf": [place[text] for text in texts],
         "pages": sorted(int(number) for number in tables.pages),
         "command": tables.command,
-        "colour": _coloured(columns),
+        "colour": coloured,
         "cycle": palette.CYCLE,
         "tracks": [view.data for view in tracks],
         "figures": [figure.drawn for figure in drawn],
@@ -215,21 +219,11 @@ def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
         return made | {"levels": column.levels, "places": [place.get(v, -1) for v in values.tolist()]}
     if not column.is_number:
         return made | {"values": [int(v) if np.isfinite(v) else None for v in values]}
-    return made | {"values": packed_series(values), "digits": _digits(column.values)}
-
-
-def _digits(values: NDArray) -> int:
-    """Decimals that tell a thousandth of a column's range apart."""
-    known = values[np.isfinite(values)]
+    # Decimals that tell a thousandth of a column's range apart.
+    known = column.values[np.isfinite(column.values)]
     span = float(np.ptp(known)) if known.size else 0.0
-    return int(np.clip(3 - np.floor(np.log10(span)) - 1, 0, 9)) if span > 0.0 else 3
-
-
-def _coloured(columns: Mapping[str, Column]) -> str:
-    """The column whose values colour the lines at first: what is true or false, else a factor of few levels."""
-    truths = [c.name for c in columns.values() if c.is_truth and len(c.levels) > 1]
-    factors = [c.name for c in columns.values() if c.role == "factor" and 1 < len(c.levels) <= len(palette.CYCLE)]
-    return next(iter([*truths, *factors]), "")
+    digits = int(np.clip(3 - np.floor(np.log10(span)) - 1, 0, 9)) if span > 0.0 else 3
+    return made | {"values": packed_series(values), "digits": digits}
 
 
 def _choices(columns: Mapping[str, Column]) -> tuple[Choice, ...]:

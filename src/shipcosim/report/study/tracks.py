@@ -142,7 +142,12 @@ def _data(
     circles: Sequence[float],
 ) -> dict[str, Any]:
     every = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
-    box = _box(tracks, every)
+    # West, east, south and north end of all tracks, the start included. [m]
+    ends = []
+    for values in (tracks.east[every], tracks.north[every]):
+        known = values[np.isfinite(values)]
+        ends += [min(float(known.min()), 0.0), max(float(known.max()), 0.0)] if known.size else [-1.0, 1.0]
+    box = [float(f"{end:.6g}") for end in ends]
     ship = tables.about.get("ship") or {}
     size = (float(ship.get("length") or 0.0), float(ship.get("breadth") or 0.0))
     is_to_scale = min(size) > 0.0
@@ -166,15 +171,6 @@ def _data(
         ],
         "cells": CELLS,
     }
-
-
-def _box(tracks: _Tracks, rows: NDArray) -> list[float]:
-    """West, east, south and north end of all tracks, the start included. [m]"""
-    ends = []
-    for values in (tracks.east[rows], tracks.north[rows]):
-        known = values[np.isfinite(values)]
-        ends += [min(float(known.min()), 0.0), max(float(known.max()), 0.0)] if known.size else [-1.0, 1.0]
-    return [float(f"{end:.6g}") for end in ends]
 
 
 def _density(tracks: _Tracks, rows: NDArray, box: Sequence[float]) -> list[int]:

@@ -13,7 +13,7 @@ from math import pi, sqrt
 import numpy as np
 
 from shipcosim.ships.attainable import largest_multiple
-from shipcosim.ships.estimates.estimate import Estimate
+from shipcosim.ships.estimates.estimate import EstimatedNumber
 
 TUNED_LENGTH, MOST_PACE, SHARE = 33.9, 1.5, 0.2
 TUNED = {"position": 0.0684, "heading": 0.101, "reference": pi / 60.0}  # rad/s
@@ -72,7 +72,7 @@ FILTERS = {"wind_filter_time": 0.7, "force_filter_time": 1.19, "moment_filter_ti
 
 
 @dataclass(frozen=True, kw_only=True)
-class Loop:
+class ControlledShip:
     """What the rule needs of a ship.
 
     Attributes
@@ -114,12 +114,12 @@ def reach_of(effects: np.ndarray, least: np.ndarray, most: np.ndarray) -> tuple[
     return X, Y, N
 
 
-def pace_of(loop: Loop) -> tuple[float, float]:
+def pace_of(loop: ControlledShip) -> tuple[float, float]:
     """Frequencies of position and heading over those of the tuned loop.
 
     Parameters
     ----------
-    loop : Loop
+    loop : ControlledShip
         The ship.
 
     Returns
@@ -134,12 +134,12 @@ def pace_of(loop: Loop) -> tuple[float, float]:
     return min(by_size, by_thrust), min(by_size, turn)
 
 
-def controller(loop: Loop) -> dict[str, Estimate]:
+def controller(loop: ControlledShip) -> dict[str, EstimatedNumber]:
     """Model, observer and law of the DP controller.
 
     Parameters
     ----------
-    loop : Loop
+    loop : ControlledShip
         The ship.
 
     Returns
@@ -170,16 +170,16 @@ def controller(loop: Loop) -> dict[str, Estimate]:
     values |= {name: time / min(position, heading, 1.0) for name, time in FILTERS.items()}
     for name, (value, power) in DISTURBANCES.items():
         values[name] = value * (heading if name in ("rate_disturbance", "bias_drift_yaw") else position) ** power
-    found = {name: Estimate(float(value), 0.0, RULE) for name, value in values.items()}
-    return found | {name: Estimate(value, 0.0, "docs/dp-loop.md") for name, value in OBSERVER.items()}
+    found = {name: EstimatedNumber(float(value), 0.0, RULE) for name, value in values.items()}
+    return found | {name: EstimatedNumber(value, 0.0, "docs/dp-loop.md") for name, value in OBSERVER.items()}
 
 
-def reference(loop: Loop) -> dict[str, Estimate]:
+def reference(loop: ControlledShip) -> dict[str, EstimatedNumber]:
     """How quickly the reference follows its setpoint, and how fast it may be.
 
     Parameters
     ----------
-    loop : Loop
+    loop : ControlledShip
         The ship.
 
     Returns
@@ -190,13 +190,13 @@ def reference(loop: Loop) -> dict[str, Estimate]:
     position, heading = pace_of(loop)
     speed = 0.3 * position * TUNED["reference"] * loop.length
     return {
-        "position_frequency": Estimate(TUNED["reference"] * position, 0.0, RULE),
-        "heading_frequency": Estimate(TUNED["reference"] * heading, 0.0, RULE),
-        "speed_max": Estimate(max(speed, 0.2), 0.0, RULE),
+        "position_frequency": EstimatedNumber(TUNED["reference"] * position, 0.0, RULE),
+        "heading_frequency": EstimatedNumber(TUNED["reference"] * heading, 0.0, RULE),
+        "speed_max": EstimatedNumber(max(speed, 0.2), 0.0, RULE),
     }
 
 
-def sensors(length: float) -> dict[str, Estimate]:
+def sensors(length: float) -> dict[str, EstimatedNumber]:
     """Usual DP sensors, and a mast before midships.
 
     Parameters
@@ -209,11 +209,11 @@ def sensors(length: float) -> dict[str, Estimate]:
     dict of str to Estimate
         Parameters of the sensors.
     """
-    found = {name: Estimate(value, 0.0, "usual DP sensors; assumed") for name, value in SENSORS.items()}
+    found = {name: EstimatedNumber(value, 0.0, "usual DP sensors; assumed") for name, value in SENSORS.items()}
     return found | mast(length)
 
 
-def mast(length: float) -> dict[str, Estimate]:
+def mast(length: float) -> dict[str, EstimatedNumber]:
     """Where the anemometer stands.
 
     Parameters
@@ -227,4 +227,4 @@ def mast(length: float) -> dict[str, Estimate]:
         mast_x, mast_y, mast_height. [m, m, m]
     """
     places = {"mast_x": 0.1 * length, "mast_y": 0.0, "mast_height": min(max(0.45 * length, 3.0), 40.0)}
-    return {name: Estimate(value, 0.0, "on the wheelhouse; assumed") for name, value in places.items()}
+    return {name: EstimatedNumber(value, 0.0, "on the wheelhouse; assumed") for name, value in places.items()}

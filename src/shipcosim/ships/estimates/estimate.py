@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 
-class Estimate(NamedTuple):
+class EstimatedNumber(NamedTuple):
     """A number that nobody measured.
 
     Attributes
@@ -21,7 +21,7 @@ class Estimate(NamedTuple):
     source: str
 
 
-def within(value: float, share: float, source: str) -> Estimate:
+def within(value: float, share: float, source: str) -> EstimatedNumber:
     """An estimate whose tolerance is a share of its size.
 
     Parameters
@@ -35,6 +35,6 @@ def within(value: float, share: float, source: str) -> Estimate:
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
     """
-    return Estimate(value, share * abs(value), source)
+    return EstimatedNumber(value, share * abs(value), source)

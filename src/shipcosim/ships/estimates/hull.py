@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 
-from shipcosim.ships.estimates.estimate import Estimate, within
+from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
 SODING = "Söding 1982: 2.7 rho V^(5/3)/L^2"
 CLARKE = "Clarke, Gedling and Hine 1983"
@@ -24,7 +24,7 @@ _HOERNER = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class Form:
+class HullDimensions:
     """Main particulars of a hull, or of each of the hulls that she has.
 
     Attributes
@@ -60,14 +60,14 @@ class Form:
         return self.density * self.volume
 
 
-def added_masses(form: Form) -> dict[str, Estimate]:
+def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
     """Added mass at low frequency; sway is Clarke's, yaw follows from it by strip theory.
 
     Of two hulls each counts for itself: what one does to the other is left out.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
 
     Returns
@@ -86,9 +86,11 @@ def added_masses(form: Form) -> dict[str, Estimate]:
     sway = 1.0 + 0.16 * form.block * B / T - 5.1 * (B / L) ** 2
     A22 = 0.5 * rho * L**3 * pi * (T / L) ** 2 * max(sway, 0.3)
     lever, share = 0.05 * L, form.hulls
-    coupling = Estimate(0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway")
+    coupling = EstimatedNumber(0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway")
     return {
-        "A11": Estimate(share * A11, max(0.3 * share * A11, 0.08 * form.mass), f"{SODING}; tolerance 8 % of the mass"),
+        "A11": EstimatedNumber(
+            share * A11, max(0.3 * share * A11, 0.08 * form.mass), f"{SODING}; tolerance 8 % of the mass"
+        ),
         "A22": within(share * A22, 0.4, CLARKE),
         "A26": coupling,
         "A62": coupling,
@@ -96,7 +98,7 @@ def added_masses(form: Form) -> dict[str, Estimate]:
     }
 
 
-def inertia_yaw(mass: float, length: float, centre_x: float) -> Estimate:
+def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
     """Moment of inertia about midships, with a gyration radius of a quarter of the length.
 
     Parameters
@@ -110,24 +112,24 @@ def inertia_yaw(mass: float, length: float, centre_x: float) -> Estimate:
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [kg.m2]
     """
     own = mass * (0.25 * length) ** 2
-    return Estimate(own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021")
+    return EstimatedNumber(own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021")
 
 
-def cross_flow_drag(form: Form) -> Estimate:
+def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:
     """Drag coefficient of the hull in sway, by breadth over draught.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [1]
 
     Notes
@@ -137,12 +139,12 @@ def cross_flow_drag(form: Form) -> Estimate:
     return within(float(np.interp(0.5 * form.breadth / form.draught, *_HOERNER)), 0.6, "Hoerner's curve over B/(2T)")
 
 
-def manoeuvring_derivatives(form: Form, sway_mass: float) -> dict[str, Estimate]:
+def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str, EstimatedNumber]:
     """Linear derivatives under way, which hold the added mass' Coriolis load already.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
     sway_mass : float
         Added mass in sway. [kg]
@@ -155,7 +157,7 @@ def manoeuvring_derivatives(form: Form, sway_mass: float) -> dict[str, Estimate]
     L, B, T, Cb = form.length, form.breadth, form.draught, form.block
     scale = 0.5 * form.density * form.hulls * pi * (T / L) ** 2
     return {
-        "added_mass_coriolis": Estimate(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),
+        "added_mass_coriolis": EstimatedNumber(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),
         "Y_uv": within(-scale * L**2 * (1.0 + 0.40 * Cb * B / T), 0.3, CLARKE),
         "Y_ur": within(scale * L**3 * (0.5 - 2.2 * B / L + 0.08 * B / T), 0.5, CLARKE),
         "N_uv": within(-scale * L**3 * (0.5 + 2.4 * T / L), 0.3, CLARKE),

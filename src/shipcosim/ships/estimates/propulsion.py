@@ -13,7 +13,7 @@ from math import atan, degrees, pi, sqrt
 import numpy as np
 
 from shipcosim.models.propulsion.propeller import series
-from shipcosim.ships.estimates.estimate import Estimate, within
+from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
 DNV = {"open": 800.0, "ducted": 1200.0, "tunnel": 900.0}
 """Thrust over the power 2/3 of diameter and power. [N/(m.kW)^(2/3)]"""
@@ -67,7 +67,7 @@ class Screw:
         return self.torque / (self.density * (self.rpm / 60.0) ** 2 * self.diameter**5)
 
 
-def bollard_thrust(kind: str, diameter: float, power: float) -> Estimate:
+def bollard_thrust(kind: str, diameter: float, power: float) -> EstimatedNumber:
     """Thrust at the bollard.
 
     Parameters
@@ -79,7 +79,7 @@ def bollard_thrust(kind: str, diameter: float, power: float) -> Estimate:
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [N]
     """
     return within(DNV[kind] * (diameter * power / 1000.0 * 0.95) ** (2.0 / 3.0), 0.15, "DNV-ST-0111, 5 % lost in gears")
@@ -104,7 +104,7 @@ def most_thrust(kind: str, diameter: float, power: float, density: float) -> flo
     return ((2.0 if kind == "open" else 4.0) * density * disc * power**2) ** (1.0 / 3.0)
 
 
-def shaft_speed(kind: str, diameter: float, thrust: float, density: float) -> Estimate:
+def shaft_speed(kind: str, diameter: float, thrust: float, density: float) -> EstimatedNumber:
     """Largest speed of the shaft, by a usual thrust coefficient.
 
     Parameters
@@ -116,14 +116,14 @@ def shaft_speed(kind: str, diameter: float, thrust: float, density: float) -> Es
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [rpm]
     """
     rpm = 60.0 * sqrt(thrust / (density * USUAL_KT[kind] * diameter**4))
     return within(rpm, 0.15, f"KT {USUAL_KT[kind]} at the bollard; assumed")
 
 
-def curves(screw: Screw) -> dict[str, Estimate]:
+def curves(screw: Screw) -> dict[str, EstimatedNumber]:
     """Thrust and torque of a propeller in four quadrants, through its bollard points.
 
     Parameters
@@ -155,13 +155,13 @@ def curves(screw: Screw) -> dict[str, Estimate]:
     source = "form of the series B4-70, scaled to the bollard points"
     found = {}
     for i, (name, (k, a, b)) in enumerate((("thrust", thrust), ("torque", torque))):
-        found[f"{name}_polynomial"] = Estimate(f"{last:.4g} {k:.5g} {k * a:.5g} {k * b:.5g} 0", 0.0, source)
+        found[f"{name}_polynomial"] = EstimatedNumber(f"{last:.4g} {k:.5g} {k * a:.5g} {k * b:.5g} 0", 0.0, source)
         rows = f"-180 {astern[i]:.4g}; -90 1; 0 {ahead[i]:.4g}; {last:.4g} {ends[i]:.4g}; 90 1; 180 {astern[i]:.4g}"
-        found[f"{name}_factors"] = Estimate(rows, 0.0, source)
+        found[f"{name}_factors"] = EstimatedNumber(rows, 0.0, source)
     return found
 
 
-def drive(screw: Screw, rise: float) -> dict[str, Estimate]:
+def drive(screw: Screw, rise: float) -> dict[str, EstimatedNumber]:
     """Motor and drive of a propeller.
 
     Parameters
@@ -179,12 +179,12 @@ def drive(screw: Screw, rise: float) -> dict[str, Estimate]:
     inertia = 24.0 * screw.diameter**5 * (0.3 if screw.kind == "tunnel" else 1.0)
     inertia = max(inertia, 1e-5)
     return {
-        "thrust_rate": Estimate(screw.thrust / rise, 0.0, f"full thrust in {rise:g} s; assumed"),
-        "rpm_max": Estimate(1.02 * screw.rpm, 0.0, "2 % above that of full thrust; assumed"),
-        "torque_max": Estimate(1.05 * screw.torque, 0.0, "5 % above that of full power; assumed"),
-        "power_max": Estimate(1.05 * screw.power, 0.0, "5 % above the motor's; assumed"),
-        "inertia": Estimate(inertia, 0.0, "24 kg/m3 D^5, Smogeli 2006, of a unit of 4 m"),
-        "friction": Estimate(0.01 * screw.torque / (screw.rpm * pi / 30.0), 0.0, "1 % at full speed; assumed"),
-        "proportional_gain": Estimate(RESPONSE * inertia, 0.0, "5 1/s times the inertia"),
-        "integral_gain": Estimate(RESPONSE * INTEGRAL * inertia, 0.0, "k_p over 0.5 s"),
+        "thrust_rate": EstimatedNumber(screw.thrust / rise, 0.0, f"full thrust in {rise:g} s; assumed"),
+        "rpm_max": EstimatedNumber(1.02 * screw.rpm, 0.0, "2 % above that of full thrust; assumed"),
+        "torque_max": EstimatedNumber(1.05 * screw.torque, 0.0, "5 % above that of full power; assumed"),
+        "power_max": EstimatedNumber(1.05 * screw.power, 0.0, "5 % above the motor's; assumed"),
+        "inertia": EstimatedNumber(inertia, 0.0, "24 kg/m3 D^5, Smogeli 2006, of a unit of 4 m"),
+        "friction": EstimatedNumber(0.01 * screw.torque / (screw.rpm * pi / 30.0), 0.0, "1 % at full speed; assumed"),
+        "proportional_gain": EstimatedNumber(RESPONSE * inertia, 0.0, "5 1/s times the inertia"),
+        "integral_gain": EstimatedNumber(RESPONSE * INTEGRAL * inertia, 0.0, "k_p over 0.5 s"),
     }

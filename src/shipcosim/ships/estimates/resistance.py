@@ -8,8 +8,8 @@ model-ship correlation line. Midship section and waterplane: Papanikolaou, Ship 
 
 from math import cos, exp, log10, sqrt
 
-from shipcosim.ships.estimates.estimate import Estimate, within
-from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.estimate import EstimatedNumber, within
+from shipcosim.ships.estimates.hull import HullDimensions
 
 GRAVITY, VISCOSITY = 9.81, 1.19e-6  # m/s2; m2/s, sea water at 15 deg C
 APPENDAGES = 1.1
@@ -36,12 +36,12 @@ def midship_coefficient(block: float) -> float:
     return min(1.0, max(1.006 - 0.0056 * block**-3.56, 1.02 * block))
 
 
-def wetted_surface(form: Form, midship: float | None = None, waterplane: float | None = None) -> float:
+def wetted_surface(form: HullDimensions, midship: float | None = None, waterplane: float | None = None) -> float:
     """Wetted surface of all hulls without appendages and bulb.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
     midship, waterplane : float, optional
         Coefficients of midship section and waterplane; by the block coefficient if not given. [1, 1]
@@ -58,12 +58,12 @@ def wetted_surface(form: Form, midship: float | None = None, waterplane: float |
     return form.hulls * L * (2.0 * T + B) * sqrt(Cm) * shape
 
 
-def form_factor(form: Form, *, midship: float | None = None, lcb: float = 0.0, stern: float = 0.0) -> float:
+def form_factor(form: HullDimensions, *, midship: float | None = None, lcb: float = 0.0, stern: float = 0.0) -> float:
     """1 + k, the viscous resistance over that of a flat plate.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
     midship : float, optional
         As of `wetted_surface`. [1]
@@ -105,13 +105,13 @@ def friction(speed: float, length: float) -> float:
 
 
 def wave_resistance(
-    form: Form, *, midship: float | None = None, waterplane: float | None = None, lcb: float = 0.0
+    form: HullDimensions, *, midship: float | None = None, waterplane: float | None = None, lcb: float = 0.0
 ) -> float:
     """Wave resistance at the service speed of a hull without bulb and immersed transom.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
     midship, waterplane, lcb : float
         As above. [1, 1, 1]
@@ -138,12 +138,12 @@ def wave_resistance(
     return form.hulls * c1 * volume * form.density * GRAVITY * shape
 
 
-def resistance(form: Form, surface: float | None = None, factor: float | None = None) -> float:
+def resistance(form: HullDimensions, surface: float | None = None, factor: float | None = None) -> float:
     """Resistance at the service speed in calm water, a tenth of it that of appendages.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
     surface : float, optional
         Wetted surface, where it is known. [m2]
@@ -161,7 +161,9 @@ def resistance(form: Form, surface: float | None = None, factor: float | None = 
     return APPENDAGES * (pressure * (viscous + _allowance(form)) + wave_resistance(form))
 
 
-def drag_coefficient(form: Form, surface: float | None = None, factor: float | None = None) -> Estimate:
+def drag_coefficient(
+    form: HullDimensions, surface: float | None = None, factor: float | None = None
+) -> EstimatedNumber:
     """Quadratic damping in surge that has the resistance of the service speed.
 
     Parameters
@@ -171,7 +173,7 @@ def drag_coefficient(form: Form, surface: float | None = None, factor: float | N
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         X_uu. [N.s2/m2]
     """
     found = -resistance(form, surface, factor) / form.speed**2
@@ -181,12 +183,12 @@ def drag_coefficient(form: Form, surface: float | None = None, factor: float | N
     return within(found, 0.5, source)
 
 
-def froude_number(form: Form) -> float:
+def froude_number(form: HullDimensions) -> float:
     """Of the service speed.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
 
     Returns
@@ -197,7 +199,7 @@ def froude_number(form: Form) -> float:
     return form.speed / sqrt(GRAVITY * form.length)
 
 
-def _prismatic(form: Form, midship: float | None) -> float:
+def _prismatic(form: HullDimensions, midship: float | None) -> float:
     return min(0.9, form.block / (midship_coefficient(form.block) if midship is None else midship))
 
 
@@ -206,7 +208,7 @@ def _run(L: float, Cp: float, lcb: float) -> float:
     return L * max(0.1, 1.0 - Cp + 0.06 * Cp * lcb / (4.0 * Cp - 1.0))
 
 
-def _entrance(form: Form, volume: float, Cp: float, Cwp: float, lcb: float) -> float:
+def _entrance(form: HullDimensions, volume: float, Cp: float, Cwp: float, lcb: float) -> float:
     """Half angle of entrance in deg."""
     L, B, run = form.length, form.breadth, _run(form.length, Cp, lcb)
     power = (L / B) ** 0.80856 * (1.0 - Cwp) ** 0.30484 * max(0.01, 1.0 - Cp - 0.0225 * lcb) ** 0.6367
@@ -214,7 +216,7 @@ def _entrance(form: Form, volume: float, Cp: float, Cwp: float, lcb: float) -> f
     return min(1.0 + 89.0 * exp(-power), 85.0)
 
 
-def _allowance(form: Form) -> float:
+def _allowance(form: HullDimensions) -> float:
     """Correlation allowance of a ship without bulb, with the draught at the bow that she has amidships."""
     if form.length < FULL_SCALE:
         return 0.0

@@ -7,36 +7,38 @@ J. SNAJ 168, 1990. Fujii: gradient of the rudder's normal force. Yasukawa and Yo
 the method, and the numbers of KVLCC2 that are taken where no formula is at hand. Taylor: wake. DNV: rudder area.
 """
 
-from shipcosim.ships.estimates.estimate import Estimate, within
-from shipcosim.ships.estimates.hull import Form
+from shipcosim.ships.estimates.estimate import EstimatedNumber, within
+from shipcosim.ships.estimates.hull import HullDimensions
 
 KIJIMA = "Kijima et al. 1990"
 KVLCC2 = "as of KVLCC2, Yasukawa and Yoshimura 2015"
 
 
-def rudder_area(form: Form) -> Estimate:
+def rudder_area(form: HullDimensions) -> EstimatedNumber:
     """Area of the movable rudder.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [m2]
     """
     area = form.length * form.draught / 100.0 * (1.0 + 25.0 * (form.breadth / form.length) ** 2)
     return within(area, 0.25, "DNV's least area, LT/100 (1 + 25 (B/L)^2)")
 
 
-def propeller_and_rudder(form: Form, *, single: bool, span: float, area: float, covered: float) -> dict[str, Estimate]:
+def propeller_and_rudder(
+    form: HullDimensions, *, single: bool, span: float, area: float, covered: float
+) -> dict[str, EstimatedNumber]:
     """Wake, deduction, rudder force and its effect on the hull.
 
     Parameters
     ----------
-    form : Form
+    form : HullDimensions
         The hull.
     single : bool
         One propeller on the centreline, or one of two.
@@ -54,16 +56,16 @@ def propeller_and_rudder(form: Form, *, single: bool, span: float, area: float, 
     wake = max(0.5 * Cb - 0.05 if single else 0.55 * Cb - 0.20, 0.02)
     aspect = span**2 / area
     return {
-        "wake": Estimate(wake, 0.08, "Taylor"),
-        "thrust_deduction": Estimate(0.6 * wake, 0.05, "0.6 of the wake fraction"),
+        "wake": EstimatedNumber(wake, 0.08, "Taylor"),
+        "thrust_deduction": EstimatedNumber(0.6 * wake, 0.05, "0.6 of the wake fraction"),
         "lift_gradient": within(6.13 * aspect / (aspect + 2.25), 0.1, "Fujii: 6.13 a/(a + 2.25), a the aspect ratio"),
-        "covered": Estimate(min(covered, 1.0), 0.05, "diameter over span"),
-        "race_gain": Estimate(0.55, 0.1, KVLCC2),
-        "wake_ratio": Estimate(1.05, 0.1, KVLCC2),
-        "straightening_starboard": Estimate(0.55, 0.15, f"{KVLCC2}, mean of both sides"),
-        "straightening_port": Estimate(0.45, 0.15, f"{KVLCC2}, mean of both sides"),
+        "covered": EstimatedNumber(min(covered, 1.0), 0.05, "diameter over span"),
+        "race_gain": EstimatedNumber(0.55, 0.1, KVLCC2),
+        "wake_ratio": EstimatedNumber(1.05, 0.1, KVLCC2),
+        "straightening_starboard": EstimatedNumber(0.55, 0.15, f"{KVLCC2}, mean of both sides"),
+        "straightening_port": EstimatedNumber(0.45, 0.15, f"{KVLCC2}, mean of both sides"),
         "straightening_x": within(-0.71 * L, 0.15, KVLCC2),
-        "rudder_deduction": Estimate(0.45 - 0.28 * Cb, 0.15, f"{KIJIMA}: 1 - t_R = 0.28 C_B + 0.55"),
-        "hull_share": Estimate(max(0.5 * Cb - 0.1, 0.0), 0.15, f"read off the curve of {KIJIMA}"),
+        "rudder_deduction": EstimatedNumber(0.45 - 0.28 * Cb, 0.15, f"{KIJIMA}: 1 - t_R = 0.28 C_B + 0.55"),
+        "hull_share": EstimatedNumber(max(0.5 * Cb - 0.1, 0.0), 0.15, f"read off the curve of {KIJIMA}"),
         "hull_x": within(-0.45 * L, 0.1, KIJIMA),
     }

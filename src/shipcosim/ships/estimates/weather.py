@@ -9,7 +9,7 @@ Faltinsen, Sea Loads on Ships and Offshore Structures, Cambridge, 1990, ch. 5: a
 
 from math import cos, exp, pi, radians, sin
 
-from shipcosim.ships.estimates.estimate import Estimate, within
+from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
 AIR, GRAVITY = 1.225, 9.81  # kg/m3, m/s2
 BLENDERMANN = {
@@ -35,7 +35,7 @@ BLENDERMANN = {
 USUAL_KIND = "offshore supply vessel"
 
 
-def front_area(breadth: float) -> Estimate:
+def front_area(breadth: float) -> EstimatedNumber:
     """Area above water, seen from ahead.
 
     Parameters
@@ -45,13 +45,13 @@ def front_area(breadth: float) -> Estimate:
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [m2]
     """
     return within(0.9 * breadth**2, 0.4, "0.9 B^2, as of small work ships; assumed")
 
 
-def side_area(length: float) -> Estimate:
+def side_area(length: float) -> EstimatedNumber:
     """Area above water, seen from the side.
 
     Parameters
@@ -61,13 +61,13 @@ def side_area(length: float) -> Estimate:
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         [m2]
     """
     return within(0.18 * length**2, 0.4, "0.18 L^2, as of small work ships; assumed")
 
 
-def wind_table(kind: str, front: float, side: float, centre_x: float, length: float) -> Estimate:
+def wind_table(kind: str, front: float, side: float, centre_x: float, length: float) -> EstimatedNumber:
     """Wind loads over the squared apparent wind speed, every ten degrees.
 
     Parameters
@@ -83,7 +83,7 @@ def wind_table(kind: str, front: float, side: float, centre_x: float, length: fl
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         Rows "angle X Y N". [deg, N.s2/m2, N.s2/m2, N.s2/m]
 
     Notes
@@ -103,10 +103,10 @@ def wind_table(kind: str, front: float, side: float, centre_x: float, length: fl
         N = Y * (centre_x + 0.18 * length * (0.5 * pi - g))
         rows.append(f"{angle} " + " ".join(f"{0.0 if abs(load) < 1e-9 else load:.6g}" for load in (X, Y, N)))
     source = f"Blendermann 1994, {kind}, A_F {front:.4g} m2, A_L {side:.4g} m2, s_L {centre_x:.3g} m"
-    return Estimate("; ".join(rows), 0.0, source)
+    return EstimatedNumber("; ".join(rows), 0.0, source)
 
 
-def drift_table(length: float, breadth: float, draught: float, density: float) -> Estimate:
+def drift_table(length: float, breadth: float, draught: float, density: float) -> EstimatedNumber:
     """Mean wave drift loads over the squared amplitude, of the part of the wave that the hull reflects.
 
     Parameters
@@ -118,7 +118,7 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
 
     Returns
     -------
-    Estimate
+    EstimatedNumber
         Rows "omega heading X Y N". [rad/s, deg, N/m2, N/m2, N/m]
 
     Notes
@@ -134,6 +134,6 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
             c, s = cos(radians(heading)), sin(radians(heading))
             X, Y = scale * breadth * c * abs(c), scale * length * s * s
             rows.append(f"{omega:g} {heading} {round(X, 3) + 0.0:g} {round(Y, 3) + 0.0:g} 0")
-    return Estimate(
+    return EstimatedNumber(
         "; ".join(rows), 0.0, "reflection above the keel, Faltinsen 1990, ch. 5; a factor of two either way"
     )

@@ -3,7 +3,7 @@
 from shipcosim.errors import suggestion
 from shipcosim.ssp.edit.connectors import declare_variable
 from shipcosim.ssp.edit.draft import Draft
-from shipcosim.ssp.edit.names import Reading, best_pair, connections
+from shipcosim.ssp.edit.names import NameMatch, best_pair, connections
 from shipcosim.ssp.xml.markup import add, drop, ensure
 
 
@@ -52,13 +52,13 @@ def disconnect(draft: Draft, source: str, target: str | None) -> None:
         drop(element)
 
 
-def _exists(draft: Draft, end: Reading) -> bool:
+def _exists(draft: Draft, end: NameMatch) -> bool:
     """Whether a connector is declared, or could be because its FMU has the variable."""
     fmu = None if end.element is None else draft.fmu_of(end.element)
     return end.declared() is not None or (fmu is not None and end.connector in fmu.variables)
 
 
-def _declare(draft: Draft, end: Reading) -> None:
+def _declare(draft: Draft, end: NameMatch) -> None:
     """Give a component the connector that a connection needs, if its FMU has it."""
     if end.element is None or end.declared() is not None:
         return

@@ -144,8 +144,11 @@ class Draft:
             self._changing = False
 
     def _snapshot(self) -> dict[Path, Document | Path]:
+        # Copy of an element with what stands before and after it in its file.
         return {
-            path: replace(held, root=_copied(held.root)) if isinstance(held, Document) else held
+            path: replace(held, root=deepcopy(held.root.getroottree()).getroot())
+            if isinstance(held, Document)
+            else held
             for path, held in self.package.held.items()
         }
 
@@ -208,11 +211,6 @@ class Draft:
 
 
 PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
-
-
-def _copied(root: etree._Element) -> etree._Element:
-    """Copy of an element with what stands before and after it in its file."""
-    return deepcopy(root.getroottree()).getroot()
 
 
 def _is_hidden(name: Path) -> bool:

@@ -13,7 +13,7 @@ from shipcosim.ssp.xml.document import child, children, local
 ELEMENTS = ("Component", "SignalDictionaryReference", "System")
 
 
-class Reading(NamedTuple):
+class NameMatch(NamedTuple):
     """One way to read the name of a signal: a connector of an element in a system, or (None) of the system itself."""
 
     system: etree._Element
@@ -119,20 +119,20 @@ def attached(system: etree._Element, name: str, is_element: bool) -> Iterator[tu
                     yield connection, f"{side}{'Element' if is_element else 'Connector'}"
 
 
-def readings(signal: str, system: etree._Element) -> Iterator[Reading]:
+def readings(signal: str, system: etree._Element) -> Iterator[NameMatch]:
     """Every reading of a signal's name, which can be ambiguous: names of elements and connectors can contain dots."""
-    yield Reading(system, None, signal)
+    yield NameMatch(system, None, signal)
     for part in parts(system):
         start = f"{part.get('name')}."
         if signal.startswith(start):
-            yield Reading(system, part, signal.removeprefix(start))
+            yield NameMatch(system, part, signal.removeprefix(start))
             if local(part) == "System":
                 yield from readings(signal.removeprefix(start), part)
 
 
 def best_pair(
-    source: str, target: str, system: etree._Element, exists: Callable[[Reading], bool], where: str
-) -> tuple[Reading, Reading]:
+    source: str, target: str, system: etree._Element, exists: Callable[[NameMatch], bool], where: str
+) -> tuple[NameMatch, NameMatch]:
     """Readings of two signals that a connection can join: both in one system, and existing as far as possible.
 
     Parameters
@@ -161,17 +161,17 @@ def best_pair(
     return start, end
 
 
-def _likely(reading: Reading, exists: Callable[[Reading], bool]) -> int:
+def _likely(reading: NameMatch, exists: Callable[[NameMatch], bool]) -> int:
     return 2 if exists(reading) else 0 if _names_an_element(reading) else 1
 
 
-def _names_an_element(reading: Reading) -> bool:
+def _names_an_element(reading: NameMatch) -> bool:
     """Whether what is taken for a connector's name looks like one of a component that is not there."""
     return reading.element is None and "." in reading.connector
 
 
 def _refuse_if_elsewhere(
-    signal: str, reading: Reading, system: etree._Element, exists: Callable[[Reading], bool], where: str
+    signal: str, reading: NameMatch, system: etree._Element, exists: Callable[[NameMatch], bool], where: str
 ) -> None:
     """Raise where a signal is in another system, or of an element that is not there; the check finds all else."""
     if any(exists(other) for other in readings(signal, system)):

@@ -82,11 +82,8 @@ class Sets:
         ]
         counts = Counter(self._file(part) for _, part in found)
         bound = [self._bound(name, part, counts) for name, part in found]
-        depths = {name: self._depth(element) for name, element in self.elements.items()}
+        depths = {name: sum(1 for _ in element.iterancestors()) for name, element in self.elements.items()}
         self.bound = sorted((one for one in bound if one is not None), key=lambda one: -depths[one.owner])
-
-    def _depth(self, element: etree._Element) -> int:
-        return sum(1 for _ in element.iterancestors())
 
     def _file(self, binding: etree._Element) -> Path | None:
         """File in the package that a binding or mapping names, or None."""

@@ -133,20 +133,17 @@ def _mapped(flow: Flow, transformation: Transformation, port: Port, place: str, 
         return flow
     table = transformation.table
     if kind == "Enumeration":
-        table = _by_number(table, flow.items, port.items or flow.items, place, findings)
+        # Table of numbers from a table of item names.
+        target = port.items or flow.items
+        for name, items in [(name, flow.items) for name in table] + [(name, target) for name in table.values()]:
+            if name not in items:
+                findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, items))
+        table = {flow.items[a]: target[b] for a, b in table.items() if a in flow.items and b in target}
     elif port.items:
         _check_numbers(table, flow.items, port.items, place, findings)
     before = flow.mapping or {}
     after = {value: table.get(between, between) for value, between in before.items()}
     return replace(flow, mapping={**table, **after})
-
-
-def _by_number(table: Mapping, source: Items, target: Items, place: str, findings: Findings) -> dict[int, int]:
-    """Table of numbers from a table of item names."""
-    for name, items in [(name, source) for name in table] + [(name, target) for name in table.values()]:
-        if name not in items:
-            findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, items))
-    return {source[a]: target[b] for a, b in table.items() if a in source and b in target}
 
 
 def _check_numbers(table: Mapping, source: Items, target: Items, place: str, findings: Findings) -> None:

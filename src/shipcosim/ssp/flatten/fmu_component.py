@@ -44,7 +44,12 @@ def take_fmu(tree: Hierarchy, element: ComponentElement, path: ElementPath, plac
             _port(connector, None, tree.findings) if lacking else _port(connector, fmu, tree.findings)
         )
     if fmu is not None:
-        _check_implementation(element, fmu, tree.findings)
+        # Note where an FMU does not offer what is asked of it: co-simulation, model exchange or either.
+        wanted = element.implementation
+        forms = ("CoSimulation", "ModelExchange") if wanted == "any" else (wanted,)
+        if not any(form in fmu.interfaces for form in forms):
+            remedy = f"It offers {', '.join(fmu.interfaces)}."
+            tree.findings.error(element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy)
     take_bindings(tree, element.bindings, path, place, near=True, fmu=fmu)
 
 
@@ -57,15 +62,6 @@ def _fmu_of(
     file = tree.swapped.get(".".join(path)) or tree.library.file(element, element.source, place)
     fmu = tree.library.fmu(file, place.package) if file else None
     return fmu and without_arrays(fmu, element.place, tree.findings, tree.sizes.get(".".join(path)))
-
-
-def _check_implementation(element: ComponentElement, fmu: FmuDescription, findings: Findings) -> None:
-    """Note where an FMU does not offer what is asked of it: co-simulation, model exchange or either."""
-    wanted = element.implementation
-    forms = ("CoSimulation", "ModelExchange") if wanted == "any" else (wanted,)
-    if not any(form in fmu.interfaces for form in forms):
-        remedy = f"It offers {', '.join(fmu.interfaces)}."
-        findings.error(element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy)
 
 
 def _port(connector: Connector, fmu: FmuDescription | None, findings: Findings) -> Port:

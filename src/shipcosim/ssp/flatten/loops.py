@@ -23,7 +23,7 @@ Edge = tuple[Node, Node]
 
 
 @dataclass(frozen=True)
-class Loop:
+class AlgebraicLoop:
     """An algebraic loop, or several that share variables.
 
     Parameters
@@ -47,7 +47,7 @@ class Loop:
     breaking: list[str]
 
 
-def find_loops(system: System, at_start: bool = False) -> list[Loop]:
+def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
     """Loops of a checked system.
 
     Parameters
@@ -59,7 +59,7 @@ def find_loops(system: System, at_start: bool = False) -> list[Loop]:
 
     Returns
     -------
-    list of Loop
+    list of AlgebraicLoop
     """
     links = [c for c in system.connections if c.source[0] and c.target[0] and not c.initial]
     links = list({(c.source, c.target): None for c in links})
@@ -88,7 +88,7 @@ def loop_problems(system: System) -> Iterator[Problem]:
             yield _problem(system, loop, "An algebraic loop at the start", does)
 
 
-def _problem(system: System, loop: Loop, kind: str, does: str) -> Problem:
+def _problem(system: System, loop: AlgebraicLoop, kind: str, does: str) -> Problem:
     shown = ", ".join(f"{'.'.join(source)} -> {'.'.join(target)}" for source, target in loop.links)
     found = f"{kind}, outputs that follow inputs at once: {shown}."
     if loop.others:
@@ -99,7 +99,7 @@ def _problem(system: System, loop: Loop, kind: str, does: str) -> Problem:
     return Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
 
 
-def _remedy(loop: Loop) -> str:
+def _remedy(loop: AlgebraicLoop) -> str:
     says = 'over a step, which its FMU says in its ModelStructure (dependencies="")'
     if len(loop.breaking) > 1:
         return f"Broken where one of these holds its outputs {says}: {', '.join(loop.breaking)}."
@@ -121,14 +121,14 @@ def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) 
             yield knot, output
 
 
-def _loop(nodes: list[Node], edges: list[Edge], links: list[Edge], names: list[str]) -> Loop:
+def _loop(nodes: list[Node], edges: list[Edge], links: list[Edge], names: list[str]) -> AlgebraicLoop:
     part = set(nodes)
     inside, edges = ([edge for edge in several if part.issuperset(edge)] for several in (links, edges))
     way = _shortest(inside, edges)
     components = [name for name in names if any(end[0] == name for end in part)]
     silent = [name for name in components if (name, None) in part]
     breaking = [name for name in components[:MOST_TRIED] if _breaks(name, edges)]
-    return Loop(way, len(inside) - len(way), components, silent, breaking)
+    return AlgebraicLoop(way, len(inside) - len(way), components, silent, breaking)
 
 
 def _breaks(name: str, edges: list[Edge]) -> bool:

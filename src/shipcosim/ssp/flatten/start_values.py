@@ -155,7 +155,12 @@ class Settings:
             return
         if element is not None:
             found = f"{element} has no parameter '{name}'."
-            if _is_slip(name, known):
+            # True if a parameter's name looks like a misspelt one of those that there are: part by part the same or
+            # close.
+            parts = name.split(".")
+            candidates = [one.split(".") for one in list(known)[:MOST_COMPARED] if one.count(".") == len(parts) - 1]
+            is_slip = any(all(map(_is_close, parts, others)) for others in candidates)
+            if is_slip:
                 self.findings.error(place, found, it_has(name, known))
             else:
                 self.findings.flaw(place, f"{found} The value is not used.", it_has(name, known))
@@ -187,13 +192,6 @@ class Settings:
     def _settable(self, names: Iterable[str], start: str) -> list[str]:
         ports = {name: self._port(self.named[start + name][0]) for name in names}
         return [name for name, port in ports.items() if port.variable is None or port.variable.settable]
-
-
-def _is_slip(name: str, known: Iterable[str]) -> bool:
-    """Whether a parameter's name looks like a misspelt one of those that there are: part by part the same or close."""
-    parts = name.split(".")
-    candidates = [one.split(".") for one in list(known)[:MOST_COMPARED] if one.count(".") == len(parts) - 1]
-    return any(all(map(_is_close, parts, others)) for others in candidates)
 
 
 def _is_close(one: str, other: str) -> bool:

@@ -62,7 +62,11 @@ def _take_system(
         too_many = Problem(element.place, f"There are more than {MOST_SYSTEMS} systems.", "Take some away.")
         raise ShipcosimError([*dict.fromkeys(tree.findings.errors), too_many])
     place = replace(place, dictionaries=(dictionaries_of(tree, element, path, place), *place.dictionaries))
-    _take_connectors(tree, element, path)
+    connectors, tree.arrays[path] = element_connectors(element.connectors, {}, tree.findings)
+    for connector in connectors:
+        fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
+        port = Port(*fields, description=connector.description, place=connector.place)
+        tree.ports[Key(path, connector.name)] = port
     for part in element.elements:
         inner = (*path, part.name)
         if isinstance(part, SystemElement):
@@ -76,14 +80,6 @@ def _take_system(
     take_bindings(tree, element.bindings, path, place)
     for bindings, outer in outer_bindings:
         take_bindings(tree, bindings, path, outer)
-
-
-def _take_connectors(tree: Hierarchy, element: SystemElement, path: ElementPath) -> None:
-    connectors, tree.arrays[path] = element_connectors(element.connectors, {}, tree.findings)
-    for connector in connectors:
-        fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
-        port = Port(*fields, description=connector.description, place=connector.place)
-        tree.ports[Key(path, connector.name)] = port
 
 
 def _take_connection(tree: Hierarchy, link: Link, element: SystemElement, path: ElementPath) -> None:

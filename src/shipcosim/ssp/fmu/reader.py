@@ -95,6 +95,10 @@ def _description(document: Document, path: Path, names: list[str], findings: Fin
     version = f"{root.get('fmiVersion', '')[:1]}.0"
     note_empty_units(document, parts_of(root, "UnitDefinitions"), findings)
     platforms = {parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"}
+    # Number of continuous states: given in FMI 1.0, that of the listed derivatives in FMI 2.0.
+    groups = [group for group in parts_of(root, "ModelStructure") if local(group) == "Derivatives"]
+    derivatives = [part for group in groups for part in group]
+    n_states = int(root.get("numberOfContinuousStates") or 0) or len([part for part in derivatives if local(part)])
     return FmuDescription(
         path=path,
         fmi_version=version,
@@ -107,7 +111,7 @@ def _description(document: Document, path: Path, names: list[str], findings: Fin
         units=read_units(parts_of(root, "UnitDefinitions")),
         platforms=tuple(sorted(platforms)),
         experiment=_experiment(root),
-        n_states=_n_states(root),
+        n_states=n_states,
         n_event_indicators=int(root.get("numberOfEventIndicators") or len(_indicators(root))),
     )
 
@@ -120,13 +124,6 @@ def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
 def _indicators(root: etree._Element) -> list[etree._Element]:
     """Event indicators that FMI 3.0 lists."""
     return [part for part in parts_of(root, "ModelStructure") if local(part) == "EventIndicator"]
-
-
-def _n_states(root: etree._Element) -> int:
-    """Number of continuous states: given in FMI 1.0, that of the listed derivatives in FMI 2.0."""
-    groups = [group for group in parts_of(root, "ModelStructure") if local(group) == "Derivatives"]
-    derivatives = [part for group in groups for part in group]
-    return int(root.get("numberOfContinuousStates") or 0) or len([part for part in derivatives if local(part)])
 
 
 def _experiment(root: etree._Element) -> dict[str, float]:

@@ -36,19 +36,24 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
             try:
                 variable = _variable(element, name, description, types, sizes, is_first)
                 if name in variables:
-                    _remark_second(variables[name], variable, document.place(element, name), findings)
+                    # Say of a second variable of a name what becomes of it: the name means the first one, as in
+                    # libcosim.
+                    first = variables[name]
+                    place = document.place(element, name)
+                    same = (first.type, first.value_reference) == (variable.type, variable.value_reference)
+                    what = (
+                        "the same value"
+                        if same
+                        else f"another value ({variable.type}, value reference {variable.value_reference})"
+                    )
+                    found = f"A second variable has this name, for {what}. The name means the first one"
+                    findings.flaw(
+                        place, f"{found}." if same else f"{found}; this one cannot be reached.", "Names must differ."
+                    )
                 variables.setdefault(name, variable)
             except ValueError as error:
                 findings.error(document.place(element, name), str(error))
     return variables
-
-
-def _remark_second(first: Variable, second: Variable, place: str, findings: Findings) -> None:
-    """Say of a second variable of a name what becomes of it: the name means the first one, as in libcosim."""
-    same = (first.type, first.value_reference) == (second.type, second.value_reference)
-    what = "the same value" if same else f"another value ({second.type}, value reference {second.value_reference})"
-    found = f"A second variable has this name, for {what}. The name means the first one"
-    findings.flaw(place, f"{found}." if same else f"{found}; this one cannot be reached.", "Names must differ.")
 
 
 def _names(element: etree._Element) -> Iterator[tuple[str, str]]:

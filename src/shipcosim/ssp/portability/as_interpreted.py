@@ -134,7 +134,8 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
         }
     taken, other = [], []
     for connection in system.connections:
-        ends, name = (connection.source, connection.target), _arrow(connection)
+        arrow = " -> ".join(".".join(filter(None, end)) for end in (connection.source, connection.target))
+        ends, name = (connection.source, connection.target), arrow
         if ends in links and not connection.initial:
             (factor, offset), _ = links[ends]
             same = (factor, offset) == (connection.factor, connection.offset) and connection.mapping is None
@@ -158,10 +159,6 @@ def _how(factor: float, offset: float, connection: Connection) -> str:
     if connection.mapping is not None:
         return "made without its mapping"
     return f"{factor:g} times plus {offset:g} instead of {connection.factor:g} times plus {connection.offset:g}"
-
-
-def _arrow(connection: Connection) -> str:
-    return " -> ".join(".".join(filter(None, end)) for end in (connection.source, connection.target))
 
 
 def _steps(host: str, subject: Subject, system: System) -> tuple[str, System]:

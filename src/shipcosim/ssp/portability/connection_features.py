@@ -7,7 +7,6 @@ from math import isclose
 
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.portability.subject import Found, Subject, elements_of, types_of_2
-from shipcosim.ssp.read.structure import Connector
 from shipcosim.ssp.xml.document import local
 
 
@@ -23,15 +22,13 @@ def reversed_links(subject: Subject) -> Found:
 
 def undeclared_connectors(subject: Subject) -> Found:
     """A connector that only the FMU declares."""
-    declared = {(part.name, connector.name) for part in subject.elements for connector in _connectors(part)}
+    declared = {
+        (part.name, connector.name) for part in subject.elements for connector in getattr(part, "connectors", ())
+    }
     for link, _, _ in subject.links:
         for end in ((link.start_element, link.start_connector), (link.end_element, link.end_connector)):
             if end not in declared:
                 yield link.place, f"{'.'.join(filter(None, end))} is not declared as a connector"
-
-
-def _connectors(part: object) -> tuple[Connector, ...]:
-    return getattr(part, "connectors", ())
 
 
 def typeless_connectors(subject: Subject) -> Found:

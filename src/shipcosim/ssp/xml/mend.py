@@ -62,7 +62,10 @@ def mend(document: Document, tag: str) -> None:
     for element in list(_own(document.root)):
         _drop_empty_attributes(document, element, noted)
         _move_source(document, element, noted)
-        _name_enumeration(document, element, noted)
+        # The type of a connector that is an enumeration without a name gets an empty one.
+        is_type = local(element) == "Enumeration" and element.get("value") is None and not len(element)
+        if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
+            element.set("name", "")
         _mend_boolean(document, element, noted)
         _drop_unknown(document, element, noted)
         _sort(document, element, noted)
@@ -143,13 +146,6 @@ def _drop_empty_attributes(document: Document, element: etree._Element, noted: F
                 continue
             del element.attrib[name]
             noted.flaw(document.place(element), f'{name}="" is taken as if it were not there.', "Leave it out.")
-
-
-def _name_enumeration(document: Document, element: etree._Element, noted: Findings) -> None:
-    """The type of a connector that is an enumeration without a name gets an empty one."""
-    is_type = local(element) == "Enumeration" and element.get("value") is None and not len(element)
-    if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
-        element.set("name", "")
 
 
 def _move_source(document: Document, element: etree._Element, noted: Findings) -> None:

@@ -5,7 +5,7 @@ import pytest
 from conformance import cases as conformance
 
 from shipcosim.cosim import engines_missing, simulate
-from shipcosim.cosim.engines.as_read import readers
+from shipcosim.cosim.engines.foreign_process import readers
 from shipcosim.cosim.export.osp import write_osp
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario

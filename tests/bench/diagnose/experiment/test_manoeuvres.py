@@ -8,9 +8,9 @@ from diagnose.experiment.test_manoeuvres import NOISE, problem
 
 from shipcosim.diagnose.experiment.design import design_experiment
 from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre, library, planned
+from shipcosim.diagnose.explanation.search import explain
+from shipcosim.diagnose.explanation.verdict import judge
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
-from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.inference.verdict import judge
 from shipcosim.diagnose.ship.inputs import first_motion
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 

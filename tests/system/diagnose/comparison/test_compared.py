@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from diagnose import twin, usv
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.compared import compared
 from shipcosim.diagnose.comparison.errors import horizons_of
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import ReadLog
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.models.core.motion import Motion
 from truth import draw
 

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 from diagnose import usv
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.felt import felt_by
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError, driven
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
-from shipcosim.diagnose.comparison.readings import Change, driven
+from shipcosim.diagnose.comparison.measured_force import felt_by
 from shipcosim.diagnose.inference.problem import as_logged
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.stages import ReadLog
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +34,7 @@ def told():
 @pytest.mark.parametrize("change", [("left",), ("right",), ("left", "right")])
 def test_right_labels_are_likelier_than_wrong_ones(told, change):
     likelihood, units = told
-    assert likelihood(units) > likelihood(Change(change).undo(units)) + 10.0
+    assert likelihood(units) > likelihood(LabelError(change).undo(units)) + 10.0
 
 
 def test_commands_that_do_nothing_make_nothing_likelier(told):

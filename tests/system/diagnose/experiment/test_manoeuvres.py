@@ -24,7 +24,8 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regresso
 from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.model import ShipModel, ship_model_of
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import apparent_wind

@@ -8,8 +8,8 @@ from ships import parameters
 
 from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.library import build_stale
 from shipcosim.models.core.kinematics import to_body
@@ -26,7 +26,7 @@ LOG = {"source": "/somewhere/log.csv", "sha256": "5e1f", "span": (0.0, 20.0)}
 
 def found(cause, component=None, onset=None, **parameters):
     """A finding with a tenth of each value as its standard deviation."""
-    estimates = {name: Estimate(value, abs(0.1 * value), unit) for name, (value, unit) in parameters.items()}
+    estimates = {name: ParameterEstimate(value, abs(0.1 * value), unit) for name, (value, unit) in parameters.items()}
     return Finding(cause, component, parameters=estimates, probability=0.97, onset=onset)
 
 

@@ -8,7 +8,7 @@ from ships import lend
 from shipcosim.diagnose.experiment.testability import log_facts
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.hypotheses.cause import FACTS
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters

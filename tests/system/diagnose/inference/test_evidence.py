@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from shipcosim.diagnose.inference.evidence import evidence, gram
-from shipcosim.diagnose.inference.innovations import Innovations
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.innovations import Innovations, gram
 
 
 def problem(n, truth, seed=0):

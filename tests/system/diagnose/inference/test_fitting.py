@@ -7,9 +7,10 @@ import pytest
 from diagnose import twin
 from diagnose.twin import fits, problem
 
+from shipcosim.diagnose.explanation.search import _simplify, names
 from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.screening import _one_way, screened, screening_regressors
-from shipcosim.diagnose.inference.search import _simplify, names
+from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.screening import _one_way, screened
 
 NAMES = {
     "current": {"current"},

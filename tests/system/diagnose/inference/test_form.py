@@ -7,12 +7,12 @@ from diagnose import twin
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.experiment.testability import hidden_by_form, untestable_causes
+from shipcosim.diagnose.explanation.form import learnt, of_scale, scores_by_scale, with_settled_form
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.explanation.search import ExplainedLog, explain
+from shipcosim.diagnose.explanation.summary import load_form
+from shipcosim.diagnose.explanation.verdict import JudgedLog, Judgement
 from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.form import learnt, of_scale, scores_by_scale, with_settled_form
-from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.inference.summary import load_form
-from shipcosim.diagnose.inference.verdict import Judgement
-from shipcosim.diagnose.stages import ExplainedLog, Identification, JudgedLog
 
 FORM = {
     "hull_form.cross_flow_1": 0.35,

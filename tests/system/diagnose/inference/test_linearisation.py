@@ -23,7 +23,7 @@ from shipcosim.diagnose.inference.innovations import (
 from shipcosim.diagnose.inference.linearisation import STATES, Linear, Regressor, advanced, linearise, rows_first
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.models.core.motion import Motion
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]), 2.0 * twin.WHITE[3:], 1.1)

@@ -7,7 +7,7 @@ import pytest
 from diagnose import twin
 from diagnose.twin import fits, problem
 
-from shipcosim.diagnose.inference.null_distribution import healthy_records, null_gains
+from shipcosim.diagnose.explanation.null_distribution import healthy_records, null_gains
 from shipcosim.models.core.motion import Motion
 
 COUNT = 6

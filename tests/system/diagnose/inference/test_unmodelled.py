@@ -8,9 +8,9 @@ from diagnose import twin
 from diagnose.twin import fits, problem
 from scipy.stats import chi2
 
-from shipcosim.diagnose.inference import unmodelled
+from shipcosim.diagnose.explanation import unmodelled
+from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
 from shipcosim.diagnose.inference.thresholds import UNMODELLED
-from shipcosim.diagnose.inference.unmodelled import unmodelled_gains
 
 
 def beside_the_best(log):

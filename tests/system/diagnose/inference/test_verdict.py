@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose.explanation.verdict import admissible, gained, judge
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.fitting import Regressor
 from shipcosim.diagnose.inference.thresholds import APART, ENOUGH, UNMODELLED
-from shipcosim.diagnose.inference.verdict import admissible, gained, judge
 
 EVERYONE = {hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())}
 

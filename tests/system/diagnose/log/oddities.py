@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas
 
-from shipcosim.diagnose.log.earth import metres_per_degree
+from shipcosim.diagnose.log.degree_size import metres_per_degree
 
 ROOT = Path(__file__).resolve().parents[4]
 TRIALS = ROOT.parent / "shared" / "measured" / "gunnerus_trials_2022" / "trials.csv"

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from diagnose.logs import measured, table
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks import examine as examining
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.checks.wind import leaps
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.result import Finding
 
 
 def only(log):

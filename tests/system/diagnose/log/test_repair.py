@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.repair import repaired
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import make_table
 
@@ -74,7 +74,7 @@ def test_findings_are_undone_in_their_segments_only():
 
 def test_a_clock_is_undone_and_says_where_in_the_log_a_row_was():
     time = np.arange(100.0)
-    rate = {"rate": Estimate(0.5, 0.01, "1")}
+    rate = {"rate": ParameterEstimate(0.5, 0.01, "1")}
     clock = Finding("clock", None, "data", 1.0, rate, ((20.0, 40.0),), ("time",))
     again = repaired(log_of(time, north=time), [clock])
     assert again["time"].values[-1] == 89.0

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults import clock as timing
 from shipcosim.diagnose.log_faults.clock import clock_by_response, is_testable, with_rate
-from shipcosim.diagnose.result import Estimate, Finding
 
 FIRST, LAST, RATE = 150.0, 300.0, 1.3
 
@@ -68,8 +68,10 @@ def test_thrusters_that_push_less_for_a_while_are_no_clock():
     log = twin.logs()["healthy"]
     here = (log["time"].values > FIRST) & (log["time"].values < LAST)
     told = {role: ("time", np.where(here, 1.25, 1.0) * log[role].values) for role in log.data_vars if "_rpm" in role}
-    clock = Finding("clock", None, "data", 0.98, {"rate": Estimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",))
+    clock = Finding(
+        "clock", None, "data", 0.98, {"rate": ParameterEstimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",)
+    )
     problem = twin.ready(log.assign(told))
     assert not timing._all_aspects_agree(problem, clock, problem.known(()))
-    slow, told = twin.ready(hurried(log)), {"rate": Estimate(RATE, 0.02, "1")}
+    slow, told = twin.ready(hurried(log)), {"rate": ParameterEstimate(RATE, 0.02, "1")}
     assert timing._all_aspects_agree(slow, replace(clock, parameters=told), slow.known(()))

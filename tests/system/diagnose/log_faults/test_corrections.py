@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from diagnose import twin
 
+from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log_faults.corrections import with_right_wind
 from shipcosim.diagnose.log_faults.input_labels import with_label
-from shipcosim.diagnose.stages import Identification
 
 FROM_NORTH, OVER_GROUND_FROM_NORTH = WIND_LABELS[1], WIND_LABELS[3]
 KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)

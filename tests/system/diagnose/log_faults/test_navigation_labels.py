@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 from diagnose import twin
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.mislabels import POSITION_LABELS, negative
 from shipcosim.diagnose.log_faults.navigation_labels import _matters, relabelled
-from shipcosim.diagnose.result import Finding
 
 
 def said(label):

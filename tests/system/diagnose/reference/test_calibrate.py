@@ -8,12 +8,12 @@ from diagnose import twin
 from diagnose.reference import ships
 
 from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names, steps_of
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.reference import calibration
 from shipcosim.diagnose.reference.reference import read_reference
-from shipcosim.diagnose.reference.remaining import remaining_errors
+from shipcosim.diagnose.reference.remaining_errors import remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
-from shipcosim.diagnose.result import Finding
 from shipcosim.errors import ShipcosimError
 from shipcosim.report.calibration.page import write_calibration
 

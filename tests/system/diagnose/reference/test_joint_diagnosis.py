@@ -12,9 +12,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from shipcosim.cli.joint_diagnosis import print_joint
 from shipcosim.diagnose.calibration_pipeline import READING
+from shipcosim.diagnose.finding import Candidate, Finding
 from shipcosim.diagnose.joint_pipeline import JointDiagnosis, _unusable, diagnose_jointly, steps_of
-from shipcosim.diagnose.reference.common import Shared
-from shipcosim.diagnose.result import Candidate, Diagnosis, Finding
+from shipcosim.diagnose.reference.common_findings import Shared
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.errors import ShipcosimError
 from shipcosim.report.joint.page import render, write_joint
 from shipcosim.report.joint.words import outcome

@@ -6,7 +6,7 @@ from diagnose.reference import ships
 
 from shipcosim.diagnose.pipeline import given_system
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers, write_parameter_set
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.ssp import read_system
 
 

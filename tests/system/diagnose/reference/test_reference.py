@@ -5,12 +5,12 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
+from shipcosim.diagnose.explanation.null_distribution import _drawn
+from shipcosim.diagnose.explanation.search import explain
+from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
+from shipcosim.diagnose.explanation.verdict import judge
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.inference.null_distribution import _drawn
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.search import explain
-from shipcosim.diagnose.inference.unmodelled import unmodelled_gains
-from shipcosim.diagnose.inference.verdict import judge
 from shipcosim.diagnose.reference.calibration import calibrated_to, causes_beside, likeliest_scale, numbers_of
 from shipcosim.diagnose.reference.reference import read_reference, with_reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs

@@ -7,8 +7,8 @@ import pytest
 from diagnose import twin
 from diagnose.sea_trials import trials
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import SOUGHT, features_of
@@ -16,7 +16,6 @@ from shipcosim.diagnose.sea_trials.sailing import sailed
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, estimates, rivals_of, study
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.stages import ReadLog
 from shipcosim.errors import ShipcosimError
 
 PLANTED = {

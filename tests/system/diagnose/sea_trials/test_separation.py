@@ -7,15 +7,14 @@ import pytest
 from diagnose import twin
 from diagnose.sea_trials import trials
 
+from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.log.checks.examine import checked
 from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
 from shipcosim.diagnose.sea_trials.separation import Separation, designed
 from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, rivals_of
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
-from shipcosim.diagnose.stages import ReadLog
 
 SHAFTS = {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}
 

@@ -10,7 +10,7 @@ from diagnose import twin
 from shipcosim.angles import wrap
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.azimuth import turned
 from shipcosim.series import make_table

@@ -13,7 +13,6 @@ from shipcosim.diagnose.ship.form import (
     ThrusterForm,
     WindForm,
     cross_flow_form,
-    form_sizes,
     thrust_kept,
     wind_factors,
 )
@@ -99,8 +98,8 @@ def test_a_ship_of_the_model_s_form_is_as_uncertain_as_her_tolerances_say():
     assert ship.uncertainties == ship.tolerances
     wider = replace(ship, form_scale=1.0).uncertainties
     assert all(wider[path] >= size for path, size in ship.tolerances.items())
-    assert set(wider) == set(ship.tolerances) | set(form_sizes(ship))
-    assert all(ship.has(path) and size > 0.0 for path, size in form_sizes(ship).items())
+    assert set(wider) == set(ship.tolerances) | set(ship.form_sizes)
+    assert all(ship.has(path) and size > 0.0 for path, size in ship.form_sizes.items())
 
 
 def test_a_hull_without_cross_flow_has_the_strength_of_her_quadratic_damping():
@@ -109,4 +108,4 @@ def test_a_hull_without_cross_flow_has_the_strength_of_her_quadratic_damping():
     ship = replace(twin.model(), parts=twin.model().parts | {"hull": hull})
     _, _, N = cross_flow_form(1.0, 0.0, hull, HullForm(cross_flow_1=0.3))
     assert pytest.approx(-30.0 * 0.3 * 2.0**2 / 6.0, rel=0.01) == N
-    assert form_sizes(ship)["vessel.Y_v"] > 0.12 * 10.0
+    assert ship.form_sizes["vessel.Y_v"] > 0.12 * 10.0

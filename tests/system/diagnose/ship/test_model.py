@@ -11,8 +11,8 @@ from ships import lend, parameters, unit_on_centreline
 from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.ship.dynamics import current_at, loads, motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs
-from shipcosim.diagnose.ship.instruments import readings
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion

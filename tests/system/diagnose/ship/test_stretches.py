@@ -5,11 +5,11 @@ import pytest
 import xarray
 from diagnose import twin
 
+from shipcosim.diagnose.explanation.null_distribution import healthy_records
+from shipcosim.diagnose.explanation.search import explain
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.null_distribution import healthy_records
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.search import explain
 from shipcosim.diagnose.ship import stretches
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.stretches import MOST_ROWS, STRETCHES, in_stretches, rows_averaged, stretches_of

@@ -12,15 +12,15 @@ from diagnose import boat, twin
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship import inputs
 from shipcosim.diagnose.ship import model as plant_module
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import ship_model_of
-from shipcosim.diagnose.ship.surrogate import fitted_thrust, with_surrogates
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
+from shipcosim.diagnose.ship.surrogate_building import fitted_thrust, with_surrogates
 from shipcosim.diagnose.ship.third_party_fmu import drives_of
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.errors import ShipcosimError
@@ -183,8 +183,8 @@ def missed(model, record, motion, name, by):
     return np.sqrt(np.mean((found - right) ** 2, axis=1))
 
 
-LOSS = Finding("thrust_loss", "left", parameters={"loss": Estimate(0.25, 0.02, "1")})
-TACHO = Finding("rpm_offset", "right", parameters={"offset": Estimate(30.0, 2.0, "rpm")})
+LOSS = Finding("thrust_loss", "left", parameters={"loss": ParameterEstimate(0.25, 0.02, "1")})
+TACHO = Finding("rpm_offset", "right", parameters={"offset": ParameterEstimate(30.0, 2.0, "rpm")})
 
 
 def test_the_extended_boat_has_it_on_her_connections(tmp_path):
@@ -327,7 +327,7 @@ def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(pod
 
 
 def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):
-    off = Finding("azimuth_offset", "pod", parameters={"offset": Estimate(8.0, 0.3, "deg")})
+    off = Finding("azimuth_offset", "pod", parameters={"offset": ParameterEstimate(8.0, 0.3, "deg")})
     extension = extend(podded, [off], tmp_path)
     run = sc.simulate(
         sc.read(extension.ssp), stop_time=0.2, step_size=0.1, set={"pod_thrust": 1.0, "pod_azimuth": np.radians(20.0)}

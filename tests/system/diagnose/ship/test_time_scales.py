@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from diagnose import twin
 
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.hull import HullParameters

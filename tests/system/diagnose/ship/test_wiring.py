@@ -5,10 +5,10 @@ import pytest
 
 import shipcosim as sc
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.result import Finding
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import Inputs
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.wiring import put_right
 from shipcosim.models.core.motion import Motion
 

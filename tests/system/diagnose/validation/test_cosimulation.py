@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose.extension.extend import extend
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.inference.predictions import replayable
 from shipcosim.diagnose.ship.inputs import Record
-from shipcosim.diagnose.ship.instruments import true_motion
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.measured_motion import true_motion
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table, in_array_form, replayed
 from shipcosim.diagnose.validation.gain import Predictor
-from shipcosim.diagnose.validation.predictions import replayable
 from shipcosim.errors import ShipcosimError
 from shipcosim.library import build_stale
 from shipcosim.models.core.motion import Motion
@@ -56,7 +56,7 @@ def predictor(log, ship_model):
 
 
 def found(cause, component=None, **parameters):
-    estimates = {name: Estimate(value, 0.1 * abs(value), unit) for name, (value, unit) in parameters.items()}
+    estimates = {name: ParameterEstimate(value, 0.1 * abs(value), unit) for name, (value, unit) in parameters.items()}
     return Finding(cause, component, parameters=estimates)
 
 

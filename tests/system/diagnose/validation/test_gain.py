@@ -11,11 +11,12 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, 
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.parts import in_parts
+from shipcosim.diagnose.inference.predictions import observed, predicted, reference, replayable, restarted
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.model import ship_model_of
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.validation.conditions import compare_held_out, rows_without_condition
 from shipcosim.diagnose.validation.cosimulation import Replayed, simulated
 from shipcosim.diagnose.validation.gain import (
@@ -29,7 +30,6 @@ from shipcosim.diagnose.validation.gain import (
     rms,
 )
 from shipcosim.diagnose.validation.missing_force import missing_force
-from shipcosim.diagnose.validation.predictions import observed, predicted, reference, replayable, restarted
 from shipcosim.diagnose.validation.split import (
     conditions,
     first_rows,

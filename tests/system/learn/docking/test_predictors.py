@@ -13,7 +13,7 @@ pytest.importorskip("torch")
 from ships import equipped, parameters
 
 from shipcosim.angles import wrap
-from shipcosim.learn.docking import dockings, inputs, ours, paper_iii, predictions, regions, training
+from shipcosim.learn.docking import distance_ensemble, dockings, inputs, paper_iii, predictions, regions, training
 from shipcosim.learn.docking.records import KNOWN, Record
 from shipcosim.learn.results import markdown, npz_bytes
 from shipcosim.models.core.networks import read_arrays
@@ -66,8 +66,8 @@ def few(recipe, **others):
 def learned(kind, replay):
     """Arrays and losses of a training of a few steps."""
     if kind == "ours":
-        pair = ours.features(replay, MODEL.hull), ours.targets(replay)
-        return ours.fit(pair, pair, few(training.OURS, width=6), lambda done, total: None)
+        pair = distance_ensemble.features(replay, MODEL.hull), distance_ensemble.targets(replay)
+        return distance_ensemble.fit(pair, pair, few(training.OURS, width=6), lambda done, total: None)
     pair = paper_iii.inputs_of(replay), paper_iii.targets(replay)
     recipe = few(training.PAPER_III, trials=2, trial_epochs=1, most_nodes=12)
     return paper_iii.fit(pair, pair, recipe, lambda done, total: None)[:2]
@@ -88,16 +88,21 @@ def test_inputs_of_the_predictor_are_those_of_the_record():
 
 def test_features_and_targets_are_those_of_a_harbour_turned_by_any_angle(replayed):
     turned = inputs.replay([record(seed, turned=2.0) for seed in range(1, 5)], MODEL)
-    np.testing.assert_allclose(ours.features(turned, MODEL.hull), ours.features(replayed, MODEL.hull), atol=1e-6)
-    np.testing.assert_allclose(ours.targets(turned), ours.targets(replayed), atol=1e-6)
+    np.testing.assert_allclose(
+        distance_ensemble.features(turned, MODEL.hull), distance_ensemble.features(replayed, MODEL.hull), atol=1e-6
+    )
+    np.testing.assert_allclose(distance_ensemble.targets(turned), distance_ensemble.targets(replayed), atol=1e-6)
 
 
 def test_mirror_of_features_is_the_docking_in_a_mirror():
     """But for what the hull's own law has of her two sides, which is not alike: those parts are left out."""
     one, other = (inputs.replay([record(2, mirrored=side)], MODEL) for side in (False, True))
-    found, expected = ours.features(other, MODEL.hull), ours.features(one, MODEL.hull) * ours.MIRROR_SIGNS
+    found, expected = (
+        distance_ensemble.features(other, MODEL.hull),
+        distance_ensemble.features(one, MODEL.hull) * distance_ensemble.MIRROR_SIGNS,
+    )
     alike = [0, 1, 2, *range(16, 30)]
-    np.testing.assert_allclose(found[..., alike], expected[..., ours.MIRROR_ORDER][..., alike], atol=0.05)
+    np.testing.assert_allclose(found[..., alike], expected[..., distance_ensemble.MIRROR_ORDER][..., alike], atol=0.05)
 
 
 def test_truth_is_what_came_and_nothing_where_the_record_ends(replayed):
@@ -118,13 +123,17 @@ def test_a_few_steps_repeat_byte_by_byte(kind, replayed):
 def test_torch_and_numpy_give_the_same_distance(replayed):
     """The loss in training is the distance that is left with the correction of the law."""
     arrays, _ = learned("ours", replayed)
-    trained, found = docking.trained_of(arrays), ours.features(replayed, MODEL.hull)
-    given = ours.given_by(trained, found)
+    trained, found = docking.trained_of(arrays), distance_ensemble.features(replayed, MODEL.hull)
+    given = distance_ensemble.given_by(trained, found)
     places = docking.corrected(replayed.own.ship, replayed.ours, given)
     off = [np.hypot(replayed.later["x"][h] - x, replayed.later["y"][h] - y) for h, (x, y, _) in enumerate(places, 1)]
     turn = [abs(wrap(replayed.later["psi"][h] - psi)) for h, (_, _, psi) in enumerate(places, 1)]
-    expected = np.nanmean(np.sqrt(np.stack(off) ** 2 + 1e-2) + ours.HEADING * np.stack(turn))
-    loss = ours.distance(ours.tensor(given.mean(axis=0)), ours.tensor(ours.targets(replayed)), ours.basis())
+    expected = np.nanmean(np.sqrt(np.stack(off) ** 2 + 1e-2) + distance_ensemble.HEADING * np.stack(turn))
+    loss = distance_ensemble.distance(
+        distance_ensemble.tensor(given.mean(axis=0)),
+        distance_ensemble.tensor(distance_ensemble.targets(replayed)),
+        distance_ensemble.basis(),
+    )
     assert float(loss) == pytest.approx(expected, rel=1e-4)
 
 
@@ -164,7 +173,7 @@ def fmu_of(root, variant):
 @pytest.mark.parametrize("variant", ["kinetic", "paper-iii", "ours"])
 def test_fmu_says_what_is_said_over_whole_records(root, variant, replayed):
     fmu, given = fmu_of(root, variant), record(1)
-    weights = read_arrays(root / WEIGHTS / ("paper-iii.npz" if variant == "paper-iii" else "ours.npz"))
+    weights = read_arrays(root / WEIGHTS / ("paper-iii.npz" if variant == "paper-iii" else "distance_ensemble.npz"))
     says = {
         "kinetic": lambda: predictions.kinetic(replayed),
         "paper-iii": lambda: predictions.by_paper_iii(replayed, weights),

@@ -2,11 +2,13 @@
 
 import pytest
 
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.diagnose.stages import ExtendedSystem, PredictedLog, SimulatedLog
 from shipcosim.diagnose.statement import completed
+from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.gain import compare
 from shipcosim.diagnose.validation.missing_force import missing_forces
+from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.library import build_stale
 from shipcosim.ssp import read_system
 from truth import draw

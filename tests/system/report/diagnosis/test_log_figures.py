@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from shipcosim.diagnose.result import Finding
+from shipcosim.diagnose.finding import Finding
 from shipcosim.report.diagnosis.log_figures import log_figures, track_figure
 
 

@@ -7,10 +7,12 @@ from functools import partial
 import numpy as np
 import pytest
 
-from shipcosim.diagnose.comparison.crude import HeldOutErrors
+from shipcosim.diagnose.comparison.crude_model import HeldOutErrors
+from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.experiment.testability import log_facts
-from shipcosim.diagnose.result import Candidate, ExperimentDesign, Finding, FormNumber, LoadForm
+from shipcosim.diagnose.explanation.summary import FormNumber, LoadForm
+from shipcosim.diagnose.finding import Candidate, Finding
 from shipcosim.diagnose.validation.gain import rms
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.report.diagnosis.page import render, write_diagnosis

@@ -2,29 +2,33 @@
 
 import pytest
 
+from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.result import Candidate, Diagnosis, Estimate, ExperimentDesign, Finding
+from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
 from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome, title, told, where
 from shipcosim.report.theme.numbers import plain
 
-LOSS = Finding("thrust_loss", "port", parameters={"loss": Estimate(0.337, 0.0121, "1")})
+LOSS = Finding("thrust_loss", "port", parameters={"loss": ParameterEstimate(0.337, 0.0121, "1")})
 GAP = Finding("gap", kind="data", segments=((463.0, 499.0), (912.0, 1001.0)), channels=("north", "east"))
 
 
 def pair(cause, north, east, unit, std=0.01):
-    return Finding(cause, parameters={"north": Estimate(north, std, unit), "east": Estimate(east, std, unit)})
+    return Finding(
+        cause, parameters={"north": ParameterEstimate(north, std, unit), "east": ParameterEstimate(east, std, unit)}
+    )
 
 
 @pytest.mark.parametrize(
     ("estimate", "text"),
     [
-        (Estimate(0.33729, 0.0121, "1"), "0.337 ± 0.012"),
-        (Estimate(-4.43, 0.15, "deg"), "−4.43 ± 0.15°"),
-        (Estimate(-4.43, 0.4, "deg"), "−4.4 ± 0.4°"),
-        (Estimate(4122.8, 80.4, "N"), "4.12 ± 0.08 kN"),
-        (Estimate(400.0, 80.4, "N"), "400 ± 80 N"),
-        (Estimate(2.0, 0.0, "s"), "2.00 ± 0.00 s"),
+        (ParameterEstimate(0.33729, 0.0121, "1"), "0.337 ± 0.012"),
+        (ParameterEstimate(-4.43, 0.15, "deg"), "−4.43 ± 0.15°"),
+        (ParameterEstimate(-4.43, 0.4, "deg"), "−4.4 ± 0.4°"),
+        (ParameterEstimate(4122.8, 80.4, "N"), "4.12 ± 0.08 kN"),
+        (ParameterEstimate(400.0, 80.4, "N"), "400 ± 80 N"),
+        (ParameterEstimate(2.0, 0.0, "s"), "2.00 ± 0.00 s"),
     ],
 )
 def test_number_has_the_digits_that_its_uncertainty_is_worth(estimate, text):
@@ -41,7 +45,7 @@ def test_parts_of_a_vector_share_one_unit():
     [(1.0, 0.0, "000°"), (0.0, 1.0, "090°"), (-1.0, 0.0, "180°"), (0.0, -1.0, "270°"), (1.0, -1e-4, "000°")],
 )
 def test_direction_of_a_vector_is_clockwise_from_north(north, east, direction):
-    assert vector(Estimate(north, 0.1, "m/s"), Estimate(east, 0.1, "m/s")).endswith(direction)
+    assert vector(ParameterEstimate(north, 0.1, "m/s"), ParameterEstimate(east, 0.1, "m/s")).endswith(direction)
 
 
 def test_what_is_not_known_is_a_dash():
@@ -53,19 +57,24 @@ def test_what_is_not_known_is_a_dash():
     [
         (LOSS, "the port thruster delivers 34 ± 1 % less thrust"),
         (pair("current", 0.0, -0.2, "m/s"), "a current of 0.200 ± 0.010 m/s towards 270°"),
-        (Finding("mass", parameters={"scale": Estimate(0.9, 0.02, "1")}), "10 ± 2 % lighter"),
-        (Finding("drag", parameters={"scale": Estimate(2.2, 0.1, "1")}), "120 ± 10 % larger"),
-        (Finding("heading_bias", parameters={"offset": Estimate(-3.0, 0.2, "deg")}), "shows 3.0 ± 0.2° too little"),
+        (Finding("mass", parameters={"scale": ParameterEstimate(0.9, 0.02, "1")}), "10 ± 2 % lighter"),
+        (Finding("drag", parameters={"scale": ParameterEstimate(2.2, 0.1, "1")}), "120 ± 10 % larger"),
         (
-            Finding("azimuth_offset", "port", parameters={"offset": Estimate(5.0, 0.2, "deg")}),
+            Finding("heading_bias", parameters={"offset": ParameterEstimate(-3.0, 0.2, "deg")}),
+            "shows 3.0 ± 0.2° too little",
+        ),
+        (
+            Finding("azimuth_offset", "port", parameters={"offset": ParameterEstimate(5.0, 0.2, "deg")}),
             "points 5.0 ± 0.2° clockwise of what its feedback says",
         ),
         (
-            Finding("rpm_offset", "port", parameters={"offset": Estimate(8.0, 0.3, "rpm")}),
+            Finding("rpm_offset", "port", parameters={"offset": ParameterEstimate(8.0, 0.3, "rpm")}),
             "logged 8.0 ± 0.3 rpm too high",
         ),
         (
-            Finding("lever_arm", parameters={"x": Estimate(-4.0, 0.3, "m"), "y": Estimate(2.0, 0.3, "m")}),
+            Finding(
+                "lever_arm", parameters={"x": ParameterEstimate(-4.0, 0.3, "m"), "y": ParameterEstimate(2.0, 0.3, "m")}
+            ),
             "4.0 ± 0.3 m aft and 2.0 ± 0.3 m to starboard",
         ),
         (GAP, "data was lost or filled in for 125 s in 2 stretches"),
@@ -78,7 +87,7 @@ def test_sense_and_size_of_a_cause_are_told(finding, said):
 
 
 def test_onset_is_told():
-    finding = Finding("mass", parameters={"scale": Estimate(1.1, 0.02, "1")}, onset=612.0)
+    finding = Finding("mass", parameters={"scale": ParameterEstimate(1.1, 0.02, "1")}, onset=612.0)
     assert told(finding).endswith(", from 612 s on")
 
 
@@ -86,7 +95,7 @@ def test_cause_of_ones_own_speaks_by_its_own_sentence():
     effect = read_catalogue()["drag"].model_copy(
         update={"cause": "ice", "sentence": "Ice is on the hull", "statement": ""}
     )
-    ice = Finding("ice", parameters={"thickness": Estimate(0.2, 0.05, "m")})
+    ice = Finding("ice", parameters={"thickness": ParameterEstimate(0.2, 0.05, "m")})
     assert told(ice, {"ice": effect}) == "ice is on the hull: thickness 0.20 ± 0.05 m"
 
 

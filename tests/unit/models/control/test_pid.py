@@ -9,7 +9,7 @@ from ships import parameters
 
 from shipcosim.models.control import observer
 from shipcosim.models.control import pid as control
-from shipcosim.models.control.observer import DpShip, Estimate, Measurement, ObserverParameters
+from shipcosim.models.control.observer import DpShip, Measurement, ObserverParameters, StateEstimate
 from shipcosim.models.control.pid import ControlParameters, Desired, at_rest
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
@@ -33,7 +33,7 @@ def ask(estimate, desired=STAY, state=None, wind=CALM, parameters=PARAMETERS):
 
 def known(position, velocity, _):
     """Estimate that knows position and velocity, and no bias."""
-    return Estimate(*position, *velocity)
+    return StateEstimate(*position, *velocity)
 
 
 def observed():
@@ -75,17 +75,17 @@ def sail(
 
 
 def test_ship_at_rest_on_her_place_is_left_alone():
-    assert ask(Estimate(0.0, 0.0, 0.0))[-3:] == (0.0, 0.0, 0.0)
+    assert ask(StateEstimate(0.0, 0.0, 0.0))[-3:] == (0.0, 0.0, 0.0)
 
 
 def test_wind_is_met_by_its_opposite():
-    assert ask(Estimate(0.0, 0.0, 0.0), wind=(-1e3, 2e3, 3e4))[-3:] == pytest.approx((1e3, -2e3, -3e4))
+    assert ask(StateEstimate(0.0, 0.0, 0.0), wind=(-1e3, 2e3, 3e4))[-3:] == pytest.approx((1e3, -2e3, -3e4))
 
 
 def test_bias_is_met_by_its_opposite_at_any_heading():
     north, east = 3e3, -4e3
     for heading in (0.0, 2.0, -1.3):
-        estimate = Estimate(0.0, 0.0, heading, bias_north=north, bias_east=east, bias_N=5e4)
+        estimate = StateEstimate(0.0, 0.0, heading, bias_north=north, bias_east=east, bias_N=5e4)
         X, Y = to_body(heading, north, east)
         assert ask(estimate, STAY._replace(psi=heading))[-3:] == pytest.approx((-X, -Y, -5e4))
 
@@ -106,7 +106,7 @@ def test_reference_is_followed_without_error_by_a_ship_of_known_mass():
     t = 7.0
     desired = Desired(0.5, -0.2, 0.3, 0.1, -0.05, 0.01, 0.004, 0.003, 0.001)
     u, v = to_body(0.3, 0.1, -0.05)
-    X, Y, N = ask(Estimate(0.5, -0.2, 0.3, u, v, 0.01), desired)[-3:]
+    X, Y, N = ask(StateEstimate(0.5, -0.2, 0.3, u, v, 0.01), desired)[-3:]
     u_dot, v_dot = to_body(0.3, 0.004, 0.003)
     assert (X, Y, N) == pytest.approx(tuple(MASS @ [u_dot, v_dot, 0.001])), t
 
@@ -114,8 +114,8 @@ def test_reference_is_followed_without_error_by_a_ship_of_known_mass():
 @pytest.mark.parametrize("heading", [0.7, -2.5])
 def test_turning_everything_turns_no_load(heading):
     c, s = math.cos(heading), math.sin(heading)
-    straight = ask(Estimate(1.0, 2.0, 0.0, 0.1, 0.2, 0.01))
-    turned = ask(Estimate(c - 2.0 * s, s + 2.0 * c, heading, 0.1, 0.2, 0.01), STAY._replace(psi=heading))
+    straight = ask(StateEstimate(1.0, 2.0, 0.0, 0.1, 0.2, 0.01))
+    turned = ask(StateEstimate(c - 2.0 * s, s + 2.0 * c, heading, 0.1, 0.2, 0.01), STAY._replace(psi=heading))
     assert turned[-3:] == pytest.approx(straight[-3:])
 
 
@@ -127,9 +127,9 @@ def test_constant_force_is_taken_up_at_any_heading():
 
 
 def test_far_away_the_ship_is_pulled_no_harder_than_at_the_limit():
-    near, far = (ask(Estimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (2.5, 800.0))
+    near, far = (ask(StateEstimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (2.5, 800.0))
     assert far.tau_X == pytest.approx(near.tau_X)
-    assert abs(near.tau_X) > abs(ask(Estimate(2.4, 0.0, 0.0)).tau_X)
+    assert abs(near.tau_X) > abs(ask(StateEstimate(2.4, 0.0, 0.0)).tau_X)
 
 
 def test_overload_does_not_carry_the_ship_past_her_place():
@@ -145,7 +145,7 @@ def test_overload_does_not_carry_the_ship_past_her_place():
 
 
 def test_errors_are_distance_and_shortest_turn():
-    distance, turn = control.errors(Estimate(3.0, 4.0, 3.1), STAY._replace(psi=-3.1))
+    distance, turn = control.errors(StateEstimate(3.0, 4.0, 3.1), STAY._replace(psi=-3.1))
     assert distance == 5.0
     assert turn == pytest.approx(6.2 - 2.0 * math.pi)
 
@@ -154,7 +154,7 @@ def test_step_of_the_estimate_reaches_the_request_over_its_filters_time():
     slow = replace(PARAMETERS, force_filter_time=2.0, moment_filter_time=1.0)
     state, asked = at_rest(CALM), []
     for _ in range(100):
-        state = ask(Estimate(-0.1, 0.0, -0.01), state=state, parameters=slow)
+        state = ask(StateEstimate(-0.1, 0.0, -0.01), state=state, parameters=slow)
         asked.append((state.tau_X, state.tau_N))
     X, N = np.transpose(asked)
     assert X[19] / X[-1] == pytest.approx(1.0 - math.exp(-1.0), rel=0.01)

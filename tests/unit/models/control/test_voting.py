@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from shipcosim.models.control import voting
-from shipcosim.models.control.observer import Estimate
+from shipcosim.models.control.observer import StateEstimate
 from shipcosim.models.control.voting import VotingParameters
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.mast import MastParameters
-from shipcosim.models.ship.telegrams import Fix, Heading, Telegrams, Wind
+from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 LIMITS = VotingParameters()
 NO_WIND = dict(
@@ -58,7 +58,7 @@ def voted(changes, seconds, dt=0.1, seed=1):
 
     The observer is one that stays where it is told the ship is: the origin, but for the shift after dead reckoning.
     """
-    rng, estimate = np.random.default_rng(seed), Estimate(0.0, 0.0, 0.0)
+    rng, estimate = np.random.default_rng(seed), StateEstimate(0.0, 0.0, 0.0)
     states = [voting.start(0.0, telegrams(0.0, rng, **changes(0.0)), **NO_WIND)]
     for k in range(1, round(seconds / dt)):
         given = telegrams(k * dt, rng, **changes(k * dt))
@@ -146,7 +146,7 @@ def test_a_rejected_reference_is_believed_again_after_agreeing_for_30_s():
 
 def test_references_that_never_change_are_trusted_where_nothing_else_does():
     """A simulation without noise and weather: the ship rests."""
-    still, fixes = Estimate(0.0, 0.0, 0.0), (Fix(0.0, 0.0, 0.0, 0.0, 1.0),) * 3
+    still, fixes = StateEstimate(0.0, 0.0, 0.0), (Fix(0.0, 0.0, 0.0, 0.0, 1.0),) * 3
     healthy = Telegrams(fixes, (Heading(0.0, 1.0),) * 2, 0.0, Wind(0.0, 0.0, 1.0), 0, 0, 0)
     state = voting.start(0.0, healthy, **NO_WIND)
     for k in range(1, 600):

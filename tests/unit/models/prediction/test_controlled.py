@@ -14,7 +14,7 @@ from shipcosim.models.control.reference import ReferenceParameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import controlled
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 
@@ -26,7 +26,7 @@ def ahead(ship, thrusters, goal, *, force=(0.0,) * 3, desired=None, units=UNITS,
     """Prediction in calm air and water with a force that the bias has found; thrusters as they are told now."""
     desired = Desired(*(desired or goal), *REST)
     known = Known(ship, force, thrusters, 0.0, 0.0, 1.0, desired, goal, wave_frequency)
-    loop = controlled.Loop(
+    loop = controlled.ControlLoop(
         SLOW,
         parameters(DpShip),
         parameters(ControlParameters),

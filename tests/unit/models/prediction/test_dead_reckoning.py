@@ -9,7 +9,7 @@ from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction.dead_reckoning import predict
-from shipcosim.models.prediction.known import Known, air_velocity
+from shipcosim.models.prediction.predictor_inputs import Known, air_velocity
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters

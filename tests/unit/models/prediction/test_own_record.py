@@ -14,8 +14,8 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.networks import read_arrays
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction import dead_reckoning, drift_off, own_model, own_record
-from shipcosim.models.prediction.known import Known
 from shipcosim.models.prediction.own_model import COEFFICIENTS, CURRENT, Learned, Thrust
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings, SurroundingsParameters
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters, hull_loads

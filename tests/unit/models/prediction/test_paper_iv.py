@@ -7,7 +7,7 @@ from ships import parameters
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind
 from shipcosim.models.prediction import dead_reckoning, paper_iv
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import Surroundings
 from shipcosim.models.ship.hull import HullParameters
 

@@ -13,7 +13,7 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.prediction import surroundings
 from shipcosim.models.prediction.dead_reckoning import predict
-from shipcosim.models.prediction.known import Known
+from shipcosim.models.prediction.predictor_inputs import Known
 from shipcosim.models.prediction.surroundings import SurroundingsParameters, unknown
 from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters, hull_loads

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -36,7 +37,6 @@ from shipcosim.diagnose.log.thresholds import (
     SHORTEST_BLOCK,
 )
 from shipcosim.diagnose.numerics import Bands
-from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["wrong_clock"]
 
@@ -249,7 +249,7 @@ def _findings(segments):
         spans = tuple(sorted((s.first, s.last) for s in same))
         probability = float(0.98 / (1.0 + np.exp(-lead.gain)))
         std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
-        rates = {"rate": Estimate(rate, std, "1")}
+        rates = {"rate": ParameterEstimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
         found.append(Finding("clock", None, "data", probability, rates, spans, ("time",), note=note))
     return found

@@ -17,23 +17,16 @@ from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
 from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, misread
-from shipcosim.diagnose.log.repair import rate_of, read_anew, repaired
+from shipcosim.diagnose.log.repair import rate_of, read_anew
 from shipcosim.diagnose.log.rows import inside, usable_rows
 from shipcosim.diagnose.log.thresholds import SEGMENT_COST
-from shipcosim.diagnose.stages import CheckedLog, ReadLog
 
 if TYPE_CHECKING:
     import xarray
 
-    from shipcosim.diagnose.result import Finding
+    from shipcosim.diagnose.finding import Finding
 
-__all__ = ["checked", "examine"]
-
-
-def checked(read: ReadLog) -> CheckedLog:
-    """A log with the faults that its own channels show, and repaired."""
-    faults = tuple(examine(read.log))
-    return CheckedLog(read.log, read.ship, read.causes, faults, repaired(read.log, faults))
+__all__ = ["examine"]
 
 
 def examine(log: xarray.Dataset) -> list[Finding]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -41,7 +42,6 @@ from shipcosim.diagnose.log.thresholds import (
     SEGMENT_COST,
     SHORTEST_LABEL,
 )
-from shipcosim.diagnose.result import Finding
 
 __all__ = ["best_segment", "in_segment", "mislabelled"]
 

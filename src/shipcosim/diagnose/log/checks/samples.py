@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import wrap_series
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.roles import NAVIGATION
 from shipcosim.diagnose.log.thresholds import (
     CHANGES,
@@ -24,7 +25,6 @@ from shipcosim.diagnose.log.thresholds import (
     RUN_CHANCE,
     SHORTEST_GAP,
 )
-from shipcosim.diagnose.result import Finding
 
 __all__ = ["gaps", "lifeless", "outliers", "runs", "wraps"]
 

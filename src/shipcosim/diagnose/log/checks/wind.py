@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.kinematics import Filter, Motion, filter_for, whiteness
 from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
@@ -21,7 +22,6 @@ from shipcosim.diagnose.log.thresholds import (
     WIND_UNIT_GAIN,
 )
 from shipcosim.diagnose.numerics import gaussian_filter
-from shipcosim.diagnose.result import Finding
 
 __all__ = ["leaps", "mislabelled_wind"]
 

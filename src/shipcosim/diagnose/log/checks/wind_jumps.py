@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import (
     BESIDE_JUMP,
@@ -18,7 +19,6 @@ from shipcosim.diagnose.log.thresholds import (
     JUMPS_TIED,
     STEADINESS_LAG,
 )
-from shipcosim.diagnose.result import Finding
 
 __all__ = ["jumping_wind"]
 

@@ -7,42 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.dialects import NOTHING, WITH_UNIT
 
-__all__ = ["NOTHING", "decimal_of", "is_figure", "is_nothing", "numbers_of", "with_unit", "without_fillers"]
+__all__ = ["numbers_of", "with_unit", "without_fillers"]
 
-NOTHING = frozenset(
-    ("", "n/a", "na", "#n/a", "#na", "nan", "nat", "null", "none", "nil", "-", "--", "---", "?", "*", "**", "***")
-    + ("missing", "invalid", "void", "undefined", "empty", "no data", "nodata", "no value", "n.a.", "1.#qnan", "-nan")
-    + ("#value!", "#ref!", "#div/0!", "-1.#ind", "1.#ind", "....", "off", "fault", "error", "bad", "<null>", "(null)")
-)
-"""Words that loggers write where they have no value, in lower case."""
 
-_NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
-_STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"
-_WITH_UNIT = r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµ°º%][A-Za-z0-9µ°º%/^.·-]{0,7})"
-_FIGURE = re.compile(rf"\s*(?:{_NUMBER}|{_STAMP}|{_WITH_UNIT}|[+-]?(?:inf|nan))\s*", re.IGNORECASE)
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
 _FILLERS = (-99.0, -999.0, -9999.0, -99999.0, -999999.0, 99.0, 999.0, 9999.0, 99999.0, 999999.0, -32768.0, 32767.0)
 """Numbers that loggers write where they have none."""
-_GROUPED = re.compile(r"[+-]?\d{1,3}(?:[,.]\d{3})+")
+
+
 _MOST_DAMAGED = 0.01  # share of a column's cells that may be no numbers; more make it a column of texts. Assumed.
-
-
-def is_nothing(cell: str) -> bool:
-    """Whether a cell stands for no value."""
-    return cell.strip().lower() in NOTHING
-
-
-def is_figure(cell: str) -> bool:
-    """Whether a cell is a number, a date or a time.
-
-    Examples
-    --------
-    >>> [is_figure(cell) for cell in ("1,5", "-.3", "27.10.2022 08:00", "1e-3", "heading", "12 kn")]
-    [True, True, True, True, False, True]
-    """
-    return _FIGURE.fullmatch(cell) is not None
 
 
 def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[str]]:
@@ -116,7 +91,7 @@ def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
     >>> with_unit(np.array(["5.5 kn", None, "6 kn"], object), ".")
     (array([5.5, nan, 6. ]), 'kn')
     """
-    found = [None if cell is None else re.fullmatch(_WITH_UNIT, cell) for cell in cells]
+    found = [None if cell is None else re.fullmatch(WITH_UNIT, cell) for cell in cells]
     told = {match["unit"] for match in found if match}
     if len(told) != 1 or any(m is None and cell is not None for m, cell in zip(found, cells, strict=True)):
         return None
@@ -125,43 +100,3 @@ def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
         return None
     numbers = [np.nan if m is None else float(m["number"].replace(decimal, ".")) for m in found]
     return np.array(numbers), unit
-
-
-def decimal_of(source: str, cells: list[str]) -> str | None:
-    """Decimal sign of a file whose cells are not separated by commas; None where no cell has a comma.
-
-    Parameters
-    ----------
-    source : str
-        The file, for messages.
-    cells : list of str
-        Those that are figures with a comma, each once.
-
-    Raises
-    ------
-    ShipcosimError
-        If the commas can be decimal signs or group thousands.
-    """
-    if not cells:
-        return None
-    decimal = next((cell for cell in cells if _is_decimal(cell, ",", ".")), None)
-    grouping = next((cell for cell in cells if _is_decimal(cell, ".", ",") or cell.count(",") > 1), None)
-    if decimal and grouping:
-        found = f"a comma is a decimal sign in '{decimal}' and groups thousands in '{grouping}'."
-        raise ShipcosimError(Problem(source, found, "Write all numbers alike."))
-    if decimal or grouping:
-        return "," if decimal else "."
-    cell = cells[0]
-    found = f"'{cell}' can be {cell.replace(',', '.')} (decimal comma) or {cell.replace(',', '')} (thousands)."
-    remedy = 'Say which in a channel file: file = {decimal = ","} or file = {decimal = "."}.'
-    raise ShipcosimError(Problem(source, found, remedy))
-
-
-def _is_decimal(cell, sign, other):
-    """Whether this sign can only be the decimal sign of the number in a cell."""
-    if sign not in cell or cell.count(sign) > 1:
-        return False
-    before, after = cell.lstrip("+-").split(sign)
-    if other in before:
-        return all(len(part) == 3 for part in before.split(other)[1:])
-    return other not in cell and (not _GROUPED.fullmatch(cell) or before.startswith("0"))

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from shipcosim.diagnose.log.files.cells import is_figure, is_nothing
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["Layout", "cells_in", "is_comment", "layout_of"]
-
-_SEPARATORS = ("\t", ";", "|", ",", " ")
-_SAMPLE = 60  # lines by which a layout is judged
-_MARKS = ("#", "%", "//", "!")
-_WORD = re.compile(r"[A-Za-z_][\w./-]*")
+__all__ = ["Layout", "layout_of"]
 
 
 @dataclass(frozen=True)
@@ -45,29 +39,7 @@ class Layout:
     remarks: tuple[str, ...]
 
 
-def is_comment(line: str) -> bool:
-    """Whether a line is none of the table."""
-    return line.lstrip().startswith(_MARKS)
-
-
-def cells_in(line: str, separator: str) -> list[str]:
-    """Cells of a line, without the blanks around them.
-
-    Examples
-    --------
-    >>> cells_in('1;"a;b"; 2', ";")
-    ['1', 'a;b', '2']
-    >>> cells_in("  1   2 ", " ")
-    ['1', '2']
-    """
-    if separator == " ":
-        return line.split()
-    if '"' not in line:
-        return [cell.strip() for cell in line.split(separator)]
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
-
-
-def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str], bool]) -> Layout:
+def layout_of(source: str, lines: list[str], form: FileLayout, is_unit: Callable[[str], bool]) -> Layout:
     """Layout of the lines of a file.
 
     Parameters
@@ -76,7 +48,7 @@ def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str]
         The file, for messages.
     lines : list of str
         Its lines.
-    form : Form
+    form : FileLayout
         What was said of it.
     is_unit : callable
         Whether a text is the spelling of a unit.
@@ -86,7 +58,7 @@ def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str]
     ShipcosimError
         If it is no table, or has no names.
     """
-    separator = form.separator or _separator(lines)
+    separator = form.separator or separator_of(lines)
     first, width = _first_row(source, lines, separator)
     above = [i for i in range(first) if lines[i].strip() and not lines[i].lower().startswith("sep=")]
     if form.names is not None:
@@ -105,24 +77,6 @@ def layout_of(source: str, lines: list[str], form: Form, is_unit: Callable[[str]
 def _skipped(above: list[int]) -> tuple[str, ...]:
     count = len(above)
     return (f"{count} line{'s' * (count > 1)} above the header left out.",) if count else ()
-
-
-def _separator(lines: list[str]) -> str:
-    """The separator that gives rows of equal length, of figures."""
-    told = next((line for line in lines[:1] if line.lower().startswith("sep=")), None)
-    if told and len(told.strip()) == 5:
-        return told.strip()[4]
-    rows = [line for line in lines if line.strip() and not is_comment(line)]
-    sample = [rows[int(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :] if rows else []
-    scores = {}
-    for separator in _SEPARATORS:
-        cells = [cells_in(line, separator) for line in sample]
-        width, count = Counter(map(len, cells)).most_common(1)[0] if cells else (0, 0)
-        flat = [cell for row in cells for cell in row if cell]
-        good = sum(1.0 if is_figure(c) or is_nothing(c) else 0.6 if _WORD.fullmatch(c) else 0.0 for c in flat)
-        scores[separator] = (count / len(cells)) * good / max(len(flat), 1) if width > 1 else 0.0
-    best = max(scores.values())
-    return next(separator for separator in _SEPARATORS if scores[separator] > 0.9 * best) if best > 0.0 else ","
 
 
 def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]:

@@ -10,14 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.cells import NOTHING, decimal_of, numbers_of, with_unit, without_fillers
+from shipcosim.diagnose.log.files.cells import numbers_of, with_unit, without_fillers
 from shipcosim.diagnose.log.files.excel import is_workbook, text_of_sheet
-from shipcosim.diagnose.log.files.foreign import refuse_foreign
-from shipcosim.diagnose.log.files.form import Form
-from shipcosim.diagnose.log.files.layout import Layout, cells_in, is_comment, layout_of
+from shipcosim.diagnose.log.files.file_layout import FileLayout
+from shipcosim.diagnose.log.files.layout import Layout, layout_of
 from shipcosim.diagnose.log.files.nmea import columns_of_sentences, holds_sentences
+from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
+from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
 from shipcosim.errors import Problem, ShipcosimError
 
 __all__ = ["LogColumns", "read_file"]
@@ -51,14 +52,14 @@ class LogColumns:
     doubled: tuple[str, ...] = field(default=())
 
 
-def read_file(path: Path, form: Form | None = None) -> LogColumns:
+def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
     """Columns of a file.
 
     Parameters
     ----------
     path : Path
         Text of any dialect or sentences of NMEA, also compressed by gzip; .xlsx; .nc; .parquet.
-    form : Form, optional
+    form : FileLayout, optional
         What was said of it.
 
     Raises
@@ -66,7 +67,7 @@ def read_file(path: Path, form: Form | None = None) -> LogColumns:
     ShipcosimError
         If there is no such file, it is no table, or could be read in two ways.
     """
-    form = form or Form()
+    form = form or FileLayout()
     if path.is_dir():
         raise ShipcosimError(Problem(str(path), "is a folder, no table.", "Name the file of a log."))
     if not path.is_file():
@@ -90,7 +91,7 @@ def read_file(path: Path, form: Form | None = None) -> LogColumns:
     return replace(read, remarks=(*said, *read.remarks))
 
 
-def _of_text(source: str, text: str, form: Form) -> LogColumns:
+def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     lines = text.splitlines()
     layout = layout_of(source, lines, form, is_unit)
     rows, said = _rows(source, lines, layout)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.files.times import epoch_unit, seconds_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
@@ -21,7 +21,7 @@ _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assu
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 
 
-def time_of(guesses: list[Guess], log: LogColumns, form: Form) -> tuple[Guess | None, list[Guess]]:
+def time_of(guesses: list[Guess], log: LogColumns, form: FileLayout) -> tuple[Guess | None, list[Guess]]:
     """The guess that is the time, and the others with why they are not.
 
     Parameters
@@ -30,7 +30,7 @@ def time_of(guesses: list[Guess], log: LogColumns, form: Form) -> tuple[Guess | 
         Columns that may be it by their names.
     log : LogColumns
         The file.
-    form : Form
+    form : FileLayout
         What was said of it.
 
     Raises
@@ -68,7 +68,7 @@ def _all_between(values, least, most):
     return bool(len(known)) and known.min() >= least and known.max() < most
 
 
-def _usable(guess: Guess, log: LogColumns, form: Form) -> Guess | None:
+def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     """A guess with the unit of its numbers, or with the date beside its clock; None where it is no time."""
     values = log.values[guess.column]
     if values.dtype.kind == "O":
@@ -112,7 +112,7 @@ def _is_date(name):
     return "date" in words_of(name) and "time" not in words_of(name)
 
 
-def _stamps(name: str, log: LogColumns, form: Form, guess: Guess | None = None) -> Guess | None:
+def _stamps(name: str, log: LogColumns, form: FileLayout, guess: Guess | None = None) -> Guess | None:
     """A column of texts that are stamps, with the column of dates beside it where they are clock times."""
     values = log.values[name]
     told = [value for value in values if value is not None] if values.dtype.kind == "O" else []

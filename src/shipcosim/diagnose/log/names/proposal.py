@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.positions import hemisphere_signs
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, UNUSED, Guess, Thrusters, guesses_of
-from shipcosim.diagnose.log.names.settled import settled
 from shipcosim.diagnose.log.names.units import unit_for
+from shipcosim.diagnose.log.names.unstated_units import settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
 
 __all__ = ["Proposal", "propose"]
@@ -32,13 +32,13 @@ class Proposal:
         One for each role, in the order of the file.
     unused : tuple of Guess
         The other columns, each with why.
-    form : Form
+    form : FileLayout
         What was said of the file.
     """
 
     used: tuple[Guess, ...]
     unused: tuple[Guess, ...]
-    form: Form
+    form: FileLayout
 
     def channels(self, guessed: bool = False) -> dict[str, Channel]:
         """Channels by role: those that are sure, or the guesses as well.
@@ -51,7 +51,7 @@ class Proposal:
         return {g.role: g.channel for g in self.used if g.rank < GUESS} | plain
 
 
-def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | None = None) -> Proposal:
+def propose(log: LogColumns, thrusters: Thrusters | None = None, form: FileLayout | None = None) -> Proposal:
     """Roles of the columns of a log, by their names, units and values.
 
     Parameters
@@ -60,10 +60,10 @@ def propose(log: LogColumns, thrusters: Thrusters | None = None, form: Form | No
         As from `read_file`.
     thrusters : mapping of str to tuple of str, optional
         Of the system, and what drives each; any without.
-    form : Form, optional
+    form : FileLayout, optional
         What was said of the file.
     """
-    form = form or Form()
+    form = form or FileLayout()
     every = [guess for column in log.values for guess in guesses_of(column, log, thrusters)]
     every = _known_together(every)
     chosen, left = _chosen([g for g in every if g.role and g.role != "time"])

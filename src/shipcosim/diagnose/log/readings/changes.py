@@ -26,11 +26,11 @@ from shipcosim.diagnose.log.mislabels import (
     velocity_frame,
 )
 
-__all__ = ["CLOCK", "Change", "Reading", "Slab", "changes"]
+__all__ = ["CLOCK", "LogInterpretation", "LogMistake", "Slab", "changes"]
 
 
 @dataclass(frozen=True)
-class Reading:
+class LogInterpretation:
     """How the channels of a log are read, as factors of complex numbers; `mirrored`: the conjugate is taken first.
 
     Attributes
@@ -108,7 +108,7 @@ class Slab:
 
 
 @dataclass(frozen=True)
-class Change:
+class LogMistake:
     """One mistake.
 
     Attributes
@@ -130,7 +130,7 @@ class Change:
 
     slot: str
     cost: float
-    apply: Callable[[Reading], Reading] = field(compare=False)
+    apply: Callable[[LogInterpretation], LogInterpretation] = field(compare=False)
     mislabel: Mislabel | None
     sentence: str
     slab: Slab | None = None
@@ -175,10 +175,10 @@ def _mirrored(name: str, factor: complex = 1.0):
 
 
 def _label(slot, cost, apply, mislabel):
-    return Change(slot, cost, apply, mislabel, mislabel.sentence)
+    return LogMistake(slot, cost, apply, mislabel, mislabel.sentence)
 
 
-def changes(stated: dict[str, str]) -> list[Change]:
+def changes(stated: dict[str, str]) -> list[LogMistake]:
     """All changes, for a log of which some units are stated, by role; the role's unit elsewhere."""
     return [*_time(stated.get("time")), *_units(stated), *_frames(), *_odd(stated)]
 
@@ -188,16 +188,16 @@ def _time(stated):
     for unit, (factor, cost) in TIME_COSTS.items():
         if factor != own:
             sentence = f"time is in {unit}, not {stated or 's'}"
-            yield Change("time", cost + extra, _factor_of("time", factor / own), None, sentence)
+            yield LogMistake("time", cost + extra, _factor_of("time", factor / own), None, sentence)
     for factor, cost in FACTORS.items():
         said = f"{factor:g} s pass in each logged second"
-        yield Change("time", cost, _factor_of("time", factor), None, said)
+        yield LogMistake("time", cost, _factor_of("time", factor), None, said)
     said = CLOCK
     for std, cost in ((0.05, 5.5), (1.5, 8.0)):
-        yield Change("time", cost, lambda reading: _freed(reading, "time"), None, said, Slab("time", std))
+        yield LogMistake("time", cost, lambda reading: _freed(reading, "time"), None, said, Slab("time", std))
 
 
-def _units(stated) -> Iterator[Change]:
+def _units(stated) -> Iterator[LogMistake]:
     for channels, units in CHANNEL_UNITS.items():
         given = stated.get(channels[0])
         own = given if given in units else next(iter(units))
@@ -209,7 +209,7 @@ def _units(stated) -> Iterator[Change]:
                 yield _label(f"unit of {name}", UNIT_COSTS[unit] + extra, _factor_of(name, label.scale), label)
 
 
-def _frames() -> Iterator[Change]:
+def _frames() -> Iterator[LogMistake]:
     to_degrees = lambda reading: replace(reading, degrees=True)  # noqa: E731
     yield _label("unit of position", 6.0, to_degrees, POSITION_IN_DEGREES)
     yield _label("position", 5.0, _mirrored("position", 1j), swap_of(*POSITION))
@@ -230,22 +230,26 @@ def _freed(reading, what):
     return replace(reading, free=reading.free | {what})
 
 
-def _odd(stated) -> Iterator[Change]:
+def _odd(stated) -> Iterator[LogMistake]:
     """What has no name or cannot be put right, and must be beaten by what has one."""
     of_velocity, of_rate = (STATED * bool(stated.get(role)) for role in ("surge", "yaw_rate"))
     lengths = ("north and east are in another unit, or badly scaled",)
     angles = ("heading is in another unit, or badly scaled",)
     for factor, cost in ODD_FACTORS.items():
         said = f"surge and sway must be multiplied by {factor:.3g}"
-        yield Change("unit of velocity", cost + of_velocity, _factor_of("velocity", factor), None, said, None, lengths)
+        yield LogMistake(
+            "unit of velocity", cost + of_velocity, _factor_of("velocity", factor), None, said, None, lengths
+        )
         said = f"yaw_rate must be multiplied by {factor:.3g}"
-        yield Change("unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles)
+        yield LogMistake("unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles)
     said = "surge and sway are in an unknown unit, or badly scaled"
     free, cost = Slab("scale", 1.5), 8.0 + of_velocity
-    yield Change("unit of velocity", cost, lambda r: _freed(r, "scale"), None, said, free, lengths)
+    yield LogMistake("unit of velocity", cost, lambda r: _freed(r, "scale"), None, said, free, lengths)
     said = "yaw_rate is in an unknown unit, or badly scaled"
     free, cost = Slab("rate", 1.5), 8.0 + of_rate
-    yield Change("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
-    yield Change("turned", 6.5, lambda r: _freed(r, "angle"), None, TURNED, None, ("the heading is off by that angle",))
+    yield LogMistake("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
+    yield LogMistake(
+        "turned", 6.5, lambda r: _freed(r, "angle"), None, TURNED, None, ("the heading is off by that angle",)
+    )
     said = "surge and sway are turned against the ship"
-    yield Change("axes turned", 8.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)
+    yield LogMistake("axes turned", 8.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)

@@ -15,7 +15,7 @@ from itertools import combinations
 
 import numpy as np
 
-from shipcosim.diagnose.log.readings.changes import Change, Reading
+from shipcosim.diagnose.log.readings.changes import LogInterpretation, LogMistake
 from shipcosim.diagnose.log.readings.fit import Relation
 from shipcosim.diagnose.log.readings.wind import WindRelations
 from shipcosim.diagnose.log.thresholds import (
@@ -52,7 +52,7 @@ class Evidence:
     speed, step : float or None
         As logged, of the craft and from row to row. [m/s, s]
     courses : dict of float to dict of (bool, bool) to complex
-        By the heading's unit: where the craft goes against her bow, see `Reading.course`.
+        By the heading's unit: where the craft goes against her bow, see `LogInterpretation.course`.
     """
 
     position: dict[tuple[float, bool], dict[tuple[str, str], Relation]]
@@ -62,7 +62,7 @@ class Evidence:
     step: float | None = None
     courses: dict[float, dict[tuple[bool, bool], complex]] = field(default_factory=dict)
 
-    def relation_of(self, reading: Reading) -> Relation | None:
+    def relation_of(self, reading: LogInterpretation) -> Relation | None:
         """Position against velocity, as a reading has it."""
         return self.position.get((reading.heading_unit, reading.degrees), {}).get(reading.form)
 
@@ -74,18 +74,18 @@ class Judged:
     None of the changes, and of no probability in itself: something is wrong that no combination explains.
     """
 
-    changes: tuple[Change, ...]
+    changes: tuple[LogMistake, ...]
     probability: float
     rate: tuple[float, float] = (1.0, 0.0)
 
 
-def judged(evidence: Evidence, changes: Sequence[Change]) -> tuple[list[Judged], float]:
+def judged(evidence: Evidence, changes: Sequence[LogMistake]) -> tuple[list[Judged], float]:
     """Combinations of up to two changes, likeliest first; and the probability that none of them explains the log.
 
     Parameters
     ----------
     evidence : Evidence
-    changes : sequence of Change
+    changes : sequence of LogMistake
     """
     best = _best_forms(evidence)
     tried = list(_combinations(changes))
@@ -97,15 +97,15 @@ def judged(evidence: Evidence, changes: Sequence[Change]) -> tuple[list[Judged],
     return sorted(found, key=lambda one: -one.probability), float(shares[-1])
 
 
-def reading_of(combination: Sequence[Change]) -> Reading:
+def reading_of(combination: Sequence[LogMistake]) -> LogInterpretation:
     """The reading of a log with some changes."""
-    reading = Reading()
+    reading = LogInterpretation()
     for change in combination:
         reading = change.apply(reading)
     return reading
 
 
-def _combinations(changes) -> Iterator[tuple[Change, ...]]:
+def _combinations(changes) -> Iterator[tuple[LogMistake, ...]]:
     yield ()
     for change in changes:
         yield (change,)
@@ -170,7 +170,7 @@ def _ahead(relation, reading, courses):
     return math.log(sum(shares) + 1.0 - GOES_AHEAD - GOES_ASTERN)
 
 
-def off_angle(relation: Relation, reading: Reading) -> float:
+def off_angle(relation: Relation, reading: LogInterpretation) -> float:
     """Angle between the change of position and what a reading makes of the velocity. [rad]"""
     return math.remainder(relation.factor.imag - reading.factor.imag, 2.0 * math.pi)
 

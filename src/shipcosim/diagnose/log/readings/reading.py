@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of, turned_grid
-from shipcosim.diagnose.log.readings.changes import CLOCK, Change, changes
+from shipcosim.diagnose.log.readings.changes import CLOCK, LogMistake, changes
 from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, off_angle, reading_of
 from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations
 from shipcosim.diagnose.log.readings.wind import wind_relations
@@ -20,7 +21,6 @@ from shipcosim.diagnose.log.thresholds import (
     THROUGHOUT,
     UNLIKELY_READING,
 )
-from shipcosim.diagnose.result import Estimate, Finding
 
 __all__ = ["explained", "is_as_labelled", "misread"]
 
@@ -136,11 +136,13 @@ def _angle(best, evidence):
     relation = evidence.relation_of(reading)
     if relation is None or "angle" not in reading.free or "position" in reading.mirrored:
         return None
-    angle = Estimate(float(np.degrees(off_angle(relation, reading))), float(np.degrees(relation.std[1])), "deg")
+    angle = ParameterEstimate(
+        float(np.degrees(off_angle(relation, reading))), float(np.degrees(relation.std[1])), "deg"
+    )
     return angle if abs(angle.estimate) > COMPASS_OFF else None
 
 
-def _findings(readings: list[Judged], unexplained: float, angle: Estimate | None) -> list[Finding]:
+def _findings(readings: list[Judged], unexplained: float, angle: ParameterEstimate | None) -> list[Finding]:
     """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be put right."""
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
@@ -150,8 +152,8 @@ def _findings(readings: list[Judged], unexplained: float, angle: Estimate | None
     first = {change.sentence: change for one in reversed(readings) for change in one.changes}  # likeliest last
     sure = [said for said, share in shares.items() if share > READING_SURE and (not first[said].or_else or angle)]
     found = [_named(first[said], shares[said], readings, angle) for said in sure]
-    rests: dict[tuple[Change, ...], float] = {}
-    rates: dict[tuple[Change, ...], float] = {}
+    rests: dict[tuple[LogMistake, ...], float] = {}
+    rates: dict[tuple[LogMistake, ...], float] = {}
     for one in readings:
         if set(sure) <= {change.sentence for change in one.changes}:
             rest = tuple(first[change.sentence] for change in one.changes if change.sentence not in sure)
@@ -196,7 +198,7 @@ def _named(change, probability, readings, angle):
 
 def _clock(change, readings):
     rate, std = next(one.rate for one in readings if change in one.changes)
-    rates = {"rate": Estimate(float(rate), float(std), "1")}
+    rates = {"rate": ParameterEstimate(float(rate), float(std), "1")}
     return Finding("clock", None, "data", 1.0, rates, (), ("time",), note=change.sentence)
 
 

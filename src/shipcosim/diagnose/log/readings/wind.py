@@ -16,7 +16,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.checks.kinematics import filters, whiteness
 from shipcosim.diagnose.log.mislabels import KNOT
-from shipcosim.diagnose.log.readings.changes import Reading
+from shipcosim.diagnose.log.readings.changes import LogInterpretation
 from shipcosim.diagnose.log.readings.fit import RowsFit, fit_rows
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
@@ -50,12 +50,12 @@ class WindRelations:
 
     fits: dict[tuple[float, bool, str, tuple[bool, bool]], tuple[float, complex, float]]
 
-    def likelihood(self, reading: Reading, angle: float) -> float:
+    def likelihood(self, reading: LogInterpretation, angle: float) -> float:
         """How likely the wind is under a reading, over the likeliest. [nats]
 
         Parameters
         ----------
-        reading : Reading
+        reading : LogInterpretation
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """

@@ -8,33 +8,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.channel_noise import most_white
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.explanation.search import ExplainedLog, explain
+from shipcosim.diagnose.explanation.unmodelled import is_healthy
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
-from shipcosim.diagnose.inference.noise import tuned
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
-from shipcosim.diagnose.inference.screening import gains, screened, screening_regressors
-from shipcosim.diagnose.inference.search import explain
+from shipcosim.diagnose.inference.problem import beside_likeliest, tuned_noise
+from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     FORM_COST,
     FORM_SCALES,
-    GUST_FACTOR,
-    LENGTHS_PER_GYRADIUS,
-    MOST_WALK,
-    TUNED_BESIDE,
 )
-from shipcosim.diagnose.inference.unmodelled import is_healthy
-from shipcosim.diagnose.ship.form import form_sizes
-from shipcosim.diagnose.stages import ExplainedLog, Identification
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.inference.innovations import Noise
 
-__all__ = ["learnt", "of_scale", "scores_by_scale", "tuned_noise", "with_learnt_form", "with_settled_form"]
+__all__ = ["learnt", "of_scale", "scores_by_scale", "with_learnt_form", "with_settled_form"]
 
 
 def with_learnt_form(found: Identification) -> Identification:
@@ -65,7 +59,7 @@ def learnt(problem: IdentificationProblem) -> IdentificationProblem:
     if not scale:
         return problem
     formed = of_scale(problem, scale)
-    is_likelier = _beside_likeliest(formed).score - FORM_COST > _beside_likeliest(problem).score
+    is_likelier = beside_likeliest(formed).score - FORM_COST > beside_likeliest(problem).score
     return formed if is_likelier else problem
 
 
@@ -103,7 +97,7 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
         Of scale 0 and `FORM_SCALES`. [nats, up to a constant of the log]
     """
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
-    sizes = {path: size for path, size in form_sizes(problem.model).items() if path not in fit.values}
+    sizes = {path: size for path, size in problem.model.form_sizes.items() if path not in fit.values}
     added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
     of_form = [Regressor({path: size}) for path, size in sizes.items()]
     form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
@@ -129,21 +123,5 @@ def of_scale(
 ) -> IdentificationProblem:
     """The problem of a ship whose form may differ by some scale, its noise tuned anew beside some causes."""
     formed = prepared(replace(problem, model=replace(problem.model, form_scale=scale)), rounds=1)
-    fit = fitted(formed, hypotheses, values) if hypotheses else _beside_likeliest(formed)
+    fit = fitted(formed, hypotheses, values) if hypotheses else beside_likeliest(formed)
     return prepared(replace(formed, noise=tuned_noise(formed, fit)), rounds=1)
-
-
-def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
-    """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
-    fit = fit or _beside_likeliest(problem)
-    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
-    most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
-    white = np.maximum(most_white(problem.record), problem.noise.white)
-    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most, most_white=white)
-
-
-def _beside_likeliest(problem: IdentificationProblem) -> Fit:
-    """The fit with the cause that explains most at first sight, if it does so beyond chance."""
-    fit = fitted(problem)
-    gain, hypothesis, values = screened(problem, fit)[0]
-    return fitted(problem, (hypothesis,), values) if gain > TUNED_BESIDE else fit

@@ -10,8 +10,9 @@ import numpy as np
 
 from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
-from shipcosim.diagnose.ship.instruments import LAGS, readings, true_motion
-from shipcosim.diagnose.validation.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
+from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
+from shipcosim.diagnose.ship.instruments import LAGS
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
 

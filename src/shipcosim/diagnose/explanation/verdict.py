@@ -7,10 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.compared import with_crude
+from shipcosim.diagnose.explanation.null_distribution import null_gains
+from shipcosim.diagnose.explanation.search import ExplainedLog, names, without_causes
+from shipcosim.diagnose.explanation.unmodelled import FORCES, unmodelled_gains
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-from shipcosim.diagnose.inference.fitting import Fit
-from shipcosim.diagnose.inference.null_distribution import null_gains
-from shipcosim.diagnose.inference.search import names, without_causes
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.thresholds import (
     APART,
     BESIDE_UNKNOWN,
@@ -26,13 +29,10 @@ from shipcosim.diagnose.inference.thresholds import (
     UNMODELLED,
     UNMODELLED_SHARE,
 )
-from shipcosim.diagnose.inference.unmodelled import FORCES, unmodelled_gains
 from shipcosim.diagnose.numerics import survival
-from shipcosim.diagnose.result import Candidate, Estimate, Finding
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
-from shipcosim.diagnose.stages import ExplainedLog, JudgedLog
 
-__all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels", "usual_gain"]
+__all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels", "usual_gain", "with_crude_model"]
 
 _BY_PART = "from part to part"
 _AS_THEY_ARE = (_BY_PART, "beyond tolerances")  # unmodelled errors whose evidence does not grow with the causes' gain
@@ -61,6 +61,41 @@ class Judgement:
     rivals: tuple[Fit, ...] = ()
 
 
+@dataclass(frozen=True)
+class JudgedLog:
+    """An explained log with the verdict on its causes.
+
+    Attributes
+    ----------
+    explained : ExplainedLog
+    judgement : Judgement
+    unmodelled : dict of str to float
+        Gain of unmodelled errors beside the causes of the judgement, by kind. [nats]
+    null_gains : dict of str to float
+        Gain of its causes on simulated healthy logs, by label; not computed where the real gain is far larger. [nats]
+    """
+
+    explained: ExplainedLog
+    judgement: Judgement
+    unmodelled: dict[str, float]
+    null_gains: dict[str, float]
+
+    @property
+    def problem(self) -> IdentificationProblem:
+        """The identification problem that the verdict is on."""
+        return self.explained.identification.problem
+
+    @property
+    def fits(self) -> tuple[Fit, ...]:
+        """The sets of causes that were fitted, best first."""
+        return self.explained.fits
+
+    @property
+    def fit(self) -> Fit:
+        """The set of causes that the verdict rests on; empty where nothing is named."""
+        return self.judgement.fit
+
+
 def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
     problem, fits, comparison = explained.identification.problem, explained.fits, explained.identification.comparison
@@ -84,6 +119,20 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
         judgement = judge(fits, unmodelled_beside, null)
     return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)
+
+
+def with_crude_model(log: JudgedLog) -> JudgedLog:
+    """A judged log, where no cause explains it, with what the comparison tells of thrust and damping nevertheless."""
+    found = log.explained.identification
+    comparison = found.comparison
+    unclear = any(fault.alternatives for fault in found.faults)
+    if comparison is None or comparison.obstacles or comparison.findings or unclear:
+        return log
+    if log.judgement.verdict != "unknown" or comparison.ratio is None:
+        return log
+    known = with_crude(comparison, found.repaired, found.ship, found.causes)
+    identification = replace(found, comparison=known)
+    return replace(log, explained=replace(log.explained, identification=identification))
 
 
 def usual_gain(model: ShipModel) -> float:
@@ -269,7 +318,7 @@ def _candidates(chances):
 def _finding(hypothesis, fit, candidates):
     parameters = {
         # of the log, and of a model that knows no number better than within its tolerance
-        k.name: Estimate(
+        k.name: ParameterEstimate(
             fit.values[k.paths[0]] * k.factor, float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)), k.unit
         )
         for k in hypothesis.parameters

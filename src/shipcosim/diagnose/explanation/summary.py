@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.search import without_causes
+from shipcosim.diagnose.explanation.verdict import gained
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.parts import explained
-from shipcosim.diagnose.inference.search import without_causes
-from shipcosim.diagnose.inference.verdict import gained
-from shipcosim.diagnose.result import FormNumber, LoadForm
-from shipcosim.diagnose.ship.form import form_functions, form_sizes
 
 if TYPE_CHECKING:
+    from shipcosim.diagnose.explanation.verdict import JudgedLog
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.diagnose.stages import JudgedLog
 
 __all__ = ["LAGS", "CauseGain", "Evidence", "SetEvidence", "SizeEstimate", "evidence_of", "load_form", "whiteness"]
 
@@ -25,6 +23,50 @@ MOVED = 2.0
 """Standard deviations, before and after the log, by which a number of the form has moved. [1]"""
 LAGS = 30
 """Lags of the autocorrelation of the innovations. [rows]"""
+
+
+@dataclass(frozen=True)
+class FormNumber:
+    """A number of the form of the ship's loads, which the log has moved off the model's.
+
+    Attributes
+    ----------
+    number : str
+        ``place.name``.
+    what : str
+        In words.
+    model, estimate, std : float
+    unit : str
+    """
+
+    number: str
+    what: str
+    model: float
+    estimate: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class LoadForm:
+    """How far the form of the ship's loads differs from the model's, as far as the log tells.
+
+    Attributes
+    ----------
+    scale : float
+        Over what is usual between a ship and her model; 0 is the model's form. [1]
+    differs : dict of str to float
+        By function, in words: root mean square of what it differs by, as a share of the model's. [1]
+    numbers : tuple of FormNumber
+        Those that differ by more than twice their standard deviations, most certain first.
+    hides : tuple of str
+        Causes that the log could have shown on a ship of the model's form: another form of her loads does the same.
+    """
+
+    scale: float
+    differs: dict[str, float]
+    numbers: tuple[FormNumber, ...] = ()
+    hides: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -160,7 +202,7 @@ def load_form(log: JudgedLog) -> LoadForm | None:
     model, fit = log.problem.model, log.fit
     if not model.form_scale or model.directions:
         return None
-    sizes, theta, std = form_sizes(model), fit.theta, np.sqrt(np.diag(fit.covariance))
+    sizes, theta, std = model.form_sizes, fit.theta, np.sqrt(np.diag(fit.covariance))
     found, squares = [], {}
     for column, share, deviation in zip(fit.columns, theta, std, strict=True):
         path, size = next(iter(column.changes.items()))
@@ -173,7 +215,7 @@ def load_form(log: JudgedLog) -> LoadForm | None:
             )
     differs = {
         name: float(np.sqrt(sum(share * squares.get(path, 0.0) for path, share in numbers.items())))
-        for name, numbers in form_functions(model).items()
+        for name, numbers in model.form_functions.items()
     }
     return LoadForm(model.form_scale, differs, tuple(one for _, one in sorted(found, key=lambda pair: -pair[0])))
 

@@ -6,10 +6,10 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["Form"]
+__all__ = ["FileLayout"]
 
 
-class Form(BaseModel):
+class FileLayout(BaseModel):
     """The entry ``file`` of a channel file. What is not said is found out from the file."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from shipcosim.diagnose.comparison.missing import MissingLoad
+from shipcosim.diagnose.comparison.missing_loads import MissingLoad
 
 LACKS = MissingLoad("yaw", 10.0, 30.0, 28.0, 1.0, 0.6, 30.0, 0.1, 2.0, 1.2)
 

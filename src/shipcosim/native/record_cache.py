@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import shipcosim
 from shipcosim.library import cache
-from shipcosim.native.leaves import Flat
+from shipcosim.native.number_rows import Flat
 from shipcosim.native.trace import Shape, Step
 
 

@@ -19,20 +19,20 @@ from shipcosim.diagnose.comparison.thresholds import (
     MOST_CHANGES,
 )
 from shipcosim.diagnose.ship.smoothing import froude_time
-from shipcosim.diagnose.ship.surrogate import with_surrogates
+from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Change", "Reading", "ahead_of", "changes_of", "driven", "reading"]
+__all__ = ["LabelError", "LabelHypothesis", "ahead_of", "changes_of", "driven", "reading"]
 
 
 @dataclass(frozen=True)
-class Change:
+class LabelError:
     """One thing that is wrong with the labels: a thruster that runs the other way, or two that are exchanged.
 
     Attributes
@@ -58,12 +58,12 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Reading:
+class LabelHypothesis:
     """One way to read the thrusters' channels, and how well what is commanded then agrees with what is felt.
 
     Attributes
     ----------
-    changes : tuple of Change
+    changes : tuple of LabelError
         None is as logged.
     support : float
         Log-likelihood that the commanded loads gain, summed over the axes. [nats]
@@ -84,7 +84,7 @@ class Reading:
         What drives the thrusters, so read.
     """
 
-    changes: tuple[Change, ...]
+    changes: tuple[LabelError, ...]
     support: float
     lag: float
     gained_by_lag: float
@@ -105,7 +105,7 @@ class Reading:
         return self.support - CHANGE_COST * len(self.changes) - self.lag_cost
 
 
-def changes_of(record: Record, model: ShipModel) -> list[tuple[Change, ...]]:
+def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]:
     """What may be wrong with the labels: thrusters that run the other way, two of a make exchanged, several of these.
 
     Parameters
@@ -115,12 +115,12 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[Change, ...]]:
 
     Returns
     -------
-    list of tuple of Change
+    list of tuple of LabelError
         Exchanges before signs, one change before several.
     """
     names = [name for name in model.thrusters if np.any(record.units[name][0])]
     pairs = [pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])]
-    singles = [Change(pair, pair[0] in model.azimuths) for pair in pairs] + [Change((name,)) for name in names]
+    singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [LabelError((name,)) for name in names]
     return [several for count in range(1, MOST_CHANGES + 1) for several in combinations(singles, count)]
 
 
@@ -130,12 +130,14 @@ def _make(model: ShipModel, name: str) -> object:
     return third_party.component.fmu.model_name if third_party else type(model.parts[name])
 
 
-def reading(changes: tuple[Change, ...], record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel) -> Reading:
+def reading(
+    changes: tuple[LabelError, ...], record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel
+) -> LabelHypothesis:
     """One reading of the channels, with the lag that suits it best.
 
     Parameters
     ----------
-    changes : tuple of Change
+    changes : tuple of LabelError
     record : Record
         As logged.
     felt : Felt
@@ -145,7 +147,7 @@ def reading(changes: tuple[Change, ...], record: Record, felt: Felt, axes: Seque
 
     Returns
     -------
-    Reading
+    LabelHypothesis
     """
     units = record.units
     for change in changes:
@@ -159,7 +161,7 @@ def reading(changes: tuple[Change, ...], record: Record, felt: Felt, axes: Seque
         support = support_of(moved, ahead, axes)
         gained = support - tries[0].support if tries else 0.0
         cost = LAG_COST + lag / scale if lag else 0.0
-        tries.append(Reading(changes, support, float(lag), gained, cost, record.step, moved, ahead, units))
+        tries.append(LabelHypothesis(changes, support, float(lag), gained, cost, record.step, moved, ahead, units))
     return max(tries, key=lambda one: one.score)
 
 

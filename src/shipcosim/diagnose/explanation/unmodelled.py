@@ -22,7 +22,7 @@ from shipcosim.diagnose.inference.thresholds import (
 )
 from shipcosim.diagnose.numerics import log_survival
 from shipcosim.diagnose.ship.environment import piecewise_linear_basis
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem

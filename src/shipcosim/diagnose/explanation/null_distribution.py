@@ -21,7 +21,7 @@ from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.ship.inputs import Record, first_motion
-from shipcosim.diagnose.ship.instruments import readings
+from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
 

@@ -1,7 +1,7 @@
 """At night: systems that CI leaves out, run here as a tool takes them, have the tool's values."""
 
 import pytest
-from cosim.engines.test_as_read import SILENT, check_as_read, host
+from cosim.engines.test_foreign_process import SILENT, check_as_read, host
 
 
 @pytest.mark.parametrize("name", [name for name in SILENT if name not in SILENT[::3]])

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
-from shipcosim.diagnose.comparison.labels import Change
-from shipcosim.diagnose.reference.common import (
+from shipcosim.diagnose.comparison.labels import LabelError
+from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
+from shipcosim.diagnose.reference.common_findings import (
     common_discrepancies,
     common_faults,
     leans_to,
@@ -15,7 +16,6 @@ from shipcosim.diagnose.reference.common import (
     together,
     with_right_labels,
 )
-from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
 from shipcosim.series import make_table
 
 SWAP = Finding(
@@ -32,12 +32,14 @@ def ratios(*sizes, axes=("surge", "sway", "yaw")):
 
 
 def test_estimates_of_logs_are_weighed_by_what_they_know():
-    found = together([{"lag": Estimate(0.4, 0.01, "s")}, {"lag": Estimate(0.5, 0.1, "s")}])["lag"]
+    found = together([{"lag": ParameterEstimate(0.4, 0.01, "s")}, {"lag": ParameterEstimate(0.5, 0.1, "s")}])["lag"]
     assert found.estimate == pytest.approx(0.401, abs=0.001) and 0.0099 < found.std < 0.0101
 
 
 def test_estimates_that_disagree_are_as_uncertain_as_they_differ():
-    assert together([{"x": Estimate(0.3, 0.01, "1")}, {"x": Estimate(0.5, 0.01, "1")}])["x"].std == pytest.approx(0.1)
+    assert together([{"x": ParameterEstimate(0.3, 0.01, "1")}, {"x": ParameterEstimate(0.5, 0.01, "1")}])[
+        "x"
+    ].std == pytest.approx(0.1)
 
 
 def test_one_ratio_is_common_to_logs_that_agree_and_better_known_than_by_one():
@@ -77,7 +79,10 @@ def test_a_fault_of_half_of_the_logs_is_common_and_one_of_a_single_log_is_not():
 def test_a_fault_is_the_same_whatever_its_size_in_each_log():
     clocks = [
         Finding(
-            "clock", kind="data", note=f"the clock runs {text} too slow", parameters={"rate": Estimate(v, 0.01, "1")}
+            "clock",
+            kind="data",
+            note=f"the clock runs {text} too slow",
+            parameters={"rate": ParameterEstimate(v, 0.01, "1")},
         )
         for text, v in (("4.1 %", 1.041), ("3.9 %", 1.039))
     ]
@@ -91,7 +96,7 @@ def test_what_a_log_leaves_open_is_no_common_fault():
 
 
 @pytest.mark.parametrize(
-    ("best", "leans"), [([Change(("left", "right"))], True), ([], False), ([Change(("left",))], False)]
+    ("best", "leans"), [([LabelError(("left", "right"))], True), ([], False), ([LabelError(("left",))], False)]
 )
 def test_a_log_that_cannot_tell_leans_to_a_fault_by_its_best_reading(best, leans):
     labels = SimpleNamespace(best=SimpleNamespace(changes=best), rivals=())

@@ -11,8 +11,8 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from shipcosim.cosim.master.time_grid import step_times
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.scenario import step_times
 from shipcosim.series import write_file
 from shipcosim.ssp.xml.archive import BROKEN
 

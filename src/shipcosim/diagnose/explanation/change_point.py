@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain, without_causes
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.screening import screening_regressors
-from shipcosim.diagnose.inference.search import at_first_sight, explain, without_causes
+from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.inference.thresholds import (
     CHANGE_POINT_BLOCK,
     CHANGE_POINT_GAIN,
@@ -21,7 +21,6 @@ from shipcosim.diagnose.inference.thresholds import (
     CHANGE_POINT_SKIPPED,
     MOST_CHANGE_POINT_BLOCKS,
 )
-from shipcosim.diagnose.stages import ExplainedLog
 
 __all__ = ["change_point_of", "with_change_point"]
 

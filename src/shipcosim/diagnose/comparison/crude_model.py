@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.diagnose.comparison.thresholds import SURE_OF_RATIO
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.ship.thrusters import with_thrust
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ class CrudeModel:
                 None,
                 "physics",
                 0.95,
-                {one.parameter: Estimate(one.estimate, one.std, "1")},
+                {one.parameter: ParameterEstimate(one.estimate, one.std, "1")},
                 note=_ONLY_DAMPING if one.axis else _ONLY_RATIO,
             )
             for one in self.numbers

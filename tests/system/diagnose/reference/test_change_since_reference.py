@@ -6,9 +6,9 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
-from shipcosim.diagnose.reference.since import with_sizes_at_reference
-from shipcosim.diagnose.result import Estimate, Finding
+from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.report.diagnosis.words import size_rows, told
 
 
@@ -23,7 +23,7 @@ def since():
 
 
 def test_a_loss_has_what_it_was_at_the_reference_and_what_it_is_now(since):
-    lost = Finding("thrust_loss", "port", parameters={"loss": Estimate(0.12, 0.01, "1")})
+    lost = Finding("thrust_loss", "port", parameters={"loss": ParameterEstimate(0.12, 0.01, "1")})
     (found,) = since(lost)
     number = next(one for one in ships.reference().numbers if one.name == "port.thrust_loss")
     before = found.at_reference["loss"]
@@ -35,7 +35,7 @@ def test_a_loss_has_what_it_was_at_the_reference_and_what_it_is_now(since):
 
 
 def test_an_angle_is_in_the_units_of_the_catalogue(since):
-    turned = Finding("azimuth_offset", "port", parameters={"offset": Estimate(9.0, 0.3, "deg")})
+    turned = Finding("azimuth_offset", "port", parameters={"offset": ParameterEstimate(9.0, 0.3, "deg")})
     (found,) = since(turned)
     number = next(one for one in ships.reference().numbers if one.name == "port.azimuth_offset")
     assert found.at_reference["offset"].std == pytest.approx(57.29578 * number.std, rel=1e-6)
@@ -43,6 +43,9 @@ def test_an_angle_is_in_the_units_of_the_catalogue(since):
 
 
 def test_weather_and_faults_of_the_log_have_no_size_at_the_reference(since):
-    current = Finding("current", parameters={"north": Estimate(0.2, 0.01, "m/s"), "east": Estimate(0.0, 0.01, "m/s")})
+    current = Finding(
+        "current",
+        parameters={"north": ParameterEstimate(0.2, 0.01, "m/s"), "east": ParameterEstimate(0.0, 0.01, "m/s")},
+    )
     for found in since(current, Finding("gap", kind="data")):
         assert not found.at_reference and "at_reference" not in found.as_json()

@@ -11,12 +11,12 @@ import numpy as np
 from shipcosim.diagnose.comparison.axes import AXES
 from shipcosim.diagnose.comparison.commanded import inertia
 from shipcosim.diagnose.comparison.thresholds import ABOVE_NOISE, GOES_WITH, LARGE, MENTIONED, OFF, STEADY
-from shipcosim.diagnose.result import Discrepancy
+from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.felt import Felt
+    from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["FORCES", "MissingLoad", "missing_loads"]

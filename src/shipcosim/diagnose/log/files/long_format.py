@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.errors import Problem, ShipcosimError, suggestion
@@ -20,14 +20,14 @@ _MOST_NAMES = 500
 _ALONE = 0.1  # share of rows with most channels, below which rows are messages of single sensors. Assumed.
 
 
-def spread(log: LogColumns, form: Form) -> LogColumns:
+def spread(log: LogColumns, form: FileLayout) -> LogColumns:
     """A log with one value a row as one with a column for each name; any other as it is.
 
     Parameters
     ----------
     log : LogColumns
         As it stands in the file.
-    form : Form
+    form : FileLayout
         May say which columns hold names and values.
 
     Raises

@@ -11,10 +11,10 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
+from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
 from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
-from shipcosim.diagnose.result import Discrepancy, Estimate, Finding
 
 if TYPE_CHECKING:
     import xarray
@@ -82,14 +82,14 @@ def _as_one(same: Sequence[Finding]) -> Finding:
     return replace(same[0], probability=sure, parameters=together([one.parameters for one in same]))
 
 
-def together(parameters: Sequence[Mapping[str, Estimate]]) -> dict[str, Estimate]:
+def together(parameters: Sequence[Mapping[str, ParameterEstimate]]) -> dict[str, ParameterEstimate]:
     """Estimates of several logs as one: means weighted by information, deviations at least what the logs differ by."""
     found = {}
     for name, first in parameters[0].items():
         values = np.array([one[name].estimate for one in parameters])
         stds = np.array([one[name].std for one in parameters])
         mean, std, _ = _weighted(values, np.maximum(stds, 1e-12))
-        found[name] = Estimate(mean, std, first.unit)
+        found[name] = ParameterEstimate(mean, std, first.unit)
     return found
 
 

@@ -10,7 +10,7 @@ import xarray
 
 import shipcosim
 from shipcosim.cosim import RunOptions, Variation, simulate, simulate_many
-from shipcosim.cosim import many as many_module
+from shipcosim.cosim import variations as many_module
 from shipcosim.cosim.master import compiled
 from shipcosim.cosim.master.run import Simulation
 from shipcosim.cosim.systems import system_of

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from shipcosim.cli import app
 from shipcosim.cosim import engines_missing, simulate
-from shipcosim.cosim.engines.as_read import readers
+from shipcosim.cosim.engines.foreign_process import readers
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import parameter, read_system, write_ssv

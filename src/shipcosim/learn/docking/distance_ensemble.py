@@ -30,7 +30,7 @@ MIRROR_ORDER = np.r_[0:18, 23:28, 18:23, 28:30]
 
 
 @dataclass(frozen=True)
-class Recipe:
+class DockingTraining:
     """How the ensemble is trained.
 
     Parameters
@@ -113,7 +113,10 @@ def scale() -> np.ndarray:
 
 
 def fit(
-    found: tuple[np.ndarray, np.ndarray], choice: tuple[np.ndarray, np.ndarray], recipe: Recipe, progress: Progress
+    found: tuple[np.ndarray, np.ndarray],
+    choice: tuple[np.ndarray, np.ndarray],
+    recipe: DockingTraining,
+    progress: Progress,
 ) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
     """Train the ensemble, also on every docking as in a mirror.
 
@@ -121,7 +124,7 @@ def fit(
     ----------
     found, choice : tuples of two arrays
         Features and targets, to train on and to choose the epoch by.
-    recipe : Recipe
+    recipe : DockingTraining
         How.
     progress : callable
         Is told how many steps are done, and of how many.

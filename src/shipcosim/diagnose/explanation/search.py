@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.explanation.unmodelled import is_healthy
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.screening import screened
-from shipcosim.diagnose.inference.unmodelled import is_healthy
 from shipcosim.diagnose.inference.workers import each
-from shipcosim.diagnose.stages import ExplainedLog, Identification
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
@@ -22,6 +23,27 @@ if TYPE_CHECKING:
 __all__ = ["at_first_sight", "explain", "names", "with_causes", "without_causes"]
 
 STRAIN = 2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
+
+
+@dataclass(frozen=True)
+class ExplainedLog:
+    """An identified log with the sets of causes that explain it.
+
+    Attributes
+    ----------
+    identification : Identification
+    fits : tuple of Fit
+        One for each set of causes that was fitted, best first; that without a cause is among them.
+    is_healthy : bool
+        Whether the best set is empty and no unmodelled error stands out beside it.
+    change_point : float or None
+        Since when the causes act, where they began during the log; `identification` is then of the rows after. [s]
+    """
+
+    identification: Identification
+    fits: tuple[Fit, ...]
+    is_healthy: bool
+    change_point: float | None = None
 
 
 def with_causes(found: Identification) -> ExplainedLog:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.reference import Reference, with_reference
-from shipcosim.diagnose.result import Estimate, Finding
 from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["with_sizes_at_reference"]
@@ -39,7 +39,7 @@ def with_sizes_at_reference(
     for finding in findings:
         hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
         before = {
-            of.name: Estimate(known[path].estimate * of.factor, known[path].std * abs(of.factor), of.unit)
+            of.name: ParameterEstimate(known[path].estimate * of.factor, known[path].std * abs(of.factor), of.unit)
             for of in (hypothesis.parameters if hypothesis else ())
             for path in of.paths[:1]
             if path in known

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from shipcosim.angles import TURN, wrap_series
-from shipcosim.diagnose.log.earth import metres_per_degree
-from shipcosim.diagnose.log.files.form import Form
+from shipcosim.diagnose.log.degree_size import metres_per_degree
+from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, unit_of_speed
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
@@ -24,7 +24,7 @@ _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
 _LEFT_OPEN = {"yaw_rate": "deg/s", "speed_over_ground": "kn", "wind_speed": "kn", "true_wind_speed": "kn"}
 
 
-def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
+def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None:
     """Settle what names leave open, in place: units and frames.
 
     Parameters
@@ -33,7 +33,7 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: Form) -> None:
         By role.
     log : LogColumns
         The file.
-    form : Form
+    form : FileLayout
         What was said of it.
     """
     _settle_degrees(chosen, log)

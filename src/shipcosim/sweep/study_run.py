@@ -11,9 +11,9 @@ import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
+from shipcosim.sweep.dispatch import rows_of
 from shipcosim.sweep.indices import has_indices, indices_of
 from shipcosim.sweep.plan import Plan
-from shipcosim.sweep.running import rows_of
 from shipcosim.sweep.storage import Store, check_installed
 from shipcosim.sweep.summary import summarised
 from shipcosim.sweep.tuning import Search

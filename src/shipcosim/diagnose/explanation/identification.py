@@ -1,0 +1,44 @@
+"""A compared log as an identification problem, as which its causes are sought."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from shipcosim.diagnose.checked_log import CheckedLog
+from shipcosim.diagnose.comparison.compared import ComparedLog
+from shipcosim.diagnose.inference.problem import identification_problem
+
+if TYPE_CHECKING:
+    from shipcosim.diagnose.comparison.compared import LogComparison
+    from shipcosim.diagnose.finding import Finding
+    from shipcosim.diagnose.inference.fitting import IdentificationProblem
+
+__all__ = ["Identification", "identified"]
+
+
+@dataclass(frozen=True)
+class Identification(CheckedLog):
+    """A checked log as an identification problem; the faults grow by those that only the ship's response shows.
+
+    Attributes
+    ----------
+    problem : IdentificationProblem
+        Of the repaired log: noise and linearisation about the ship without a cause.
+    misconnections : tuple of Finding
+        Connections of the system that the log contradicts; `ship` has them put right.
+    comparison : LogComparison or None
+        Of simulated with measured, commanded with felt.
+    """
+
+    problem: IdentificationProblem
+    misconnections: tuple[Finding, ...] = ()
+    comparison: LogComparison | None = None
+
+
+def identified(checked: ComparedLog) -> Identification:
+    """A compared log as an identification problem; its ship gets surrogates of third-party FMUs for this log."""
+    problem = identification_problem(checked.repaired, checked.ship, checked.causes)
+    ship = replace(checked.ship, third_party=problem.model.third_party)
+    known = (checked.log, ship, checked.causes, checked.faults, checked.repaired, problem)
+    return Identification(*known, comparison=checked.comparison)

@@ -1,0 +1,133 @@
+"""What a diagnosis names: causes with their parameters, candidates, and where simulation and log differ."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+__all__ = ["Candidate", "Discrepancy", "Finding", "ParameterEstimate", "label_of"]
+
+
+def label_of(cause: str, component: str | None) -> str:
+    """A cause with its place, in words: ``thrust_loss of port``."""
+    return f"{cause} of {component}" if component else cause
+
+
+@dataclass(frozen=True)
+class ParameterEstimate:
+    """A parameter of a cause, with its standard deviation, both in `unit`."""
+
+    estimate: float
+    std: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One cause that is present.
+
+    Attributes
+    ----------
+    cause : str
+        Name of the cause as in the catalogue.
+    component : str or None
+        Component of the system that it sits in, where there are several.
+    kind : str
+        ``"data"``: the log is wrong, or ``"physics"``: the model is.
+    probability : float
+        That it is right to name it.
+    parameters : dict of str to Estimate
+        In the units of the catalogue.
+    segments : tuple of (float, float)
+        Where in the log, from and to; empty is all of it. [s]
+    channels : tuple of str
+        Roles of the channels that a fault of the data is in.
+    onset : float or None
+        From when on a cause of the physics acts; None from the start. [s]
+    note : str
+        What else there is to say, one sentence.
+    alternatives : tuple of str
+        Other readings that explain the log alike, one sentence each. Where there are any, `note` is only the likeliest
+        of them, and nothing was put right.
+    at_reference : dict of str to Estimate
+        What the parameters were when a reference was made; empty without one, and of what it does not hold.
+    """
+
+    cause: str
+    component: str | None = None
+    kind: str = "physics"
+    probability: float = 1.0
+    parameters: dict[str, ParameterEstimate] = field(default_factory=dict)
+    segments: tuple[tuple[float, float], ...] = ()
+    channels: tuple[str, ...] = ()
+    onset: float | None = None
+    note: str = ""
+    alternatives: tuple[str, ...] = ()
+    at_reference: dict[str, ParameterEstimate] = field(default_factory=dict)
+
+    @property
+    def label(self) -> str:
+        """``thrust_loss of port``."""
+        return label_of(self.cause, self.component)
+
+    @property
+    def sentence(self) -> str:
+        """The note, with what explains the log alike."""
+        if not self.alternatives:
+            return self.note
+        return f"{'; or '.join([self.note, *self.alternatives])}: the log does not tell, nothing is put right"
+
+    def as_json(self) -> dict:
+        """The finding as an entry of diagnosis.json; what does not apply is left out."""
+        entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
+        entry["parameters"] = {name: asdict(value) for name, value in self.parameters.items()}
+        if self.at_reference:
+            entry["at_reference"] = {name: asdict(value) for name, value in self.at_reference.items()}
+        if self.kind == "data":
+            entry["segments"] = [list(segment) for segment in self.segments]
+            entry["channels"] = list(self.channels)
+        if self.onset is not None:
+            entry["onset"] = self.onset
+        if self.note:
+            entry["note"] = self.note
+        if self.alternatives:
+            entry["alternatives"] = list(self.alternatives)
+        return entry
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A cause with the probability that it is present."""
+
+    cause: str
+    component: str | None
+    probability: float
+
+    @property
+    def label(self) -> str:
+        """``thrust_loss of port``."""
+        return label_of(self.cause, self.component)
+
+
+@dataclass(frozen=True)
+class Discrepancy:
+    """Something in which simulation and log differ, before any cause is sought.
+
+    Attributes
+    ----------
+    what : str
+        In words, with its size.
+    component, axis : str or None
+        Thruster, and ``"surge"``, ``"sway"`` or ``"yaw"``, where it is of one.
+    estimate, std : float
+    unit : str
+    share : float
+        Of the error that it explains.
+    """
+
+    what: str
+    component: str | None
+    axis: str | None
+    estimate: float
+    std: float
+    unit: str
+    share: float

@@ -1,0 +1,44 @@
+"""What the instruments show of a ship's motion, and the motion of which they show it."""
+
+from __future__ import annotations
+
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.ship import instruments
+
+__all__ = ["readings", "true_motion"]
+
+
+def readings(motion: Motion, model: ShipModel) -> Motion:
+    """What the instruments show of a motion, without noise and lag, heading not wrapped.
+
+    Position and velocity are the antenna's; surge and sway are its velocity over ground resolved with the measured
+    heading.
+
+    Parameters
+    ----------
+    motion : Motion
+    model : ShipModel
+
+    Returns
+    -------
+    Motion
+    """
+    own = model.parts["instruments"]
+    return Motion(*instruments.readings(*motion, **own.errors))._replace(psi=motion.psi + own.heading_bias)
+
+
+def true_motion(seen: Motion, model: ShipModel) -> Motion:
+    """The motion of which the instruments show this; headings unwrapped as they were.
+
+    Parameters
+    ----------
+    seen : Motion
+    model : ShipModel
+
+    Returns
+    -------
+    Motion
+    """
+    own = model.parts["instruments"]
+    return Motion(*instruments.true_motion(*seen, **own.errors))._replace(psi=seen.psi - own.heading_bias)

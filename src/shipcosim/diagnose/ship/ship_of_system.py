@@ -1,0 +1,123 @@
+"""The ship of a system in array form, read from the parameters of its FMUs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import MISSING, fields
+from typing import Any
+
+from shipcosim.diagnose.ship.environment import water_of
+from shipcosim.diagnose.ship.form import HullForm, ThrusterForm, WindForm, form_of
+from shipcosim.diagnose.ship.instruments import Instruments
+from shipcosim.diagnose.ship.model import OWN_THRUSTERS, ShipModel
+from shipcosim.diagnose.ship.third_party_fmu import part_of, problem_of, third_party_fmu_of
+from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed
+from shipcosim.diagnose.ship.tolerances import tolerances_of
+from shipcosim.diagnose.ship.wiring import wiring_of
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.models.environment.wind_loads import WindParameters
+from shipcosim.models.ship.hull import HullParameters
+from shipcosim.ssp import System
+from shipcosim.ssp.flatten.system import Component
+
+__all__ = ["ship_model_of"]
+
+
+def ship_model_of(system: System) -> ShipModel:
+    """The ship of a system with our vessel.fmu; FMUs that load her may be third-party ones.
+
+    Parameters
+    ----------
+    system : System
+        With one vessel, and FMUs whose loads go into it.
+
+    Returns
+    -------
+    ShipModel
+
+    Raises
+    ------
+    ShipcosimError
+        No vessel, or loads on it of FMUs that no log feeds.
+    """
+    ship = _vessel(system)
+    if problems := list(_left_out(system, ship)):
+        raise ShipcosimError(problems)
+    parts = {"hull": _values(ship, HullParameters), "wind": _values(ship, WindParameters)}
+    third_party = {}
+    for name in _loading(system, ship.name):
+        kind = _thruster_kind(system.components[name])
+        if kind is None:
+            third_party[name] = third_party_fmu_of(system, name, ship.name)
+        parts[name] = _values(system.components[name], kind) if kind else part_of(third_party[name])
+    if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in third_party.items()))):
+        raise ShipcosimError(problems)
+    ours, water = [name for name in parts if isinstance(parts[name], OWN_THRUSTERS)], water_of(parts["hull"].length)
+    neighbours = neighbours_of(system, parts)
+    parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
+    driven = [*ours, *(name for name, one in third_party.items() if one.drives)]
+    parts |= {"hull_form": HullForm(), "wind_form": WindForm()} | {form_of(name): ThrusterForm() for name in driven}
+    found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
+    found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
+    return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
+
+
+def _vessel(system: System) -> Component:
+    """The only component with the parameters of a hull."""
+    vessels = [c for c in system.components.values() if _holds(c, HullParameters)]
+    if len(vessels) != 1:
+        found = ", ".join(f"{name} ({c.fmu.model_name})" for name, c in system.components.items())
+        raise ShipcosimError(
+            Problem(
+                system.file,
+                f"{len(vessels)} components with the parameters of a hull among: {found}.",
+                "The diagnosis needs a system with exactly one vessel.fmu.",
+            )
+        )
+    return vessels[0]
+
+
+def _loading(system: System, ship: str) -> list[str]:
+    """Components that put a load on the ship."""
+    sources = {c.source[0] for c in system.connections if c.target[0] == ship and c.target[1].startswith("tau_")}
+    return [name for name in system.components if name in sources]
+
+
+def _holds(component: Component, kind: type) -> bool:
+    """Whether an FMU has the parameters of a kind; one built by an earlier version may lack a few."""
+    there = [item.name in component.fmu.variables for item in fields(kind)]
+    return sum(there) >= 0.7 * len(there)
+
+
+def _thruster_kind(component: Component) -> type | None:
+    """Class of parameters of a thruster of ours; None of any other FMU, and of one that lacks what describes a unit.
+
+    An earlier version may have built that one, with numbers that only its code knows: it is learnt like anybody's.
+    """
+    kinds = [kind for kind in OWN_THRUSTERS if _holds(component, kind)]
+    return next((kind for kind in kinds if not _missing(component, kind)), None)
+
+
+def _missing(component: Component, kind: type) -> list[str]:
+    """Names of what describes a ship and an FMU does not know."""
+    names = [item.name for item in fields(kind) if item.default is MISSING]
+    return [name for name in names if name not in component.fmu.variables]
+
+
+def _left_out(system: System, ship: Component) -> Iterator[Problem]:
+    """Problems of a ship and of thrusters of ours: parameters that nothing gives, or that the FMU does not know."""
+    for component in system.components.values():
+        kinds = (HullParameters, WindParameters) if component is ship else filter(None, [_thruster_kind(component)])
+        kinds, where = list(kinds), f"{system.file}: {component.name}"
+        if names := [item.name for kind in kinds for item in fields(kind) if item.name in component.left_out]:
+            found = f"parameters left out, which have no value of their own: {', '.join(names)}."
+            yield Problem(where, found, "Give them, as a ship's parameter set does.")
+        if names := [name for kind in kinds for name in _missing(component, kind)]:
+            found = f"its FMU has no {', '.join(names)}: an earlier version built it."
+            yield Problem(where, found, "Build it again: shipcosim build.")
+
+
+def _values(component: Component, kind: type) -> Any:
+    """Parameters of a component; those that its FMU does not know change nothing."""
+    names = [item.name for item in fields(kind) if item.name in component.fmu.variables]
+    return kind(**{name: component.start_value(name) for name in names})

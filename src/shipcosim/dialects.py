@@ -1,0 +1,124 @@
+"""Dialects of text tables: what separates cells, which sign is the decimal one, what is a number or nothing."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+
+from shipcosim.errors import Problem, ShipcosimError
+
+__all__ = ["NOTHING", "WITH_UNIT", "cells_in", "decimal_of", "is_comment", "is_figure", "is_nothing", "separator_of"]
+
+
+NOTHING = frozenset(
+    ("", "n/a", "na", "#n/a", "#na", "nan", "nat", "null", "none", "nil", "-", "--", "---", "?", "*", "**", "***")
+    + ("missing", "invalid", "void", "undefined", "empty", "no data", "nodata", "no value", "n.a.", "1.#qnan", "-nan")
+    + ("#value!", "#ref!", "#div/0!", "-1.#ind", "1.#ind", "....", "off", "fault", "error", "bad", "<null>", "(null)")
+)
+"""Words that loggers write where they have no value, in lower case."""
+_NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
+_STAMP = r"[+-]?\d[\d:./\-+TZ ,]*(?:[AaPp]\.?[Mm]\.?)?"
+WITH_UNIT = r"(?P<number>[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)\s*(?P<unit>[A-Za-zµ°º%][A-Za-z0-9µ°º%/^.·-]{0,7})"
+_FIGURE = re.compile(rf"\s*(?:{_NUMBER}|{_STAMP}|{WITH_UNIT}|[+-]?(?:inf|nan))\s*", re.IGNORECASE)
+_GROUPED = re.compile(r"[+-]?\d{1,3}(?:[,.]\d{3})+")
+_SEPARATORS = ("\t", ";", "|", ",", " ")
+_SAMPLE = 60  # lines by which a layout is judged
+_MARKS = ("#", "%", "//", "!")
+_WORD = re.compile(r"[A-Za-z_][\w./-]*")
+
+
+def is_comment(line: str) -> bool:
+    """Whether a line is none of the table."""
+    return line.lstrip().startswith(_MARKS)
+
+
+def cells_in(line: str, separator: str) -> list[str]:
+    """Cells of a line, without the blanks around them.
+
+    Examples
+    --------
+    >>> cells_in('1;"a;b"; 2', ";")
+    ['1', 'a;b', '2']
+    >>> cells_in("  1   2 ", " ")
+    ['1', '2']
+    """
+    if separator == " ":
+        return line.split()
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
+
+
+def separator_of(lines: list[str]) -> str:
+    """The separator that gives rows of equal length, of figures."""
+    told = next((line for line in lines[:1] if line.lower().startswith("sep=")), None)
+    if told and len(told.strip()) == 5:
+        return told.strip()[4]
+    rows = [line for line in lines if line.strip() and not is_comment(line)]
+    sample = [rows[int(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :] if rows else []
+    scores = {}
+    for separator in _SEPARATORS:
+        cells = [cells_in(line, separator) for line in sample]
+        width, count = Counter(map(len, cells)).most_common(1)[0] if cells else (0, 0)
+        flat = [cell for row in cells for cell in row if cell]
+        good = sum(1.0 if is_figure(c) or is_nothing(c) else 0.6 if _WORD.fullmatch(c) else 0.0 for c in flat)
+        scores[separator] = (count / len(cells)) * good / max(len(flat), 1) if width > 1 else 0.0
+    best = max(scores.values())
+    return next(separator for separator in _SEPARATORS if scores[separator] > 0.9 * best) if best > 0.0 else ","
+
+
+def is_nothing(cell: str) -> bool:
+    """Whether a cell stands for no value."""
+    return cell.strip().lower() in NOTHING
+
+
+def is_figure(cell: str) -> bool:
+    """Whether a cell is a number, a date or a time.
+
+    Examples
+    --------
+    >>> [is_figure(cell) for cell in ("1,5", "-.3", "27.10.2022 08:00", "1e-3", "heading", "12 kn")]
+    [True, True, True, True, False, True]
+    """
+    return _FIGURE.fullmatch(cell) is not None
+
+
+def decimal_of(source: str, cells: list[str]) -> str | None:
+    """Decimal sign of a file whose cells are not separated by commas; None where no cell has a comma.
+
+    Parameters
+    ----------
+    source : str
+        The file, for messages.
+    cells : list of str
+        Those that are figures with a comma, each once.
+
+    Raises
+    ------
+    ShipcosimError
+        If the commas can be decimal signs or group thousands.
+    """
+    if not cells:
+        return None
+    decimal = next((cell for cell in cells if _is_decimal(cell, ",", ".")), None)
+    grouping = next((cell for cell in cells if _is_decimal(cell, ".", ",") or cell.count(",") > 1), None)
+    if decimal and grouping:
+        found = f"a comma is a decimal sign in '{decimal}' and groups thousands in '{grouping}'."
+        raise ShipcosimError(Problem(source, found, "Write all numbers alike."))
+    if decimal or grouping:
+        return "," if decimal else "."
+    cell = cells[0]
+    found = f"'{cell}' can be {cell.replace(',', '.')} (decimal comma) or {cell.replace(',', '')} (thousands)."
+    remedy = 'Say which in a channel file: file = {decimal = ","} or file = {decimal = "."}.'
+    raise ShipcosimError(Problem(source, found, remedy))
+
+
+def _is_decimal(cell, sign, other):
+    """Whether this sign can only be the decimal sign of the number in a cell."""
+    if sign not in cell or cell.count(sign) > 1:
+        return False
+    before, after = cell.lstrip("+-").split(sign)
+    if other in before:
+        return all(len(part) == 3 for part in before.split(other)[1:])
+    return other not in cell and (not _GROUPED.fullmatch(cell) or before.startswith("0"))
