@@ -11,37 +11,20 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from shipcosim.api import (
-        Log,
-        Problem,
-        Run,
-        Scenario,
-        ShipcosimError,
-        System,
-        SystemStructure,
-        calibrate,
-        capability,
-        check,
-        compare,
-        diagnose,
-        judge,
-        new,
-        parameter,
-        read,
-        read_log,
-        read_scenario,
-        read_table,
-        replay,
-        run,
-        sea_trials,
-        simulate,
-        simulate_many,
-        sweep,
-        write_ssv,
-        write_table,
-    )
+    from shipcosim.calls.arguments import read_scenario
+    from shipcosim.calls.logs import calibrate, diagnose, read_log, replay, sea_trials
+    from shipcosim.calls.runs import run, simulate
+    from shipcosim.calls.studies import sweep
+    from shipcosim.calls.systems import capability, check, compare, read
+    from shipcosim.calls.variations import simulate_many
+    from shipcosim.errors import Problem, ShipcosimError
     from shipcosim.fmi.export.builder import build_fmu
     from shipcosim.report import write_report
+    from shipcosim.results.log import Log
+    from shipcosim.results.run import Run
+    from shipcosim.scenario import Scenario, judge
+    from shipcosim.series import read_table, write_table
+    from shipcosim.ssp import System, SystemStructure, new, parameter, write_ssv
 
 __version__ = "0.1.0"
 
@@ -79,35 +62,61 @@ __all__ = [
 
 
 class CallableRoom(ModuleType):
-    """A package whose name is also that of a function of `shipcosim.api`: the package can be called as the function."""
+    """A package whose name is also that of a function of `shipcosim.calls`: it can be called as the function."""
 
     def __call__(self, *arguments: Any, **keywords: Any) -> Any:
         return self.__wrapped__(*arguments, **keywords)
 
     @property
     def __wrapped__(self) -> Any:
-        from shipcosim import api
+        name = self.__name__.rpartition(".")[2]
+        return getattr(_place_of(name), name)
 
-        return getattr(api, self.__name__.rpartition(".")[2])
+
+def _place_of(name: str) -> ModuleType:
+    """The module of a public name; each is imported when it is first asked for."""
+    if name in ("run", "simulate"):
+        from shipcosim.calls import runs as place
+    elif name in ("calibrate", "diagnose", "read_log", "replay", "sea_trials"):
+        from shipcosim.calls import logs as place
+    elif name in ("capability", "check", "compare", "read"):
+        from shipcosim.calls import systems as place
+    elif name == "sweep":
+        from shipcosim.calls import studies as place
+    elif name == "simulate_many":
+        from shipcosim.calls import variations as place
+    elif name == "read_scenario":
+        from shipcosim.calls import arguments as place
+    elif name in ("Problem", "ShipcosimError"):
+        from shipcosim import errors as place
+    elif name in ("Scenario", "judge"):
+        from shipcosim import scenario as place
+    elif name in ("read_table", "write_table"):
+        from shipcosim import series as place
+    elif name in ("System", "SystemStructure", "new", "parameter", "write_ssv"):
+        from shipcosim import ssp as place
+    elif name == "Log":
+        from shipcosim.results import log as place
+    elif name == "Run":
+        from shipcosim.results import run as place
+    elif name == "build_fmu":
+        from shipcosim.fmi.export import builder as place
+    else:
+        from shipcosim import report as place
+    return place
 
 
 def __getattr__(name):
     if name not in __all__:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
-    if name == "build_fmu":
-        from shipcosim.fmi.export.builder import build_fmu as found
-    elif name == "capability":
+    if name == "capability":
         import shipcosim.capability as found
     elif name == "diagnose":
         import shipcosim.diagnose as found
     elif name == "sweep":
         import shipcosim.sweep as found
-    elif name == "write_report":
-        from shipcosim.report import write_report as found
     else:
-        from shipcosim import api
-
-        found = getattr(api, name)
+        found = getattr(_place_of(name), name)
     globals()[name] = found
     return found
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -13,8 +14,11 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 
 LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
-_OF_SHIP = re.compile(r"^\s*\[{0,2}(particulars|thrusters)\b", re.MULTILINE)
-_OF_STUDY = re.compile(r"^\s*(\[{1,2}\s*(factor|quantity|sample)\b|(extends|scenario)\s*=)", re.MULTILINE)
+OF_SHIP = {"particulars", "thrusters"}
+OF_STUDY = {"factor", "quantity", "sample", "extends", "scenario"}
+OF_CAUSE = {"cause", "sentence"}
+OF_SCENARIO = {"system", "stop_time", "step_size", "events", "expect", "set"}
+"""Keys by which a .toml is told from those of other kinds."""
 OSP_SCENARIOS = (".json", ".yaml", ".yml")
 TABLES = (".csv", ".csv.gz", ".nc", ".parquet")
 LOGS = (".txt", ".dat", ".tsv", ".log", ".xlsx", ".txt.gz", ".dat.gz", ".tsv.gz", ".log.gz")
@@ -26,8 +30,8 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     Parameters
     ----------
     file : str
-        A scenario or a study (.toml; scenarios of OSP .json, .yaml), a table (.csv, .csv.gz, .nc, .parquet), or a
-        file of a system (see `shipcosim.ssp.check_file`).
+        A scenario, study, ship, cause or channel file (.toml), a scenario of OSP (.json, .yaml), a table (.csv,
+        .csv.gz, .nc, .parquet), or a file of a system (see `shipcosim.ssp.check_file`).
     channels : path, optional
         Channel file of tables that are measured data.
     hosts : iterable of str
@@ -51,7 +55,7 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
         if _is_ship(path):
             return check_ship_file(path)
         if path.suffix == ".toml":
-            return check_study_file(path) if is_study(path) else check_scenario_file(path)
+            return _CHECKS[kind_of_toml(path)](path)
         if path.suffix.lower() in OSP_SCENARIOS:
             return check_osp_scenario(path)
         if path.name.lower().endswith(LOGS):
@@ -88,20 +92,48 @@ def _is_ship(path: Path) -> bool:
     """Whether a path is a ship file, which has particulars or thrusters, or a folder with one."""
     if path.is_dir() or path.name == "ship.toml":
         return path.name == "ship.toml" or (path / "ship.toml").is_file()
-    if path.suffix != ".toml":
-        return False
-    try:
-        return _OF_SHIP.search(path.read_text(encoding="utf-8-sig")) is not None
-    except (OSError, ValueError):
-        return False
+    return path.suffix == ".toml" and kind_of_toml(path) == "ship"
 
 
-def is_study(path: Path) -> bool:
-    """Whether a file is a study: a .toml that has quantities, factors or samples, or names or extends a scenario."""
+def kind_of_toml(path: Path) -> str:
+    """What a .toml describes, by its keys: ``"ship"``, ``"study"``, ``"cause"``, ``"channels"`` or ``"scenario"``."""
+    from shipcosim.diagnose.log.roles import role_of
+
     try:
-        return path.suffix == ".toml" and _OF_STUDY.search(path.read_text(encoding="utf-8-sig")) is not None
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError):
-        return False
+        return "scenario"  # its reader says what is wrong with the file
+    try:
+        keys = set(tomllib.loads(text))
+    except (ValueError, RecursionError):
+        keys = _top_keys(text)  # faulty TOML: the reader of its kind says where
+    for kind, own in (("ship", OF_SHIP), ("study", OF_STUDY), ("cause", OF_CAUSE), ("scenario", OF_SCENARIO)):
+        if keys & own:
+            return kind
+    return "channels" if any(role_of(key) for key in keys) else "scenario"
+
+
+def _top_keys(text: str) -> set[str]:
+    """Keys of the outermost table of a text that may be no TOML: those before the first table, and the tables."""
+    tables = re.findall(r"^\s*\[{1,2}\s*\"?(\w+)", text, re.MULTILINE)
+    head = re.split(r"^\s*\[", text, maxsplit=1, flags=re.MULTILINE)[0]
+    return {*tables, *re.findall(r"^\s*(\w+)\s*=", head, re.MULTILINE)}
+
+
+def check_cause_file(path: Path) -> list[Problem]:
+    """Problems of the file of a cause."""
+    from shipcosim.diagnose.hypotheses.catalogue import read_cause
+
+    read_cause(path)
+    return []
+
+
+def check_channel_file(path: Path) -> list[Problem]:
+    """Problems of a channel file, in itself."""
+    from shipcosim.diagnose.log.channels import read_channels
+
+    read_channels(path)
+    return []
 
 
 def check_study_file(path: Path) -> list[Problem]:
@@ -117,7 +149,9 @@ def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem]
     from shipcosim.scenario import check_files, read_scenario
     from shipcosim.ssp.portability.check import check_for
 
-    if (path.suffix.lower() not in (".toml", *library.SYSTEMS) and not path.is_dir()) or is_study(path):
+    is_system = path.suffix.lower() in library.SYSTEMS or path.is_dir()
+    is_scenario = path.suffix.lower() == ".toml" and kind_of_toml(path) == "scenario"
+    if not (is_system or is_scenario):
         return None
     system, swapped = file, {}
     if path.suffix == ".toml":
@@ -140,9 +174,6 @@ def variables_in(file: str) -> list[tuple[str, ...]]:
         (v.name, v.causality, v.type, v.unit or "", "" if v.start is None else text_of(v.start), v.description)
         for v in (fmu.variables.values() if fmu else ())
     ]
-
-
-VARIABLE_KEYS = ("name", "causality", "type", "unit", "start", "description")
 
 
 def check_scenario_file(path: Path) -> list[Problem]:
@@ -248,3 +279,12 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
         remedy = "`shipcosim build` builds them."
         problems += [Problem(str(folder), "There are no FMUs yet.", remedy, "remark") for folder in missing]
     return problems
+
+
+_CHECKS = {
+    "ship": check_ship_file,
+    "study": check_study_file,
+    "cause": check_cause_file,
+    "channels": check_channel_file,
+    "scenario": check_scenario_file,
+}

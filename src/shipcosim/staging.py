@@ -12,20 +12,49 @@ import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
-from contextvars import ContextVar
 from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["REPLACING", "set_aside", "set_file_aside", "staged"]
+__all__ = ["check_targets", "set_aside", "set_file_aside", "staged"]
 
-REPLACING: ContextVar[bool] = ContextVar("replacing", default=False)
-"""Whether earlier results are replaced: of the command that is running, as --force says."""
+
+def check_targets(folder: Path | None, file: Path | None = None) -> None:
+    """Whether results can be written, as far as that can be known before a long run.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        For the results; it need not exist yet.
+    file : Path, optional
+        File for the state at the end.
+
+    Raises
+    ------
+    ShipcosimError
+        If they cannot.
+    """
+    found = [] if folder is None else _complaints(folder)
+    problems = [Problem(str(folder), text, "Choose another folder (--out).") for text in found]
+    if file is not None:
+        found = ["This is a folder."] if file.is_dir() else _complaints(file.parent, must_exist=True)
+        problems += [Problem(str(file), text, "Choose another file for the state (--store).") for text in found]
+    if problems:
+        raise ShipcosimError(problems)
+
+
+def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
+    there = next(parent for parent in (Path(folder), *Path(folder).absolute().parents) if parent.exists())
+    if not there.is_dir():
+        return [f"{there} is a file, not a folder."]
+    if must_exist and there != Path(folder):
+        return ["There is no such folder to store the state in."]
+    return [] if os.access(there, os.W_OK | os.X_OK) else [f"There is no permission to write in {there}."]
 
 
 @contextmanager
-def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool | None = None) -> Iterator[Path]:
+def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -> Iterator[Path]:
     """A folder whose files move into `folder` at the end, unless something fails.
 
     Parameters
@@ -34,8 +63,8 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool | None = N
         Made if needed.
     replaced : iterable of str
         Names of files that an earlier run may have left, which are no longer true.
-    force : bool, optional
-        Of Python calls: whether earlier results are replaced. Commands leave it to `REPLACING`.
+    force : bool
+        Whether earlier results are replaced.
     """
     was_there = folder.exists()
     try:
@@ -47,7 +76,7 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool | None = N
             except ShipcosimError as error:
                 raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
             written = [file.name for file in stage.iterdir()]
-            set_aside(folder, {*written, *replaced}, force)
+            set_aside(folder, {*written, *replaced}, force=force)
             for name in written:
                 os.replace(stage / name, folder / name)
         for name in {*replaced} - {*written}:
@@ -59,11 +88,11 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool | None = N
         if not isinstance(error, OSError):
             raise
         raise ShipcosimError(
-            Problem(str(folder), f"Results cannot be written here: {error.strerror}.", _elsewhere(force))
+            Problem(str(folder), f"Results cannot be written here: {error.strerror}.", "Choose another folder (--out).")
         ) from error
 
 
-def set_aside(folder: Path, names: Iterable[str], force: bool | None = None) -> None:
+def set_aside(folder: Path, names: Iterable[str], *, force: bool = False) -> None:
     """Move what there is of earlier results into a numbered folder beside theirs, and say so, unless they are replaced.
 
     Parameters
@@ -72,25 +101,25 @@ def set_aside(folder: Path, names: Iterable[str], force: bool | None = None) -> 
         Of the results: those of ``results/calm`` go to ``results/calm-1``, then ``results/calm-2``, and so on.
     names : iterable of str
         Of its files and folders that will be written again.
-    force : bool, optional
+    force : bool
         As for `staged`.
     """
     there = sorted(name for name in names if (folder / name).exists())
-    if not there or (REPLACING.get() if force is None else force):
+    if not there or force:
         return
     aside = _numbered(folder.resolve())
     aside.mkdir()
     for name in there:
         os.replace(folder / name, aside / name)
-    _say(aside, "--force" if force is None else "force=True")
+    _say(aside)
 
 
-def set_file_aside(path: Path) -> None:
+def set_file_aside(path: Path, *, force: bool = False) -> None:
     """The same with a single file: ``state.bin`` becomes ``state-1.bin``."""
-    if path.is_file() and not REPLACING.get():
+    if path.is_file() and not force:
         aside = _numbered(path.resolve())
         os.replace(path, aside)
-        _say(aside, "--force")
+        _say(aside)
 
 
 def _numbered(path: Path) -> Path:
@@ -102,14 +131,10 @@ def _numbered(path: Path) -> Path:
     return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
 
 
-def _say(aside: Path, how: str) -> None:
+def _say(aside: Path) -> None:
     here = Path.cwd()
     shown = aside.relative_to(here) if aside.is_relative_to(here) else aside
-    print(f"Earlier results are kept in {shown} ({how} replaces them).", file=sys.stderr)
-
-
-def _elsewhere(force: bool | None) -> str:
-    return "Choose another --out." if force is None else "Choose another folder."
+    print(f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr)
 
 
 def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:

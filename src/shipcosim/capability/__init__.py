@@ -1,6 +1,6 @@
 """The static DP capability of a ship: the weather of DNV-ST-0111 against her thrusters.
 
-The room can be called: ``shipcosim.capability(system)`` is the function of this name in `shipcosim.api`.
+The room can be called: ``shipcosim.capability(system)`` is the function of this name in `shipcosim.calls`.
 """
 
 import sys

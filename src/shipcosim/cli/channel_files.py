@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, check_inputs
+from shipcosim.calls.arguments import SYSTEM_OF_LOGS, Reading, check_inputs
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -49,7 +49,6 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     ShipcosimError
         If the log or the system cannot be read.
     """
-    from shipcosim.cli.requests import system_of
     from shipcosim.diagnose.log.channels import ChannelFile, read_channels
     from shipcosim.diagnose.log.files.form import Form
     from shipcosim.diagnose.log.names.guesses import SURE, Guess
@@ -62,7 +61,7 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     check_inputs([log], form)
     given = read_channels(form).form if form is not None else Form()
     columns = columns_of(log, given)
-    ship = ship_model_of(system_of(system or DEFAULT_SYSTEM, option="--system"))
+    ship = ship_model_of(Reading().system(system or SYSTEM_OF_LOGS, "system"))
     thrusters = {name: ship.drives(name) for name in ship.thrusters}
     proposal = propose(columns, thrusters, given)
     if own := channels_of_run(list(columns.values), ship.vessel, ship.thrusters):

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,10 +16,9 @@ from rich.text import Text
 from shipcosim.errors import Problem, worth_showing
 
 if TYPE_CHECKING:
-    import xarray
-
     from shipcosim.report.theme.views import Outcome
-    from shipcosim.scenario import Verdict
+    from shipcosim.results.check import CheckedFiles
+    from shipcosim.results.run import Run
 
 WIDEST = 40  # columns that a cell makes its column; longer ones stand out of it
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
@@ -72,24 +70,23 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
         yield report
 
 
-def print_summary(
-    table: xarray.Dataset, verdicts: Sequence[Verdict], page: Path | None, *, to_stderr: bool = False
-) -> None:
+def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
     from shipcosim.report import digest
-    from shipcosim.report.run.predictions import make_predictions, summarise, texts
+    from shipcosim.report.run.predictions import summarise, texts
 
     console = Console(stderr=to_stderr, highlight=False, soft_wrap=True)
-    outcome, remarks, judged = digest(table, verdicts)
+    outcome, remarks, judged = digest(result.table, result.expectations)
     if judged:
         console.print(_expectations(judged))
-    if predicted := texts(summarise(make_predictions(table))):
+    if predicted := texts(summarise(result.predictions)):
         console.print(_listed(("predicted", "position", "heading", ""), predicted))
+    before = {str(remark) for remark in result.remarks}  # these were printed before the run
     for remark in remarks:
-        console.print(Text(remark, style="yellow"))
+        if remark not in before:
+            console.print(Text(remark, style="yellow"))
     console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
-    if page is not None:
-        console.print(f"Page: {shown_path(page)}", markup=False)
+    console.print(f"Page: {shown_path(page)}", markup=False)
 
 
 def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: Path) -> None:
@@ -153,18 +150,13 @@ def print_estimates(rows: Iterable[Sequence[str]]) -> None:
         console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
 
 
-def print_report(reports: Mapping[str, Sequence[Problem]], as_json: bool, variables: Mapping[str, object]) -> None:
-    """Findings on files; `reports` maps a file to its problems, `variables` an FMU to what its variables are."""
+def print_report(checked: CheckedFiles, as_json: bool) -> None:
+    """Findings on files."""
     if as_json:
-        listed = [
-            {"file": file, "problems": [asdict(p) for p in problems]}
-            | ({"variables": variables[file]} if file in variables else {})
-            for file, problems in reports.items()
-        ]
-        print(json.dumps(listed, indent=2, ensure_ascii=False))
+        print(json.dumps(checked.as_json(), indent=2, ensure_ascii=False))
         return
     console = Console(highlight=False, soft_wrap=True)
-    for file, problems in reports.items():
+    for file, problems in checked.files.items():
         for problem in worth_showing(problems):
             console.print(_block(problem))
         errors = sum(problem.severity == "error" for problem in problems)

@@ -1,69 +1,15 @@
-"""The command `diagnose` with several logs of one ship: what they say together, and each."""
+"""The command `diagnose` with several logs of one ship: what they say together, and each, on the terminal."""
 
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, FILES, check_inputs, table
-from shipcosim.cli.progress import LAST_STEP, shown_progress
+from shipcosim.cli.diagnosis import table
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.joint_pipeline import JointDiagnosis
-
-
-def diagnose_logs(
-    logs: Sequence[Path],
-    folder: Path,
-    *,
-    system: str | None = None,
-    channels: str | os.PathLike | None = None,
-    effects: str | os.PathLike | None = None,
-    reference: str | os.PathLike | None = None,
-) -> JointDiagnosis:
-    """Diagnose several logs of one ship together, and write all that there is to say of them.
-
-    Parameters
-    ----------
-    logs : sequence of Path
-    folder : Path
-        Gets diagnosis.json and report.html, and where a common cause in the model was named extended.ssp and
-        extended.ssv.
-    system, channels, effects, reference : optional
-        As for `diagnose_log`.
-
-    Returns
-    -------
-    JointDiagnosis
-
-    Raises
-    ------
-    ShipcosimError
-        Input that cannot be used; nothing is written then.
-    """
-    from shipcosim.cli.requests import system_of
-    from shipcosim.diagnose.joint_pipeline import diagnose_jointly, steps_of
-    from shipcosim.diagnose.reference.reference import read_reference
-    from shipcosim.report.joint.page import write_joint
-    from shipcosim.series import write_json
-    from shipcosim.staging import staged
-
-    check_inputs(logs, channels, effects)
-    known = None if reference is None else read_reference(reference)
-    ship = system_of(system or DEFAULT_SYSTEM, option="--system")
-    with shown_progress(steps_of(logs)) as show, staged(folder, FILES) as stage:
-        found = diagnose_jointly(list(logs), ship, channels, effects, show, out=stage, reference=known)
-        show(LAST_STEP)
-        write_json(found.as_json(), stage / "diagnosis.json")
-        write_joint(found, stage / "report.html")
-    if found.extension is None:
-        return found
-    at_home = {kind: folder / f"extended.{kind}" for kind in ("ssp", "ssv")}
-    return replace(found, extension=replace(found.extension, **at_home))
+    from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 
 
 def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:

@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import typer
 
 from shipcosim.cli.start.completion import ENGINES, names_of, words_of
-from shipcosim.staging import REPLACING
 
 
 def _time(given: str) -> float:
@@ -23,12 +22,6 @@ def _time(given: str) -> float:
 def time_option(name: str, meaning: str) -> Any:
     """An option that takes a time: seconds, or an amount such as '10 min'."""
     return typer.Option(name, parser=_time, metavar="TIME", help=meaning)
-
-
-def _replacing(force: bool) -> bool:
-    """Tell what writes results, at the end of a command, whether earlier ones are replaced."""
-    REPLACING.set(force)
-    return force
 
 
 Parameters = Annotated[
@@ -103,7 +96,7 @@ Engine = Annotated[
 ]
 Force = Annotated[
     bool,
-    typer.Option("--force", callback=_replacing, help="Replace earlier results instead of keeping them in DIR-1, ..."),
+    typer.Option("--force", help="Replace earlier results instead of keeping them in DIR-1, ..."),
 ]
 Until = Annotated[float | None, time_option("--until", "End here, before the stop time; in s, or such as '10 min'.")]
 Store = Annotated[

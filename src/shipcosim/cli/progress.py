@@ -6,7 +6,8 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
-LAST_STEP = "writing the page"
+from shipcosim.calls.logs import WRITING as LAST_STEP
+
 LAST_TIME = 0.5
 """How long the last step typically takes. [s]"""
 CONFIDENCE = 0.1

@@ -51,8 +51,8 @@ def repeat(
     if "system_sha256" not in facts:
         raise ShipcosimError(Problem("repeat", "The table does not say how it came about.", "Give a result.nc."))
     if not isinstance(system, System):
-        swapped = {name: Path(file) for name, file in json.loads(facts.get("swapped", "{}")).items()}
-        folders = fmus or [Path("build") / "fmus"]
+        folders = [Path(folder) for folder in fmus or [Path("build") / "fmus"]]
+        swapped = {name: _in(folders, file) for name, file in json.loads(facts.get("swapped", "{}")).items()}
         system = read_system(system or Path("ssp") / facts["system"], fmus=folders, components=swapped)
     if problems := list(_differences(facts, system, inputs)):
         raise ShipcosimError(problems)
@@ -64,6 +64,11 @@ def repeat(
     options = RunOptions(engine=engine, inputs=inputs, order=order, start_time=start_time, until=until)
     again = run(with_values(system, starts, "repeat"), scenario, options)
     return again.assign_attrs(scenario=facts["scenario"])
+
+
+def _in(folders, file):
+    """Path of an FMU in the first of some folders that has it; its name alone where none has."""
+    return next((folder / file for folder in folders if (folder / file).is_file()), Path(file))
 
 
 def _plain(about):

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass, field
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.errors import Problem, worth_showing
 from shipcosim.results.shown import Result
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from shipcosim.report.notebook.card import Card
 
 __all__ = ["CheckedFiles"]
+
+VARIABLE_KEYS = ("name", "causality", "type", "unit", "start", "description")
+"""What the texts of a variable are."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -27,10 +30,13 @@ class CheckedFiles(Result):
         What was found of each file: errors, and remarks on what stops nothing.
     variables : mapping of str to tuple
         Of an FMU a row a variable: name, causality, type, unit, start, description.
+    estimates : mapping of str to tuple
+        Of a ship file a row a number that is estimated: number, value, tolerance, source.
     """
 
     files: Mapping[str, tuple[Problem, ...]]
     variables: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
+    estimates: Mapping[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -41,6 +47,16 @@ class CheckedFiles(Result):
     def passed(self) -> bool:
         """Whether no file has an error."""
         return not any(problem.severity == "error" for problem in self.problems)
+
+    def as_json(self) -> list[dict[str, Any]]:
+        """What `shipcosim check --json` prints: an entry a file, with its problems and an FMU's variables."""
+        listed = []
+        for file, problems in self.files.items():
+            entry: dict[str, Any] = {"file": file, "problems": [asdict(problem) for problem in problems]}
+            if file in self.variables:
+                entry["variables"] = [dict(zip(VARIABLE_KEYS, row, strict=True)) for row in self.variables[file]]
+            listed.append(entry)
+        return listed
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row a problem: file, severity, where, found, remedy."""

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Run"]
 
+PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
+"""Files of a run that did not get to its end; a complete one takes them away."""
+PREDICTIONS = "predictions.csv"
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Run(LikeTable, Result):
@@ -151,15 +155,37 @@ class Run(LikeTable, Result):
             If they cannot be written.
         """
         from shipcosim.report.run.predictions import write_predictions
+
+        with staged(Path(folder), (*PARTIAL, PREDICTIONS), force=force) as stage:
+            self._write(stage, "result", "report.html")
+            if len(predictions := self.predictions):
+                write_predictions(predictions, stage / PREDICTIONS)
+        return Path(folder)
+
+    def save_part(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write result-partial.nc, .csv and .html of a run that did not get to its end; returns the folder.
+
+        Parameters and errors as for `save`.
+        """
+        with staged(Path(folder), force=force) as stage:
+            self._write(stage, "result-partial", "result-partial.html")
+        return Path(folder)
+
+    def _write(self, stage: Path, stem: str, page: str) -> None:
+        """Write table and page into a folder that is there."""
         from shipcosim.series import write_table
 
-        with staged(Path(folder), ["predictions.csv"], force=force) as stage:
-            for name in ("result.nc", "result.csv"):
-                write_table(self.table, stage / name)
-            if len(predictions := self.predictions):
-                write_predictions(predictions, stage / "predictions.csv")
-            self.page().save(stage / "report.html")
-        return Path(folder)
+        for suffix in (".nc", ".csv"):
+            write_table(self.table, stage / f"{stem}{suffix}")
+        self.page().save(stage / page)
+
+    def claims_not_reached(self) -> list[str]:
+        """What was expected later than the run went, each as a sentence with the units that people read."""
+        from shipcosim.report.run.expectations import claims
+        from shipcosim.scenario import units_of, with_numbers
+
+        late = self.scenario.model_copy(update={"expect": list(self.not_judged)})
+        return claims(with_numbers(late, units_of(self.system)).expect, self.table)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The table as a DataFrame over time; units are in ``.table[name].attrs["units"]``."""
@@ -170,12 +196,9 @@ class Run(LikeTable, Result):
 
         found, components = outcome(self.table, self.expectations), {n.rpartition(".")[0] for n in map(str, self.table)}
         size = f"{self.table.sizes['time']} rows of {len(self.table)} signals of {len(components)} components"
-        late = f" {len(self.not_judged)} expectations lie beyond its end." if self.not_judged else ""
-        return f"<Run of {self.name!r}: {found.word}. {found.sentence}{late} {size}>"
+        return f"<Run of {self.name!r}: {found.word}. {found.sentence} {size}>"
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.run_card import run_card
 
-        return run_card(
-            self.table, self.scenario, self.system, self.expectations, late=self.not_judged, remarks=self.remarks
-        )
+        return run_card(self.table, self.scenario, self.system, self.expectations)

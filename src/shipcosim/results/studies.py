@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import io
+import math
 import os
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,14 +14,16 @@ from shipcosim.cosim.compare import Comparison
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
+from shipcosim.errors import Problem
 from shipcosim.results.shown import HtmlPage, Picture, Result, page_of
-from shipcosim.series import write_file, write_table
+from shipcosim.series import write_file, write_json, write_table
 from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from shipcosim.diagnose.validation.tracks import Tracks
     from shipcosim.report.notebook.card import Card
 
 __all__ = ["Calibration", "CapabilityOfShip", "EngineComparison", "Replay", "SeaTrials"]
@@ -31,6 +34,13 @@ class EngineComparison(Result, Comparison):
     """What `shipcosim.compare` gives back. To start with: ``.agree``, ``.signals``, ``.left_out``."""
 
     name: str = ""
+    flaws: tuple[Problem, ...] = ()
+    """Where the system breaks a standard though it can mean one thing only, and remarks on events of OSP."""
+
+    def as_json(self) -> dict[str, Any]:
+        """The comparison, as `shipcosim compare --json` prints it; numbers that JSON does not know are texts."""
+        values = {one.name: getattr(self, one.name) for one in fields(Comparison)}
+        return _plain(asdict(Comparison(**values)) | {"agree": self.agree})
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row a signal, the largest difference first: of each engine from ours, and of half the step."""
@@ -82,6 +92,26 @@ class Replay(Result, LogReplay):
 
         return replay_card(self, self.name, self.track().svg)
 
+    def write(self, stage: Path) -> None:
+        """Write the files of `save` into a folder that is there."""
+        self.to_pandas().reset_index().to_csv(stage / "errors.csv", index=False)
+        series_of(self.tracks).to_netcdf(stage / "replay.nc", engine="h5netcdf")
+        self.page().save(stage / "report.html")
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write report.html, errors.csv and replay.nc; returns the folder.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        force : bool
+            Replace files of these names there, instead of keeping them in a numbered folder beside it.
+        """
+        with staged(Path(folder), force=force) as stage:
+            self.write(stage)
+        return Path(folder)
+
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Calibration(Result, CalibratedShip):
@@ -104,8 +134,12 @@ class Calibration(Result, CalibratedShip):
             Replace files of these names there, instead of keeping them in a numbered folder beside it.
         """
         with staged(Path(folder), force=force) as stage:
-            self.page().save(stage / "report.html")
+            self.write(stage)
         return Path(folder)
+
+    def write(self, stage: Path) -> None:
+        """Write the page into a folder that is there."""
+        self.page().save(stage / "report.html")
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import calibration_card
@@ -171,15 +205,42 @@ class SeaTrials(Result, SeaTrialStudy):
 
     name: str = "log"
     system: str = ""
+    orders: bool = False
+
+    def write(self, stage: Path) -> None:
+        """Write sea_trials.json and report.html into a folder that is there."""
+        write_json(self.as_json(), stage / "sea_trials.json")
+        self.page().save(stage / "report.html")
 
     def page(self) -> HtmlPage:
         """The page of the trials, as `shipcosim sea-trials` writes it."""
         from shipcosim.report.sea_trials.page import write_sea_trials
 
-        facts = {"Log": self.name, "System": self.system}
+        thrusters = "orders" if self.orders else "feedback"
+        facts = {"Log": self.name, "System": self.system, "Thrusters": thrusters}
         return page_of(f"Sea trials of {self.name}", lambda path: write_sea_trials(self, path, facts))
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import sea_trials_card
 
         return sea_trials_card(self, self.name)
+
+
+def series_of(tracks: Tracks) -> xarray.Dataset:
+    """All that a replay draws in one table: measured over time, predicted over the time since each start."""
+    import xarray
+
+    parts = [tracks.measured.rename({name: f"measured_{name}" for name in tracks.measured.data_vars})]
+    for name, predicted in tracks.predicted.items():
+        own = {variable: f"{name}_{variable}" for variable in predicted.data_vars}
+        parts.append(predicted.rename(own | {"time": "since_start"}))
+    return xarray.merge(parts, compat="no_conflicts", join="outer")
+
+
+def _plain(value: Any) -> Any:
+    """The same with numbers that JSON does not know as texts."""
+    if isinstance(value, dict):
+        return {name: _plain(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part) for part in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

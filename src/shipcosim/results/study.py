@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.results.shown import HtmlPage, Result, page_of
 from shipcosim.sweep import Swept
 
@@ -24,6 +23,8 @@ __all__ = ["StudyResult"]
 class StudyResult(Result, Swept):
     """What `shipcosim.sweep` gives back. To start with: ``.runs``, ``.summary``, ``.run(0)``."""
 
+    command: str
+    """What a user types to make this study."""
     simulate: Callable[[int], Run] = field(kw_only=True)
 
     def run(self, number: int) -> Run:
@@ -39,9 +40,6 @@ class StudyResult(Result, Swept):
         ShipcosimError
             If there is no such run, or it fails.
         """
-        if not 0 <= number < len(self.plan):
-            remedy = f"Runs are numbered from 0 to {len(self.plan) - 1}."
-            raise ShipcosimError(Problem(self.plan.study.name, f"There is no run {number}.", remedy))
         return self.simulate(number)
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -62,4 +60,4 @@ class StudyResult(Result, Swept):
     def _tables(self) -> StudyTables:
         from shipcosim.report.study import tables_of
 
-        return tables_of(self, f"shipcosim sweep {self.plan.study.name}")
+        return tables_of(self, self.command)

@@ -2,7 +2,7 @@
 
 `read_study` reads a study file, `plan_of` lays out its runs and checks them with the system, `run_study` runs those
 that are not on disk yet. The room can be called: ``shipcosim.sweep(study)`` is the function of this name in
-`shipcosim.api`.
+`shipcosim.calls`.
 """
 
 import sys

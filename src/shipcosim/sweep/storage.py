@@ -52,10 +52,8 @@ class Store:
         Made if needed. What is there of the same plan is kept, of another one set aside.
     plan : Plan
     engine : str
-    force : bool, optional
-        Whether what is there is replaced; commands leave it to `shipcosim.staging.REPLACING`.
-    again : bool
-        Whether runs that are done are done again.
+    force : bool
+        Do runs that are done again, and replace what is there.
 
     Attributes
     ----------
@@ -63,7 +61,7 @@ class Store:
         Which runs are done.
     """
 
-    def __init__(self, folder: Path, plan: Plan, engine: str, force: bool | None = None, again: bool = False):
+    def __init__(self, folder: Path, plan: Plan, engine: str, force: bool = False):
         self.folder, self._plan, self._engine = Path(folder), plan, engine
         self._digest = plan.digest(engine)
         self._rows: list[Row] = []
@@ -73,10 +71,10 @@ class Store:
         with _said(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             about = self._about_there()
-            if about is not None and about.get("plan") == self._digest and not again:
+            if about is not None and about.get("plan") == self._digest and not force:
                 self._take_up()
             else:
-                set_aside(self.folder, [*FILES, *self._pages()], force)
+                set_aside(self.folder, [*FILES, *self._pages()], force=force)
                 self._clear()
                 self.write_about()
             self._parts.mkdir(exist_ok=True)

@@ -60,8 +60,7 @@ def run_study(
     workers: int | None = None,
     at_most: int | None = None,
     progress: Progress | None = None,
-    force: bool | None = None,
-    again: bool = False,
+    force: bool = False,
 ) -> Swept:
     """Run what is not done of a study.
 
@@ -80,7 +79,7 @@ def run_study(
         Runs that are done now.
     progress : callable, optional
         Called with (runs done, runs in all).
-    force, again : bool
+    force : bool
         As of `Store`.
 
     Raises
@@ -93,7 +92,7 @@ def run_study(
     check_installed()
     if engine not in ENGINES:
         raise ShipcosimError(Problem("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'."))
-    store = Store(folder, plan, engine, force, again)
+    store = Store(folder, plan, engine, force)
     search = Search(plan) if plan.study.tune else None
     _run(
         plan, _parts(plan, store, search), store, lambda: _workers(plan, engine, scheduler, workers), at_most, progress

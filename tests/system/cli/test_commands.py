@@ -240,7 +240,7 @@ def test_fault_of_the_program_is_no_traceback_unless_asked_for(call, project, mo
     def fault(*_, **__):
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr("shipcosim.scenario.read_scenario", fault)
+    monkeypatch.setattr("shipcosim.calls.runs.read_scenario", fault)
     plain, debug = call("run", "fill"), call("run", "fill", "--debug")
     assert plain.code == debug.code == 2
     assert "ZeroDivisionError" in plain.err and "Traceback" not in plain.err and "--debug" in plain.err

@@ -10,6 +10,7 @@ import pytest
 from pydantic import BaseModel, ConfigDict, Field
 from typer.testing import CliRunner
 
+import shipcosim.calls.logs as calls
 import shipcosim.cli.diagnosis as command
 from shipcosim.cli import app
 from shipcosim.cli.progress import LAST_STEP
@@ -144,16 +145,16 @@ def ran(like_the_root):
 
     def run(name, case, *options):
         case.save(like_the_root / f"{name}.csv")
-        diagnoses, diagnose_log = [], command.diagnose_log
+        diagnoses, diagnose = [], calls.diagnose
 
         def kept(*arguments, **more):
-            diagnoses.append(diagnose_log(*arguments, **more))
+            diagnoses.append(diagnose(*arguments, **more))
             return diagnoses[-1]
 
         with pytest.MonkeyPatch.context() as patch:
             patch.chdir(like_the_root)
             patch.setenv("COLUMNS", "200")
-            patch.setattr(command, "diagnose_log", kept)
+            patch.setattr(calls, "diagnose", kept)
             result = CliRunner().invoke(app, ["diagnose", f"{name}.csv", *options], prog_name="shipcosim")
         assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
         out = like_the_root / "results" / name
@@ -266,7 +267,7 @@ def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_r
 
     monkeypatch.chdir(like_the_root)
     monkeypatch.setattr("shipcosim.diagnose.pipeline.diagnose", known)
-    monkeypatch.setattr("shipcosim.report.diagnosis.page.write_diagnosis", cut_off)
+    monkeypatch.setattr("shipcosim.report.diagnosis.page.render", cut_off)
     before = {path.name: path.read_bytes() for path in lossy.folder.iterdir()}
     done = call("diagnose", "lossy.csv")
     assert done.code == (130 if error is KeyboardInterrupt else 2) and "Traceback" not in done.err

@@ -78,8 +78,8 @@ def not_shipped():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--set", "vessel.x_start=nan"], ["--set: vessel.x_start:", "nan is not a finite number", "in m."]),
-        (["--set", "vessel.mass=inf"], ["--set: vessel.mass:", "inf is not a finite number", "in kg."]),
+        (["--set", "vessel.x_start=nan"], ["set (--set): vessel.x_start:", "nan is not a finite number", "in m."]),
+        (["--set", "vessel.mass=inf"], ["set (--set): vessel.mass:", "inf is not a finite number", "in kg."]),
         (["--set", "vessel.mas=1"], ["vessel has no variable 'mas'", "Did you mean 'mass'?"]),
         (["--set", "vesel.mass=1"], ["There is no component or connector 'vesel'", "Did you mean 'vessel'?"]),
         (["--set", "mass=1"], ["There is no component or connector 'mass'", "There is: allocator, "]),
@@ -123,8 +123,8 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
         (["simulate", "absent.ssp"], ["absent.ssp:", "There is no such system. There is: ", "gunnerus_dp"]),
         (["simulate", SHORT], ["This is no system.", f"`shipcosim run {SHORT}`"]),
         (["simulate", "scenarios"], ["scenarios/SystemStructure.ssd:", "No such file"]),
-        ([*OPEN[:-1], "0"], ["--step-size:", "greater than 0"]),
-        ([*OPEN[:-1], "-0.05"], ["--step-size:", "greater than 0"]),
+        ([*OPEN[:-1], "0"], ["step_size (--step-size):", "greater than 0"]),
+        ([*OPEN[:-1], "-0.05"], ["step_size (--step-size):", "greater than 0"]),
         ([*OPEN[:-1], "0.3"], ["stop_time = 1 s is no multiple of the step size 0.3 s. The nearest would be 0.9 s."]),
         ([*OPEN[:-1], "1e-12"], ["1e+12 steps", "larger steps"]),
         ([*OPEN, "--start-time", "nan"], ["'--start-time'", "Give seconds, or such as"]),
@@ -468,18 +468,19 @@ def give_up_rights():
 
 LIMITED_WRITING = """
 import resource
-from shipcosim import {module}
-write = {module}.{function}
+import shipcosim.{module} as module
+write = module.{function}
 def limited(*arguments, **options):
     resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
     return write(*arguments, **options)
-{module}.{function} = limited
+module.{function} = limited
 """
 
 
 @needs_posix
 @pytest.mark.parametrize(
-    ("module", "function", "file"), [("series", "write_table", "result.nc"), ("report", "write_report", "report.html")]
+    ("module", "function", "file"),
+    [("series", "write_table", "result.nc"), ("results.shown", "write_file", "report.html")],
 )
 def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(gunnerus, module, function, file):
     before = old_results()
@@ -515,9 +516,8 @@ def test_folder_without_permission_is_said_before_the_run(gunnerus):
     finally:
         Path("results/short").chmod(0o755)
     assert done.returncode == 2
-    assert (
-        "error: results/short:\nThere is no permission to write in results/short. Choose another --out." in done.stderr
-    )
+    said = "error: results/short:\nThere is no permission to write in results/short. Choose another folder (--out)."
+    assert said in done.stderr
     assert results() == before
 
 

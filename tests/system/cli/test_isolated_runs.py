@@ -42,4 +42,4 @@ def test_a_state_is_stored_and_continued_in_processes(call, project):
 def test_a_time_limit_alone_and_one_that_is_none_are_refused(call, project):
     alone, none = call("run", "fill", "--timeout", "5"), call("run", "fill", "--isolate", "--timeout", "0")
     assert (alone.code, none.code) == (2, 2)
-    assert "Without --isolate" in alone.err and "0 s is no time limit" in none.err
+    assert "Without isolate" in alone.err and "0 s is no time limit" in none.err

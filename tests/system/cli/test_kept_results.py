@@ -64,10 +64,10 @@ def test_a_second_run_keeps_the_first_unless_forced(call, project):
     again = call("run", "fill", "--set", "lag.time_constant = 0.4", "--until", "4")
     assert "Earlier results are kept in results/fill-1" in again.err
     page = Path("results/fill/report.html").read_text(encoding="utf-8")
-    assert "Changed for this run: --set lag.time_constant = 0.4; --until 4 s." in page
+    assert "Changed for this run: lag.time_constant = 0.4; until 4 s." in page
     assert 'id="changed"' not in Path("results/fill-1/report.html").read_text(encoding="utf-8")
     with xarray.open_dataset("results/fill/result.nc") as table:
-        assert json.loads(table.attrs["changed"])[-1] == "--until 4 s"
+        assert json.loads(table.attrs["changed"])[-1] == "until 4 s"
     forced = call("run", "fill", "--force")
     assert "Earlier" not in forced.err and not Path("results/fill-2").exists()
 

@@ -40,7 +40,7 @@ def test_simulate_replays_from_any_time_with_start_values(call, project):
     [
         (("--inputs", "gap.csv", "--max-gap", "2"), "There is no row between 0 s and 9 s; 2 s are allowed."),
         (("--inputs", "gap.csv", "--interpolate", "level"), "Did you mean 'level_set'?"),
-        (("--interpolate", "*"), "Give one with --inputs."),
+        (("--interpolate", "*"), "Give one as inputs (--inputs)."),
         (("--from", "gap.csv"), "is no snapshot of a run"),
         (("--until", "7"), "the run would go from 0 s to 7 s."),
         (("--set", "lag.time=1"), "lag has no variable 'time'."),

@@ -85,5 +85,5 @@ def test_out_of_a_run_keeps_the_earlier_one(tmp_path):
 
 def test_a_folder_that_cannot_be_made_is_one_error(tmp_path):
     (tmp_path / "file").write_text("x")
-    with pytest.raises(ShipcosimError, match="cannot be written here.*another folder"):
+    with pytest.raises(ShipcosimError, match="is a file, not a folder.*another folder"):
         sc.run("gust", stop_time=0.1, out=tmp_path / "file" / "deep")

@@ -93,7 +93,7 @@ def test_expectations_are_judged_as_the_scenario_says(tmp_path):
 
 def test_expectations_beyond_a_shortened_run_are_told_and_not_judged(gust):
     assert gust.expectations == () and len(gust.not_judged) == 4
-    assert gust._repr_html_().count("not reached: ") == 4
+    assert gust._repr_html_().count("Not reached: ") == 4
 
 
 def test_start_values_events_and_sets_go_over_the_scenarios(tmp_path):

@@ -114,9 +114,9 @@ def test_the_command_line_goes_over_the_scenario_and_the_page_says_so(tmp_path, 
     arguments = ["run", str(path), "--out", str(out), "--component", "allocator=allocator"]
     assert CliRunner().invoke(app, arguments).exit_code == 0
     table = shipcosim.read_table(out / "result.nc")
-    assert json.loads(table.attrs["changed"]) == ["--component allocator = allocator"]
+    assert json.loads(table.attrs["changed"]) == ["allocator runs allocator"]
     assert json.loads(table.attrs["fmus"])["allocator"]["file"] == "allocator.fmu"
-    assert "--component allocator = allocator" in (out / "report.html").read_text(encoding="utf-8")
+    assert "allocator runs allocator" in (out / "report.html").read_text(encoding="utf-8")
     again = shipcosim.run(path, components={"allocator": "allocator"})
     assert float(abs(table["vessel.y"] - again["vessel.y"]).max()) == 0.0
 

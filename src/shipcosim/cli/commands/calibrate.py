@@ -32,10 +32,17 @@ def calibrate(
 
     Example: shipcosim calibrate monday.csv tuesday.csv
     """
-    from shipcosim.cli.calibration import calibrate_ship, print_calibration
-    from shipcosim.cli.diagnosis import logs_of
+    from shipcosim.calls.arguments import SYSTEM_OF_LOGS
+    from shipcosim.calls.logs import calibrate as calibrate_ship
+    from shipcosim.calls.logs import ship_of
+    from shipcosim.cli.calibration import print_calibration
+    from shipcosim.cli.progress import shown_progress
+    from shipcosim.diagnose.calibration_pipeline import steps_of
 
-    ship, folder = calibrate_ship(logs_of(logs), out, system=system, channels=channels, effects=effects)
-    print_calibration(ship, folder, as_json)
-    if ship.refusals:
+    ship = ship_of(system or SYSTEM_OF_LOGS)
+    folder = out or Path("results") / f"calibrated-{ship.name}"
+    with shown_progress(steps_of(logs)) as progress:
+        found = calibrate_ship(logs, ship, channels, effects, progress, out=folder, force=force)
+    print_calibration(found, folder, as_json)
+    if found.refusals:
         raise typer.Exit(FAILED)

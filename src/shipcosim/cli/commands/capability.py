@@ -8,8 +8,6 @@ import typer
 from shipcosim.cli.options import Debug, Force, Out
 from shipcosim.cli.start.completion import names_of
 
-DEFAULT_SYSTEM = "gunnerus_dp"
-
 
 def capability(
     system: Annotated[
@@ -19,7 +17,7 @@ def capability(
             help="A system with thrusters: a path or a name.",
             autocompletion=names_of("system"),
         ),
-    ] = DEFAULT_SYSTEM,
+    ] = "gunnerus_dp",
     parameters: Annotated[
         list[Path] | None,
         typer.Option("--parameters", metavar="X.SSV", help="Parameter set, or its name; repeatable, last wins."),
@@ -46,8 +44,11 @@ def capability(
 
     Example: shipcosim capability --failure port,tunnel
     """
-    from shipcosim.cli.capability import assess, print_capability
+    from shipcosim.calls.systems import capability as capability_of
+    from shipcosim.cli.capability import print_capability
 
-    groups = [tuple(name.strip() for name in one.split(",") if name.strip()) for one in failure or ()]
-    found, folder = assess(system, parameters or (), ship, groups, out)
+    groups = [tuple(name.strip() for name in given.split(",") if name.strip()) for given in failure or ()]
+    found = capability_of(system, parameters=parameters or (), ship=ship, failures=groups)
+    folder = out or Path("results") / f"capability-{found.vessel.name}"
+    found.save(folder, force=force)
     print_capability(found, folder, as_json)

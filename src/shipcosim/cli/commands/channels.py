@@ -26,11 +26,10 @@ def channels(
 
     Example: shipcosim channels monday.csv --out channels.toml
     """
+    from shipcosim.calls.arguments import path_of_log
     from shipcosim.cli.channel_files import print_channels, proposed, write_channels
-    from shipcosim.cli.diagnosis import logs_of
 
-    (log,) = logs_of([log])
-    proposal = proposed(log, system, form)
+    proposal = proposed(path_of_log(log), system, form)
     print_channels(proposal)
     if out is not None:
         write_channels(proposal, out, force)

@@ -37,24 +37,15 @@ def check(
 
     Example: shipcosim check build/fmus/vessel.fmu scenarios/four_corner.toml
     """
-    from shipcosim import library
-    from shipcosim.checks import VARIABLE_KEYS, check_any, estimates_in, variables_in
+    from shipcosim.calls.systems import check as check_files
     from shipcosim.cli.console import print_estimates, print_report, print_variables
-    from shipcosim.errors import held_strictly
-    from shipcosim.ssp.portability.check import check_host
 
-    for host in hosts or ():
-        check_host(host)
-    paths = [library.find_any(file) for file in files]
-    reports = {file: check_any(path, channels, hosts or ()) for file, path in zip(files, paths, strict=True)}
-    if strict:
-        reports = {file: held_strictly(problems) for file, problems in reports.items()}
-    rows = {file: found for file, path in zip(files, paths, strict=True) if (found := variables_in(path))}
-    keyed = {file: [dict(zip(VARIABLE_KEYS, row, strict=True)) for row in found] for file, found in rows.items()}
-    print_report(reports, as_json, keyed)
-    for variables in () if as_json else rows.values():
-        print_variables(variables)
-    for estimates in () if as_json else filter(None, map(estimates_in, paths)):
-        print_estimates(estimates)
-    if any(problem.severity == "error" for problems in reports.values() for problem in problems):
+    checked = check_files(files, channels=channels, hosts=hosts or (), strict=strict)
+    print_report(checked, as_json)
+    if not as_json:
+        for variables in checked.variables.values():
+            print_variables(variables)
+        for estimates in checked.estimates.values():
+            print_estimates(estimates)
+    if not checked.passed:
         raise typer.Exit(FAILED)

@@ -41,20 +41,28 @@ def compare(
 
     Example: shipcosim compare four_corner --stop-time 60
     """
-    from contextlib import nullcontext
+    from shipcosim.calls.systems import compare as compare_engines
+    from shipcosim.cli.comparison import not_compared, print_comparison
+    from shipcosim.cli.console import print_problems, progress_of
+    from shipcosim.cli.requests import parsed_components
 
-    from shipcosim.cli.comparison import not_compared, print_comparison, reading
-    from shipcosim.cli.console import progress_of
-    from shipcosim.cli.requests import system_and_scenario
-    from shipcosim.cosim.compare import compare as compare_engines
-    from shipcosim.options import RunOptions
-
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components, fmus)
-    for said in not_compared():
-        typer.echo(said, err=True)
-    how = reading(what, system, scenario, parameters) if as_read else nullcontext({})
-    with how as tools, progress_of("Comparing") as progress:
-        comparison = compare_engines(system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools)
+    for line in not_compared():
+        typer.echo(line, err=True)
+    with progress_of("Comparing") as progress:
+        comparison = compare_engines(
+            what,
+            stop_time=stop_time,
+            step_size=step_size,
+            parameters=parameters or [],
+            components=parsed_components(components or ()),
+            fmus=fmus or [],
+            events=events,
+            tolerance=tolerance,
+            as_read=as_read,
+            strict=strict,
+            progress=progress,
+        )
+    print_problems(comparison.flaws)
     print_comparison(comparison, as_json)
     if not comparison.agree:
         raise typer.Exit(FAILED)

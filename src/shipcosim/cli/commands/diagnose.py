@@ -41,19 +41,25 @@ def diagnose(
 
     Example: shipcosim diagnose log.csv --out results/log
     """
-    from shipcosim.cli.diagnosis import default_folder, diagnose_log, logs_of, print_diagnosis
-    from shipcosim.cli.joint_diagnosis import diagnose_logs, print_joint
-    from shipcosim.cli.results import check_targets
+    from shipcosim.calls.arguments import default_folder
+    from shipcosim.calls.logs import diagnose as diagnose_logs
+    from shipcosim.cli.diagnosis import print_diagnosis
+    from shipcosim.cli.joint_diagnosis import print_joint
+    from shipcosim.cli.progress import shown_progress
+    from shipcosim.diagnose.joint_pipeline import steps_of
+    from shipcosim.diagnose.pipeline import STEPS
 
-    data = logs_of(data)
     folder = out or default_folder(data[0])
-    check_targets(folder)
-    given = {"system": system, "channels": channels, "effects": effects, "reference": reference}
+    asked = {"channels": channels, "causes": effects, "reference": reference, "out": folder, "force": force}
     if len(data) > 1:
-        diagnosis = diagnose_logs(data, folder, **given)
-        print_joint(diagnosis, folder, as_json)
+        with shown_progress(steps_of(data)) as progress:
+            joint = diagnose_logs(data, system, progress=progress, **asked)
+        print_joint(joint, folder, as_json)
+        verdict = joint.verdict
     else:
-        diagnosis = diagnose_log(data[0], folder, **given)
+        with shown_progress(STEPS) as progress:
+            diagnosis = diagnose_logs(data[0], system, progress=progress, **asked)
         print_diagnosis(diagnosis, folder, as_json)
-    if diagnosis.verdict != "consistent":
+        verdict = diagnosis.verdict
+    if verdict != "consistent":
         raise typer.Exit(FAILED)

@@ -46,15 +46,21 @@ def fmu(
 
     Example: shipcosim export fmu ferry.ssp --out results
     """
+    from shipcosim.calls.arguments import Reading, system_and_scenario
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cli.requests import system_to_export
+    from shipcosim.cli.requests import parsed_components
     from shipcosim.cosim import export_fmu
+    from shipcosim.ssp import with_values
     from shipcosim.staging import set_file_aside
 
-    system, step = system_to_export(what, parameters, step_size, strict, components)
+    reading = Reading(parameters=parameters or [], components=parsed_components(components or ()), strict=strict)
+    keys = {} if step_size is None else {"step_size": step_size}
+    system, scenario, _ = system_and_scenario(what, reading, keys, needs_end=False)
     print_problems(problem for problem in system.remarks if problem.flaw)
+    system = with_values(system, scenario.set, what)
     target = out / f"{system.name}.fmu"
-    set_file_aside(target)
+    set_file_aside(target, force=force)
+    step = scenario.step_size
     print_problems(export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked))
     typer.echo(shown_path(target))
 
@@ -78,13 +84,19 @@ def osp(
 
     Example: shipcosim export osp four_corner --out results/osp
     """
+    from shipcosim.calls.arguments import Reading, system_and_scenario
     from shipcosim.cli.console import print_problems, shown_path
-    from shipcosim.cli.requests import system_and_scenario
+    from shipcosim.cli.requests import parsed_components
     from shipcosim.cosim.export.osp import SCENARIO, STRUCTURE, write_osp
     from shipcosim.staging import set_aside
 
-    system, scenario = system_and_scenario(what, parameters, stop_time, step_size, events, strict, components, fmus)
-    set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))])
+    swapped = parsed_components(components or ())
+    reading = Reading(parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict)
+    times = {"stop_time": stop_time, "step_size": step_size}
+    keys = {name: time for name, time in times.items() if time is not None}
+    system, scenario, remarks = system_and_scenario(what, reading, keys, events)
+    print_problems([*(problem for problem in system.remarks if problem.flaw), *remarks])
+    set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))], force=force)
     print_problems(write_osp(system, scenario, out))
     for path in sorted(out.glob("*")):
         typer.echo(shown_path(path))

@@ -44,11 +44,13 @@ def replay(
 
     Example: shipcosim replay log.csv --system results/log/extended.ssp
     """
-    from shipcosim.cli.diagnosis import DEFAULT_SYSTEM, default_folder, logs_of
-    from shipcosim.cli.replaying import print_replay, replay_and_save, systems_of
+    from shipcosim.calls.arguments import default_folder
+    from shipcosim.calls.logs import replay as replay_log
+    from shipcosim.cli.console import progress_of
+    from shipcosim.cli.replaying import print_replay
 
-    (log,) = logs_of([log])
-    systems = systems_of(system or DEFAULT_SYSTEM, before, parameters or [])
     folder = out or default_folder(log, "-replay")
-    replayed = replay_and_save(log, systems, channels, horizon, folder)
+    with progress_of(f"replaying {log.name}") as progress:
+        asked = {"parameters": parameters or [], "horizon": horizon, "out": folder, "force": force}
+        replayed = replay_log(log, system, before, channels, progress=progress, **asked)
     print_replay(replayed, folder)

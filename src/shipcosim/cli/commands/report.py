@@ -19,16 +19,15 @@ def report(
 
     Leaves report.html in results/A-B. Example: shipcosim report results/four_corner results/four_corner_rough
     """
-    from shipcosim.cli.results import check_targets
     from shipcosim.report import write_comparison
     from shipcosim.series import read_table
-    from shipcosim.staging import staged
+    from shipcosim.staging import check_targets, staged
 
     names = _names(first, second)
     folder = out or Path("results") / f"{names[0]}-{names[1]}"
     check_targets(folder)
     tables = read_table(_table(first)), read_table(_table(second))
-    with staged(folder) as stage:
+    with staged(folder, force=force) as stage:
         outcome, found = write_comparison(tables, names, stage / "report.html")
     typer.echo(f"{outcome.word} {outcome.sentence}")
     for one in found[:5]:

@@ -1,6 +1,6 @@
 """The command `shipcosim run`."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -27,9 +27,7 @@ from shipcosim.cli.start.completion import names_of
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
-    from shipcosim.options import RunOptions
-    from shipcosim.scenario import Scenario
-    from shipcosim.ssp import System
+    from shipcosim.calls.runs import PreparedRun
 
 
 def run(
@@ -68,74 +66,42 @@ def run(
 
     Example: shipcosim run four_corner --set environment.wind_speed='10 kn' --until 300
     """
-    from shipcosim.cli.requests import changed_by, isolation, parsed_components, parsed_settings
-    from shipcosim.cli.runs import simulate_and_save
-    from shipcosim.options import RunOptions
+    from shipcosim.calls.runs import prepare_run
+    from shipcosim.cli.requests import isolation, parsed_components, parsed_settings
+    from shipcosim.cli.runs import exit_if_failed, run_and_print
 
-    given = parsed_settings(settings or [])
-    options = RunOptions(engine=engine, until=until, resume=resume, **isolation(isolate, timeout))
-    changed = changed_by(settings, parameters, options, resume, components, fmus)
-    reading = _Reading(parameters or [], parsed_components(components or ()), given, strict, changed, fmus or [])
+    asked = {"parameters": parameters or [], "fmus": fmus or [], "strict": strict, "engine": engine, "until": until}
+    asked |= {"set": parsed_settings(settings or []), "components": parsed_components(components or ())}
+    asked |= {"resume": resume, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:
             found = "This is a folder of scenarios: there is no one state to store or to go on from."
             raise ShipcosimError(Problem(scenario, found, "Name one scenario, or leave out --store and --from."))
-        _run_all(files, out or Path("results") / files[0].resolve().parent.name, reading, options)
+        folder = out or Path("results") / files[0].resolve().parent.name
+        _run_all([prepare_run(file, **asked) for file in files], folder, files[0].resolve().parent.name, force)
         return
-    system, happening = _prepared(library.find("scenario", scenario), reading)
-    simulate_and_save(system, happening, out or Path("results") / happening.name, options, store, reading.changed)
+    prepared = prepare_run(scenario, store=store, **asked)
+    exit_if_failed(run_and_print(prepared, out or Path("results") / prepared.scenario.name, force))
 
 
-@dataclass(frozen=True)
-class _Reading:
-    """How scenarios and systems are read: with which parameter sets, FMUs and values, how strictly, and from where."""
-
-    parameters: list[Path]
-    components: dict[str, Path]
-    given: dict[str, object]
-    strict: bool
-    changed: list[str]
-    fmus: list[Path]
-
-
-def _run_all(files: list[Path], out: Path, reading: _Reading, options: "RunOptions") -> None:
-    """Run scenarios one after another, and write the table of all of them. All are read before the first one runs."""
+def _run_all(prepared: "Sequence[PreparedRun]", out: Path, name: str, force: bool) -> None:
+    """Run scenarios one after another, and write the table of all of them."""
     from shipcosim.cli.console import print_overview
     from shipcosim.cli.exits import FAILED
-    from shipcosim.cli.runs import simulated_and_saved
+    from shipcosim.cli.runs import run_and_print
     from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
     from shipcosim.staging import set_aside
 
     rows = []
-    prepared = [_prepared(file, reading) for file in files]
-    set_aside(out, ["report.html", *(happening.name for _, happening in prepared)])
-    for system, happening in prepared:
-        table, verdicts = simulated_and_saved(system, happening, out / happening.name, options, changed=reading.changed)
+    set_aside(out, ["report.html", *(one.scenario.name for one in prepared)], force=force)
+    for planned in prepared:
+        happening = planned.scenario
+        result = run_and_print(planned, out / happening.name, force)
         page = f"{happening.name}/report.html"
-        rows.append(ScenarioRow(happening.name, happening.description, page, digest(table, verdicts)))
+        outcome = digest(result.table, result.expectations)
+        rows.append(ScenarioRow(happening.name, happening.description, page, outcome))
     page = out / "report.html"
-    write_overview(rows, page, title=f"Scenarios of {files[0].resolve().parent.name}")
+    write_overview(rows, page, title=f"Scenarios of {name}")
     print_overview(overview_outcome(rows), [(row.name, row.outcome) for row in rows], page)
     if overview_outcome(rows).kind == "failed":
         raise typer.Exit(FAILED)
-
-
-def _prepared(path: Path, reading: _Reading) -> "tuple[System, Scenario]":
-    """System and scenario of a file, checked, with the values that are set for this run."""
-    from shipcosim.cli.console import print_problems
-    from shipcosim.cosim import system_of
-    from shipcosim.scenario import check_files, read_scenario
-    from shipcosim.ssp import fitting_values, with_values
-
-    happening = read_scenario(path)
-    if missing := check_files(happening):
-        raise ShipcosimError(missing)
-    system = system_of(happening, components=reading.components, strict=reading.strict, fmus=reading.fmus)
-    with_values(system, reading.given, "--set")
-    fitting = {}
-    for file in reading.parameters:
-        values, left_out = fitting_values(file, system)
-        print_problems(left_out)
-        fitting |= values
-    swapped = happening.components | {name: str(file) for name, file in reading.components.items()}
-    return system, happening.model_copy(update={"set": happening.set | fitting | reading.given, "components": swapped})

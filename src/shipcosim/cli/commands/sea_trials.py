@@ -33,11 +33,15 @@ def sea_trials(
 
     Example: shipcosim sea-trials trials.csv --channels channels.toml
     """
-    from shipcosim.cli.diagnosis import logs_of
-    from shipcosim.cli.sea_trials import print_study, study_log
+    from shipcosim.calls.arguments import default_folder
+    from shipcosim.calls.logs import sea_trials as study_trials
+    from shipcosim.cli.progress import shown_progress
+    from shipcosim.cli.sea_trials import print_study
+    from shipcosim.diagnose.sea_trials.study import STEPS
 
-    (log,) = logs_of([data])
-    found, folder = study_log(log, out, system=system, channels=channels, effects=effects, orders=orders)
+    folder = out or default_folder(data, "-sea-trials")
+    with shown_progress(STEPS) as progress:
+        found = study_trials(data, system, channels, effects, progress, orders=orders, out=folder, force=force)
     print_study(found, folder, as_json)
     if found.verdict != "consistent":
         raise typer.Exit(FAILED)

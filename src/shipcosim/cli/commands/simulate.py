@@ -81,21 +81,25 @@ def simulate(
 
     Example: shipcosim simulate ferry.ssp --stop-time 60 --step-size 0.1
     """
-    from shipcosim.cli import requests
-    from shipcosim.cli.runs import simulate_and_save
-    from shipcosim.options import RunOptions
-    from shipcosim.ssp import settings_of_one, with_values
+    from shipcosim.calls.runs import prepare_simulation
+    from shipcosim.cli.requests import isolation, parsed_components, parsed_settings
+    from shipcosim.cli.runs import exit_if_failed, run_and_print
+    from shipcosim.series import read_table
 
-    swapped = requests.parsed_components(components or ())
-    system = requests.system_of(ssp, parameters, strict=strict, components=swapped)
-    system = with_values(system, settings_of_one(system, requests.parsed_settings(settings or [])), "--set")
-    scenario = requests.experiment_of(system, stop_time, step_size)
-    table = requests.inputs_of(inputs, system, interpolate or (), max_gap)
-    if start_time is None:
-        start_time = system.experiment.start_time if resume is None else 0.0
-    scenario = requests.with_osp_events(scenario, events, start_time)
-    apart = requests.isolation(isolate, timeout)
-    options = RunOptions(engine=engine, inputs=table, start_time=start_time, until=until, resume=resume, **apart)
+    table = None if inputs is None else read_table(inputs)
+    feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap, "start_time": start_time}
+    carried_out = {"engine": engine, "until": until, "store": store, "resume": resume, **isolation(isolate, timeout)}
+    prepared = prepare_simulation(
+        ssp,
+        events,
+        stop_time=stop_time,
+        step_size=step_size,
+        set=parsed_settings(settings or []),
+        parameters=parameters or [],
+        components=parsed_components(components or ()),
+        strict=strict,
+        **feeding,
+        **carried_out,
+    )
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
-    changed = requests.changed_by(settings, parameters, options, resume, components)
-    simulate_and_save(system, scenario, out or default, options, store, changed)
+    exit_if_failed(run_and_print(prepared, out or default, force))

@@ -1,11 +1,9 @@
 """The command `shipcosim sweep`."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from shipcosim import library
 from shipcosim.cli.options import Debug, Force, Out, Settings
 from shipcosim.cli.start.completion import names_of, words_of
 
@@ -69,23 +67,20 @@ def sweep(
 
     Example: shipcosim sweep wind_limits --runs-at-most 8
     """
+    from shipcosim.calls.studies import PlannedStudy
     from shipcosim.cli.exits import FAILED
     from shipcosim.cli.requests import parsed_settings
-    from shipcosim.cli.studies.runs import run_again
+    from shipcosim.cli.runs import exit_if_failed, run_and_print
     from shipcosim.cli.studies.runs import serve as show
-    from shipcosim.cli.studies.sweeping import command_of, sweep_and_save
-    from shipcosim.sweep import plan_of, read_study
+    from shipcosim.cli.studies.sweeping import sweep_and_print
 
-    plan = plan_of(read_study(library.find("study", study)), parsed_settings(settings or []))
-    folder = out or Path("results") / plan.study.name
-    command = command_of(study, out, engine, settings)
+    planned = PlannedStudy(study, out=out, engine=engine, set=parsed_settings(settings or []))
     if number is not None:
-        if not run_again(plan, number, folder, engine, command):
-            raise typer.Exit(FAILED)
+        again = planned.run_again(number, lambda prepared, folder: run_and_print(prepared, folder, force=True))
+        exit_if_failed(again)
         return
-    options = {"engine": engine, "scheduler": scheduler, "workers": workers, "at_most": at_most, "again": force}
-    swept = sweep_and_save(plan, folder, command, **options)
+    swept = sweep_and_print(planned, scheduler=scheduler, workers=workers, at_most=at_most, force=force)
     if serve:
-        show(swept, engine, port or 0)
+        show(planned, swept, port or 0)
     if swept.about["runs"]["failed"]:
         raise typer.Exit(FAILED)

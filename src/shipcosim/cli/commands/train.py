@@ -34,7 +34,7 @@ def allocator(
 
     Example: shipcosim train allocator --kind paper-v
     """
-    _train("allocator", kind, out)
+    _train("allocator", kind, out, force)
 
 
 def drift(
@@ -50,7 +50,7 @@ def drift(
 
     Example: shipcosim train drift --kind ours
     """
-    _train("drift", kind, out)
+    _train("drift", kind, out, force)
 
 
 def dead_reckoning(
@@ -68,7 +68,7 @@ def dead_reckoning(
 
     Example: shipcosim train dead-reckoning --kind paper-ii
     """
-    _train("dead-reckoning", kind, out)
+    _train("dead-reckoning", kind, out, force)
 
 
 def docking(
@@ -84,14 +84,13 @@ def docking(
 
     Example: shipcosim train docking --kind ours
     """
-    _train("docking", kind, out)
+    _train("docking", kind, out, force)
 
 
-def _train(component: str, kind: str, out: Path | None) -> None:
+def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
     """Train a component, write weights and report, and say where. Nothing is written where something is wrong."""
     from shipcosim.cli.console import shown_path
-    from shipcosim.cli.results import check_targets
-    from shipcosim.staging import staged
+    from shipcosim.staging import check_targets, staged
 
     try:
         from shipcosim import learn
@@ -105,7 +104,7 @@ def _train(component: str, kind: str, out: Path | None) -> None:
         raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, kinds)))
     folder = out or Path("results") / f"train-{kind}"
     check_targets(folder)
-    with staged(folder) as stage, _progress(kind) as progress:
+    with staged(folder, force=force) as stage, _progress(kind) as progress:
         written = learn.train(component, kind, stage, progress)
     for file in written:
         typer.echo(shown_path(folder / file.name))

@@ -146,12 +146,12 @@ def scenario_files(name: str, system: str | None) -> Files:
     ShipcosimError
         If there is no such system, or it cannot be read.
     """
-    from shipcosim.cli.requests import system_of
+    from shipcosim.calls.arguments import Reading
 
     for part in name.split("/"):
         _check_name(part, "scenario")
     system = system or _own_system() or ORIGIN
-    read = system_of(system)
+    read = Reading().system(system)
     text = _filled("scenario.toml", name=name, description=HELD, system=system, parameters="")
     if not _fits(text, read):
         experiment = read.experiment

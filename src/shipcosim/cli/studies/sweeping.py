@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import shlex
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 from rich.console import Console
@@ -14,22 +12,22 @@ from rich.text import Text
 
 from shipcosim.cli.console import shown_path
 from shipcosim.cli.exits import INTERRUPTED
-from shipcosim.sweep import Plan, Swept, run_study
+from shipcosim.sweep import Plan, Swept
+
+if TYPE_CHECKING:
+    from shipcosim.calls.studies import PlannedStudy
+    from shipcosim.results.study import StudyResult
 
 SHOWN = 20  # rows of the summary on the terminal
 MOST_IMPORTANT = 10  # parameters of each quantity on the terminal
 
 
-def sweep_and_save(plan: Plan, out: Path, command: str, **options: Any) -> Swept:
+def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
     """Run what is not done of a study and say how it went.
 
     Parameters
     ----------
-    plan : Plan
-    out : Path
-        Folder of the results.
-    command : str
-        What the user typed, for the page.
+    study : PlannedStudy
     **options
         As of `shipcosim.sweep.run_study`.
 
@@ -38,36 +36,15 @@ def sweep_and_save(plan: Plan, out: Path, command: str, **options: Any) -> Swept
     typer.Exit
         If it was interrupted.
     """
-    with _progress(plan) as progress:
+    with _progress(study.plan) as progress:
         try:
-            swept = run_study(plan, out, progress=progress, **options)
+            swept = study.run(progress=progress, **options)
         except KeyboardInterrupt:
-            typer.echo(f"Interrupted. What is done is kept in {shown_path(out)}; the same command goes on.", err=True)
+            kept = shown_path(study.folder)
+            typer.echo(f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True)
             raise typer.Exit(INTERRUPTED) from None
-    write_page(swept, command)
     _say(swept)
     return swept
-
-
-def command_of(study: str, out: Path | None, engine: str, settings: Sequence[str] | None) -> str:
-    """The command that makes a study, as one types it.
-
-    Examples
-    --------
-    >>> command_of("wind_limits", None, "native", ["environment.wind_speed=10 kn"])
-    "shipcosim sweep wind_limits --set 'environment.wind_speed=10 kn'"
-    """
-    words = ["shipcosim", "sweep", study]
-    words += ["--out", str(out)] if out else []
-    words += ["--engine", engine] if engine != "native" else []
-    return shlex.join([*words, *(word for one in settings or () for word in ("--set", one))])
-
-
-def write_page(swept: Swept, command: str) -> None:
-    """The page of a study, beside its tables."""
-    from shipcosim.report.study import tables_of, write_study
-
-    write_study(tables_of(swept, command), swept.folder / "report.html")
 
 
 @contextmanager

@@ -5,6 +5,7 @@ import json
 import platform
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 
@@ -127,7 +128,7 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
         "seeds": json.dumps({name: value for name, value in starts.items() if name.endswith("seed")}),
         "events": json.dumps([event.model_dump() for event in scenario.events]),
         "fmus": json.dumps(fmus),
-        "swapped": json.dumps(dict(system.swapped)),
+        "swapped": json.dumps({name: Path(file).name for name, file in system.swapped.items()}),
     }
 
 

@@ -21,7 +21,7 @@ from shipcosim.series import conversion
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Hypothesis", "HypothesisParameter", "hypotheses_of", "read_catalogue", "read_faults"]
+__all__ = ["Hypothesis", "HypothesisParameter", "hypotheses_of", "read_catalogue", "read_cause", "read_faults"]
 
 
 @dataclass(frozen=True)
@@ -106,13 +106,34 @@ def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Ca
     found, problems = dict(_shipped()), []
     for path in (path for path in own if path.name.endswith(".toml")):
         try:
-            cause = Cause.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+            cause = read_cause(path)
             found[cause.cause] = cause
-        except (tomllib.TOMLDecodeError, ValidationError) as error:
-            problems.append(Problem(str(path), str(error), "See docs/add-a-cause.md for what a cause's file holds."))
+        except ShipcosimError as error:
+            problems += error.problems
     if problems:
         raise ShipcosimError(problems)
     return found
+
+
+def read_cause(path: Path) -> Cause:
+    """Read the file of a cause.
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is wrong in it.
+    """
+    remedy = "See docs/add-a-cause.md for what a cause's file holds."
+    try:
+        return Cause.model_validate(tomllib.loads(path.read_text(encoding="utf-8-sig")))
+    except ValidationError as error:
+        problems = []
+        for detail in error.errors():
+            key = ".".join(map(str, detail["loc"]))
+            problems.append(Problem(f"{path}, {key}" if key else str(path), f"{detail['msg']}.", remedy))
+        raise ShipcosimError(problems) from None
+    except (OSError, ValueError, RecursionError) as error:
+        raise ShipcosimError(Problem(str(path), f"It cannot be read: {error}.", remedy)) from None
 
 
 @cache

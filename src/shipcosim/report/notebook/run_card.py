@@ -6,27 +6,18 @@ from collections.abc import Sequence
 
 from xarray import Dataset
 
-from shipcosim.errors import Problem
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.run_track import run_track
-from shipcosim.report.run.expectations import claims
+from shipcosim.report.run.details import parsed
 from shipcosim.report.run.page import digest
 from shipcosim.report.theme.views import Fact, Table
-from shipcosim.scenario import Expectation, Scenario, Verdict, units_of, with_numbers
+from shipcosim.scenario import Scenario, Verdict
 from shipcosim.ssp import System
 
 __all__ = ["run_card"]
 
 
-def run_card(
-    table: Dataset,
-    scenario: Scenario,
-    system: System,
-    verdicts: Sequence[Verdict],
-    *,
-    late: Sequence[Expectation],
-    remarks: Sequence[Problem],
-) -> Card:
+def run_card(table: Dataset, scenario: Scenario, system: System, verdicts: Sequence[Verdict]) -> Card:
     """Verdict, expectations, track and what signals there are.
 
     Parameters
@@ -37,16 +28,11 @@ def run_card(
         What happened to what.
     verdicts : sequence of Verdict
         On what was expected within the run.
-    late : sequence of Expectation
-        What was expected later than the run went.
-    remarks : sequence of Problem
-        On system and scenario.
     """
     found = digest(table, verdicts)
     rows = tuple(("holds" if one.passed else "FAILS", *one[1:]) for one in found.expectations)
     name = scenario.name or system.name
-    numbers = with_numbers(scenario.model_copy(update={"expect": list(late)}), units_of(system))
-    not_reached = tuple(f"not reached: {claim}" for claim in claims(numbers.expect, table))
+    changed = ", ".join(parsed(table.attrs.get("changed", "[]")))
     return Card(
         title=name + (f": {scenario.description}" if scenario.description and scenario.name else ""),
         facts=_facts(table, scenario, system),
@@ -54,8 +40,9 @@ def run_card(
         links=(),
         data=(),
         blocks=(
-            Block("Expected", Table(rows, ("", "", "during", "worst", "at")), not_reached),
-            Block("Remarks", lines=(*found.remarks, *map(str, remarks))),
+            Block("Expected", Table(rows, ("", "", "during", "worst", "at"))),
+            Block("Changed for this run", lines=(changed,) if changed else ()),
+            Block("Remarks", lines=tuple(found.remarks)),
             Block("Signals, by component", Table(_signals(table)), folded=True),
         ),
         picture=run_track(table, verdicts, f"track of {name}") or "",

@@ -1,0 +1,366 @@
+"""What the arguments of a call mean: a system, a scenario, FMUs, start values, logs, times.
+
+Every call of `shipcosim` takes the same kinds of arguments, and the command line passes its own through here, too.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pydantic import ValidationError
+
+from shipcosim import cosim, library
+from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.results.log import Log
+from shipcosim.results.run import Run
+from shipcosim.scenario import Scenario, check_files, check_times
+from shipcosim.scenario import read_scenario as read_scenario_file
+from shipcosim.scenario.model import problems_in
+from shipcosim.scenario.osp import read_osp_scenario
+from shipcosim.ssp import System, SystemStructure, fitting_values, read_system
+from shipcosim.units import UnitError, seconds
+
+if TYPE_CHECKING:
+    import xarray
+
+AnyPath = str | os.PathLike[str]
+AnySystem = AnyPath | SystemStructure | System
+AnyScenario = AnyPath | Scenario
+
+SYSTEM_OF_LOGS = "gunnerus_open"
+"""What logs are held against where no system is given."""
+
+
+def named(argument: str) -> str:
+    """An argument as errors name it, for scripts and for the command line.
+
+    Examples
+    --------
+    >>> named("stop_time")
+    'stop_time (--stop-time)'
+    """
+    return f"{argument} (--{argument.replace('_', '-')})"
+
+
+def find(kind: str, given: Any, argument: str = "") -> Path:
+    """Path of a file or name, as `library.find`; errors name the argument."""
+    if not isinstance(given, (str, os.PathLike)):
+        raise ShipcosimError(Problem(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them."))
+    return library.find(kind, given, named(argument) if argument else "")
+
+
+def listed(given: AnyPath | Iterable[AnyPath] | None) -> list[AnyPath]:
+    """Paths as a list, also where one alone is given."""
+    if given is None:
+        return []
+    return [given] if isinstance(given, (str, os.PathLike)) else list(given)
+
+
+def mapping(argument: str, given: Any) -> dict[str, Any]:
+    """An argument that is a mapping, as a dict."""
+    if given is not None and not isinstance(given, Mapping):
+        raise ShipcosimError(Problem("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.'))
+    return dict(given or {})
+
+
+def without_none(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The arguments that were given."""
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Arguments with the times of these names as numbers, where they are amounts such as ``"10 min"``. [s]"""
+    found, problems = dict(arguments), []
+    for name in names:
+        if isinstance(found.get(name), str):
+            try:
+                found[name] = seconds(found[name])
+            except UnitError as error:
+                problems.append(Problem(name, error.found, error.remedy))
+    if problems:
+        raise ShipcosimError(problems)
+    return found
+
+
+def fmus_of(components: Mapping[str, AnyPath] | None) -> dict[str, Path]:
+    """FMUs in place of components' own, by path or name."""
+    found, problems = {}, []
+    for name, fmu in mapping("components", components).items():
+        try:
+            found[name] = find("fmu", fmu, "component").resolve()
+        except ShipcosimError as error:
+            problems += error.problems
+    if problems:
+        raise ShipcosimError(problems)
+    return found
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reading:
+    """How systems are read: with which parameter sets and FMUs, and how strictly.
+
+    Parameters
+    ----------
+    parameters : sequence of path
+        Parameter sets over those of the system or scenario; the last wins.
+    components : mapping of str to path or name, optional
+        FMUs that components run in place of their own.
+    fmus : sequence of path
+        Folders in which FMUs are looked for first.
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only.
+    """
+
+    parameters: Sequence[AnyPath] = ()
+    components: Mapping[str, AnyPath] | None = None
+    fmus: Sequence[AnyPath] = ()
+    strict: bool = False
+
+    def system(self, given: AnySystem, argument: str = "") -> System:
+        """The checked system of a file, folder, name or structure, with our FMUs built where they are out of date.
+
+        Parameters
+        ----------
+        given : path, name, SystemStructure or System
+            The name may be that of an FMU, which then runs alone.
+        argument : str
+            Where it was given, for errors.
+        """
+        swapped = fmus_of(self.components)
+        parameters = listed(self.parameters)
+        if isinstance(given, System):
+            if swapped:
+                found = "A system that is read keeps its FMUs."
+                raise ShipcosimError(Problem("components", found, "Give its path, its name or a SystemStructure."))
+            return given
+        if isinstance(given, SystemStructure):
+            return given.checked(parameters, swapped)
+        path = _path_of_system(given, argument)
+        folders = [*self.fmus, *library.fmus(path)]
+        return read_system(path, parameters, fmus=folders, components=swapped, strict=self.strict)
+
+    def system_of_scenario(self, scenario: Scenario) -> System:
+        """The system of a scenario, checked, with the parameter sets and FMUs of both."""
+        if missing := check_files(scenario):
+            raise ShipcosimError(missing)
+        return cosim.system_of(
+            scenario,
+            parameters=[Path(one) for one in listed(self.parameters)],
+            components=fmus_of(self.components),
+            strict=self.strict,
+            fmus=[Path(one) for one in self.fmus],
+        )
+
+
+def _path_of_system(given: AnyPath, argument: str) -> Path:
+    if isinstance(given, str) and not Path(given).exists() and library.named("system", given) is None:
+        if library.named("fmu", given) is not None:
+            return find("fmu", given, argument)
+    return find("system", given, argument)
+
+
+def is_scenario(given: AnyPath) -> bool:
+    """Whether what is a scenario or a system is a scenario: by its ending, else by what has this name.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is neither.
+    """
+    text = os.fspath(given)
+    if text.endswith(".toml") or Path(text.partition("#")[0]).exists():
+        return text.endswith(".toml")
+    scenarios, systems = library.names("scenario"), library.names("system")
+    if text not in scenarios and text not in systems:
+        remedy = suggestion(text, {*scenarios, *systems})
+        raise ShipcosimError(Problem(text, "There is no such scenario or system.", remedy))
+    return text in scenarios
+
+
+def read_scenario(scenario: AnyScenario) -> Scenario:
+    """Read and check a scenario file.
+
+    Parameters
+    ----------
+    scenario : path or name
+        A Scenario comes back as it is.
+
+    Raises
+    ------
+    ShipcosimError
+        With every problem of the file: its line, what was found, what would be right.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.read_scenario("gust").system
+    'gunnerus_dp'
+    """
+    return scenario if isinstance(scenario, Scenario) else read_scenario_file(find("scenario", scenario))
+
+
+def system_and_scenario(
+    given: AnyScenario | AnySystem,
+    reading: Reading,
+    keys: Mapping[str, Any],
+    events: AnyPath | None = None,
+    *,
+    needs_end: bool = True,
+) -> tuple[System, Scenario, list[Problem]]:
+    """System and scenario of an argument that is either; events of OSP are added.
+
+    Parameters
+    ----------
+    given : path, name, Scenario, SystemStructure or System
+        A name is a scenario's where there is one.
+    reading : Reading
+    keys : mapping
+        Entries of the scenario that go before its own: times, start values.
+    events : path, optional
+        Scenario file of OSP.
+    needs_end : bool
+        Whether a stop time has to be given; one step is enough without.
+
+    Returns
+    -------
+    tuple of System, Scenario and list of Problem
+        The problems are remarks on the events.
+    """
+    scenario = given if isinstance(given, Scenario) else None
+    if isinstance(given, (str, os.PathLike)) and is_scenario(given):
+        scenario = read_scenario(given)
+    if scenario is not None:
+        system = reading.system_of_scenario(scenario)
+    else:
+        assert not isinstance(given, Scenario)
+        system = reading.system(given)
+        step = keys.get("step_size", system.experiment.step_size)
+        if not needs_end and system.experiment.stop_time is None and step is not None:
+            keys = {"stop_time": step, **keys}
+    return system, *with_osp_events(scenario_of(scenario, system, keys), events)
+
+
+def scenario_of(given: Scenario | None, system: System, keys: Mapping[str, Any]) -> Scenario:
+    """Scenario of entries over those of another one, or over the system's default experiment; its times checked."""
+    if given is None:
+        experiment = {"stop_time": system.experiment.stop_time, "step_size": system.experiment.step_size}
+        entries = without_none(experiment) | dict(keys)
+        entries.setdefault("description", f"Simulation of {system.name}")
+        if missing := [name for name in ("stop_time", "step_size") if name not in entries]:
+            raise ShipcosimError(
+                [Problem(named(name), f"{name} is missing.", "Give it; times are in s.") for name in missing]
+            )
+    else:
+        own = given.model_dump(exclude_defaults=True)
+        entries = own | dict(keys)
+        entries["set"] = own.get("set", {}) | keys.get("set", {})
+        entries["events"] = [*own.get("events", ()), *keys.get("events", ())]
+    try:
+        scenario = Scenario.model_validate(entries)
+    except ValidationError as error:
+        problems = []
+        for problem, detail in zip(problems_in(error, "simulate"), error.errors(), strict=True):
+            argument = str(detail["loc"][0]) if detail["loc"] else ""
+            is_time = argument in ("stop_time", "step_size", "output_interval")
+            problems.append(replace(problem, where=named(argument)) if is_time else problem)
+        raise ShipcosimError(problems) from None
+    if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
+        raise ShipcosimError(problems)
+    return scenario if given is None else given.model_copy(update={name: getattr(scenario, name) for name in entries})
+
+
+def with_osp_events(
+    scenario: Scenario, path: AnyPath | None, start_time: float = 0.0
+) -> tuple[Scenario, list[Problem]]:
+    """Scenario with the events of an OSP scenario file added, and remarks on them; the same without a path.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Its steps are the run's.
+    path : path, optional
+    start_time : float
+        Of the run. [s]
+    """
+    if path is None:
+        return scenario, []
+    read = read_osp_scenario(Path(path), scenario.step_size, scenario.stop_time, start_time)
+    update: dict[str, Any] = {"events": [*scenario.events, *read.events]}
+    if read.description:
+        update["description"] = read.description
+    return scenario.model_copy(update=update), list(read.remarks)
+
+
+def values_of_sets(parameters: Iterable[AnyPath], system: System) -> tuple[dict[str, Any], list[Problem]]:
+    """Start values of parameter sets as far as the system has what they are for, and remarks on the rest."""
+    values: dict[str, Any] = {}
+    remarks: list[Problem] = []
+    for file in listed(parameters):
+        fitting, left_out = fitting_values(file, system)
+        values |= fitting
+        remarks += left_out
+    return values, remarks
+
+
+def path_of_log(given: AnyPath) -> Path:
+    """Path of measured data; a name is that of an example that the package ships."""
+    path = Path(given)
+    return path if path.exists() else library.named("example", str(given)) or path
+
+
+def source_of(log: Any, channels: AnyPath | None) -> tuple[AnyPath | xarray.Dataset, AnyPath | None]:
+    """A log as the rooms below take it, with its channel file."""
+    if isinstance(log, Log):
+        return log.source, log.channels if channels is None else channels
+    if isinstance(log, Run):
+        return log.table, channels
+    if hasattr(log, "data_vars"):
+        return log, channels
+    if not isinstance(log, (str, os.PathLike)):
+        raise ShipcosimError(Problem("log", f"{log!r:.60} is neither a path nor a name.", "Give one of them."))
+    return path_of_log(log), channels
+
+
+def sources_of(logs: Any, channels: AnyPath | None) -> tuple[list[Any], AnyPath | None]:
+    """Several logs as the rooms below take them, with their common channel file."""
+    found = []
+    for log in logs:
+        source, channels = source_of(log, channels)
+        found.append(source)
+    return found, channels
+
+
+def check_inputs(logs: Iterable[Any], channels: AnyPath | None, causes: AnyPath | None = None) -> None:
+    """Raise ShipcosimError where a file or folder that was given is not there."""
+    problems = []
+    for path, what in (*((log, "file of measured data") for log in logs), (channels, "channel file")):
+        if isinstance(path, (str, os.PathLike)) and not Path(path).is_file():
+            names = library.names("example") if what == "file of measured data" else ()
+            remedy = suggestion(str(path), names) if names else "Give the path of one."
+            problems.append(Problem(str(path), f"There is no such {what}.", remedy))
+    if causes is not None and not Path(causes).is_dir():
+        problems.append(Problem(str(causes), "There is no such folder of causes.", "Give the path of one."))
+    if problems:
+        raise ShipcosimError(problems)
+
+
+def name_of_log(source: Any) -> str:
+    """Name of a log for pages: that of its file."""
+    return Path(source).name if isinstance(source, (str, os.PathLike)) else "log"
+
+
+def default_folder(source: Any, ending: str = "") -> Path:
+    """Where a command puts the results of a log without --out.
+
+    Examples
+    --------
+    >>> default_folder("logs/monday.csv.gz").as_posix()
+    'results/monday'
+    >>> default_folder("logs/monday.csv.gz", "-replay").as_posix()
+    'results/monday-replay'
+    """
+    return Path("results") / f"{Path(name_of_log(source).removesuffix('.gz')).stem}{ending}"

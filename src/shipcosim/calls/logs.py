@@ -1,0 +1,400 @@
+"""Measured logs: read, diagnosed, replayed, calibrated on, studied as sea trials."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar, overload
+
+from shipcosim import library
+from shipcosim.calls.arguments import (
+    SYSTEM_OF_LOGS,
+    AnyPath,
+    AnySystem,
+    Reading,
+    check_inputs,
+    in_seconds,
+    name_of_log,
+    named,
+    source_of,
+    sources_of,
+    values_of_sets,
+)
+from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
+from shipcosim.results.log import Log
+from shipcosim.results.shown import parts_of
+from shipcosim.results.studies import Calibration, Replay, SeaTrials
+from shipcosim.ssp import System, SystemStructure, read, with_values
+from shipcosim.staging import check_targets, staged
+
+if TYPE_CHECKING:
+    import xarray
+
+    from shipcosim.diagnose.pipeline import Progress
+    from shipcosim.diagnose.reference.reference import Reference
+    from shipcosim.results.run import Run
+
+    AnyLog = AnyPath | xarray.Dataset | Log | Run
+
+__all__ = ["calibrate", "diagnose", "read_log", "replay", "sea_trials"]
+
+WRITING = "writing the page"
+"""What the progress function is told at the end, where results are written."""
+EXTENDED = ("extended.ssp", "extended.ssv")
+CALIBRATED = ("calibrated.ssv", "reference.json")
+"""Files that an earlier diagnosis or calibration may have left, and a later one does not always write."""
+Saved = TypeVar("Saved", bound=DiagnosisOfLog | DiagnosisOfLogs | SeaTrials)
+
+
+@with_known_keywords
+def read_log(log: AnyLog, channels: AnyPath | None = None) -> Log:
+    """Read a measured log, every row of it, to look at it before it is diagnosed.
+
+    Parameters
+    ----------
+    log : path, name of an example, or xarray.Dataset
+        Measured data, see docs/measured-data.md.
+    channels : path, optional
+        Channel file: which column is what, in which unit.
+
+    Returns
+    -------
+    Log
+
+    Raises
+    ------
+    ShipcosimError
+        With all that is wrong: a column that is missing, not numeric or in a unit of something else, no time.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.read_log("gunnerus_log")["heading"].attrs["units"]
+    'deg'
+    """
+    from shipcosim.diagnose.log.reader import read_log
+
+    source, channels = source_of(log, channels)
+    check_inputs([source], channels)
+    return Log(name_of_log(source), read_log(source, channels), source, channels)
+
+
+@overload
+def diagnose(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    out: AnyPath | None = None,
+    force: bool = False,
+    reference: AnyPath | Reference | None = None,
+) -> DiagnosisOfLog: ...
+@overload
+def diagnose(
+    log: Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    out: AnyPath | None = None,
+    force: bool = False,
+    reference: AnyPath | Reference | None = None,
+) -> DiagnosisOfLogs: ...
+@with_known_keywords
+def diagnose(
+    log: AnyLog | Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    out: AnyPath | None = None,
+    force: bool = False,
+    reference: AnyPath | Reference | None = None,
+) -> DiagnosisOfLog | DiagnosisOfLogs:
+    """Say what the simulation gets wrong of a log, and why: causes by name, the system with them, what that gains.
+
+    Parameters
+    ----------
+    log : path, name of an example, Log, Run, xarray.Dataset, or a list of them
+        Measured data, see docs/measured-data.md; several logs of one ship are weighed together.
+    system : path, name, SystemStructure or System, optional
+        The ship that the log is held against; gunnerus_open if not given.
+    channels : path, optional
+        Channel file: which column is what, in which unit.
+    causes : path, optional
+        Folder with further causes.
+    progress : callable, optional
+        Called with what is being done, in words; for the co-simulations also with how many are done and of how many.
+    out : path, optional
+        Folder that gets diagnosis.json, report.html, and extended.ssp and extended.ssv where a cause of the physics
+        is named; nothing is left on the disk without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+    reference : path or Reference, optional
+        What `calibrate` left of logs in which the ship was well: the diagnosis then says what has changed since.
+
+    Returns
+    -------
+    DiagnosisOfLog
+        Or DiagnosisOfLogs of a list.
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used; nothing is written then.
+    """
+    from shipcosim.diagnose.joint_pipeline import diagnose_jointly
+    from shipcosim.diagnose.pipeline import diagnose
+
+    several = isinstance(log, Sequence) and not isinstance(log, str)
+    sources, channels = sources_of(log if several else [log], channels)
+    check_inputs(sources, channels, causes)
+    if out is not None:
+        check_targets(Path(out))
+    ship = ship_of(system)
+
+    def result_in(stage: Path | None) -> DiagnosisOfLog | DiagnosisOfLogs:
+        options: dict[str, Any] = {"out": stage, "reference": reference}
+        if several:
+            joint = diagnose_jointly(sources, ship, channels, causes, progress, **options)
+            return DiagnosisOfLogs(**parts_of(joint))
+        return DiagnosisOfLog(**parts_of(diagnose(sources[0], ship, channels, causes, progress, **options)))
+
+    return _written(result_in, out, force, progress)
+
+
+@with_known_keywords
+def replay(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    before: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    *,
+    parameters: Sequence[AnyPath] = (),
+    horizon: float | str | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    out: AnyPath | None = None,
+    force: bool = False,
+) -> Replay:
+    """Predict a log piece by piece, each from the measured state, with one system or with two.
+
+    Parameters
+    ----------
+    log
+        As for `diagnose`, one log.
+    system : path, name, SystemStructure or System, optional
+        The ship, or the ``extended`` system of a diagnosis; gunnerus_open if not given.
+    before : like `system`, optional
+        The system to compare with. By default that without `parameters`, and of an extended.ssp the one that was
+        extended.
+    channels : path, optional
+        Channel file.
+    parameters : sequence of path
+        Parameter sets over those of `system`; what does not fit is left out and listed in `Replay.remarks`.
+    horizon : float, optional
+        Length of each prediction; one that fits the craft and the log if not given. [s]
+    progress : callable, optional
+        Called with (predictions done, predictions in all).
+    out : path, optional
+        Folder that gets report.html, errors.csv and replay.nc; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+    Returns
+    -------
+    Replay
+
+    Raises
+    ------
+    ShipcosimError
+        Data or systems that cannot be used.
+    """
+    from shipcosim.diagnose.replays import replay_log
+
+    source, channels = source_of(log, channels)
+    check_inputs([source], channels)
+    if out is not None:
+        check_targets(Path(out))
+    systems, remarks = _replayed_systems(SYSTEM_OF_LOGS if system is None else system, before, parameters)
+    times = in_seconds({"horizon": horizon}, ["horizon"])
+    found = replay_log(source, systems, channels, horizon=times["horizon"], progress=progress)
+    parts = parts_of(found)
+    parts["remarks"] = (*map(str, remarks), *found.remarks)
+    names = tuple(one.name for one in systems.values())
+    result = Replay(**parts, name=name_of_log(source), systems=names)
+    if out is not None:
+        result.save(out, force=force)
+    return result
+
+
+def _replayed_systems(
+    given: AnySystem, before: AnySystem | None, parameters: Sequence[AnyPath]
+) -> tuple[dict[str, System], list[Problem]]:
+    """The systems of a replay by what they are: ``before`` and ``after``, or the one alone; remarks on the sets."""
+    reading = Reading()
+    system = reading.system(given, "system")
+    if parameters:
+        values, remarks = values_of_sets(parameters, system)
+        after = with_values(system, values, named("parameters"))
+        return {"before": system if before is None else reading.system(before, "before"), "after": after}, remarks
+    if before is None and not isinstance(given, (System, SystemStructure)) and Path(given).name == EXTENDED[0]:
+        before = _extended_from(system, str(given))
+    if before is None:
+        return {"simulated": system}, []
+    return {"before": reading.system(before, "before"), "after": system}, []
+
+
+def _extended_from(system: System, given: str) -> str:
+    """Name of the system that was extended, where it is one of the project's."""
+    if library.named("system", system.name) is None:
+        found = f"it extends a system '{system.name}', which has no name here."
+        raise ShipcosimError(Problem(given, found, f"Say which one it was: {named('before')}."))
+    return system.name
+
+
+@with_known_keywords
+def calibrate(
+    logs: AnyLog | Sequence[AnyLog],
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    out: AnyPath | None = None,
+    force: bool = False,
+) -> Calibration:
+    """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
+
+    Parameters
+    ----------
+    logs, system, channels, causes, progress
+        As for `diagnose`.
+    out : path, optional
+        Folder that gets calibrated.ssv, reference.json and report.html, the page alone where the logs are refused;
+        nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+    Returns
+    -------
+    Calibration
+        Its ``reference`` is what `diagnose` takes.
+
+    Raises
+    ------
+    ShipcosimError
+        Data, system or causes that cannot be used; nothing is written then.
+    """
+    from shipcosim.diagnose.calibration_pipeline import calibrate
+
+    several = logs if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
+    sources, channels = sources_of(several, channels)
+    check_inputs(sources, channels, causes)
+    ship = ship_of(system)
+    if out is None:
+        return Calibration(**parts_of(calibrate(sources, ship, channels, causes, progress)))
+    check_targets(Path(out))
+    with staged(Path(out), CALIBRATED, force=force) as stage:
+        result = Calibration(**parts_of(calibrate(sources, ship, channels, causes, progress, out=stage)))
+        _say(progress, WRITING)
+        result.write(stage)
+    return result
+
+
+@with_known_keywords
+def sea_trials(
+    log: AnyLog,
+    system: AnySystem | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
+    progress: Progress | None = None,
+    *,
+    orders: bool = False,
+    out: AnyPath | None = None,
+    force: bool = False,
+) -> SeaTrials:
+    """Say what a simulation gets wrong of a ship's trials: straight runs, turning circles, zig-zags.
+
+    Parameters
+    ----------
+    log, system, channels, causes, progress
+        As for `diagnose`, one log.
+    orders : bool
+        Whether the thrusters' channels are orders, which the units follow, instead of feedback.
+    out : path, optional
+        Folder that gets sea_trials.json, report.html, and where causes were found extended.ssp and extended.ssv;
+        nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+    Returns
+    -------
+    SeaTrials
+
+    Raises
+    ------
+    ShipcosimError
+        Data that cannot be used; no turning circle. Nothing is written then.
+    """
+    from shipcosim.diagnose.extension.extend import extend
+    from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
+    from shipcosim.diagnose.sea_trials.study import study
+
+    source, channels = source_of(log, channels)
+    check_inputs([source], channels, causes)
+    if out is not None:
+        check_targets(Path(out))
+    given = ship_of(system)
+    ship = given if isinstance(given, System) else given.checked()
+
+    def result_in(stage: Path | None) -> SeaTrials:
+        found = study(source, ship, channels, causes, progress, orders=orders)
+        if stage is not None and found.findings:
+            structure = given if isinstance(given, SystemStructure) else read(ship.file)
+            extend(structure, found.findings, stage, catalogue=read_catalogue(causes))
+        return SeaTrials(**parts_of(found), name=name_of_log(source), system=ship.name, orders=orders)
+
+    return _written(result_in, out, force, progress)
+
+
+def ship_of(system: AnySystem | None) -> System | SystemStructure:
+    """The ship of a diagnosis: a structure stays one, so that changes made to it are in the extended system, too."""
+    if isinstance(system, SystemStructure):
+        return system
+    return Reading().system(SYSTEM_OF_LOGS if system is None else system, "system")
+
+
+def _written(
+    result_in: Callable[[Path | None], Saved], out: AnyPath | None, force: bool, progress: Progress | None
+) -> Saved:
+    """A result, and its files where a folder is given: all of them, or none.
+
+    Parameters
+    ----------
+    result_in : callable
+        Makes the result, and writes an extended system into the folder that it gets.
+    """
+    if out is None:
+        return result_in(None)
+    with staged(Path(out), EXTENDED, force=force) as stage:
+        result = result_in(stage)
+        _say(progress, WRITING)
+        result.write(stage)
+    extension = getattr(result, "extension", None)
+    if extension is None:
+        return result
+    # The extended system was made in the stage, and has moved.
+    at_home = {kind: Path(out) / f"extended.{kind}" for kind in ("ssp", "ssv")}
+    return replace(result, extension=replace(extension, **at_home))  # pyright: ignore[reportCallIssue]
+
+
+def _say(progress: Progress | None, step: str) -> None:
+    if progress is not None:
+        progress(step)

@@ -1,0 +1,503 @@
+"""Runs: planned, simulated, judged, saved. `shipcosim.run` and `shipcosim run` both come through here."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Unpack
+
+from shipcosim.calls.arguments import (
+    AnyPath,
+    AnyScenario,
+    AnySystem,
+    Reading,
+    fmus_of,
+    in_seconds,
+    listed,
+    mapping,
+    named,
+    read_scenario,
+    scenario_of,
+    values_of_sets,
+    with_osp_events,
+    without_none,
+)
+from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.cosim import Interrupted, RunError, Snapshot, interpolated, write_snapshot
+from shipcosim.cosim import simulate as simulate_system
+from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.options import RunKeywords, RunOptions
+from shipcosim.results.run import Run
+from shipcosim.scenario import Scenario, check_scenario, check_times, judge, units_of, with_numbers, within_run
+from shipcosim.ssp import System, settings_of_one, with_values
+from shipcosim.staging import check_targets, set_file_aside
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["PreparedRun", "prepare_run", "prepare_simulation", "run", "simulate"]
+
+
+@dataclass(frozen=True)
+class PreparedRun:
+    """A run that is read and checked, and has not begun.
+
+    Attributes
+    ----------
+    system : System
+        What will run.
+    scenario : Scenario
+        What will happen, and what must hold.
+    options : RunOptions
+        How it is run.
+    changed : tuple of str
+        What this run changes of what the files say.
+    remarks : tuple of Problem
+        What does not stop the run and should be known.
+    planned : float
+        Stop time for which the expectations were written, where the scenario's is shorter. [s]
+    """
+
+    system: System
+    scenario: Scenario
+    options: RunOptions
+    changed: tuple[str, ...] = ()
+    remarks: tuple[Problem, ...] = ()
+    planned: float = 0.0
+
+    def run(self, out: AnyPath | None = None, *, force: bool = False) -> Run:
+        """Simulate, judge, and write the results where a folder is given.
+
+        Parameters
+        ----------
+        out : path, optional
+            Folder of the results. What there is of a run that does not get to its end is written there, too.
+        force : bool
+            Replace earlier results instead of keeping them in a numbered folder beside it.
+
+        Raises
+        ------
+        ShipcosimError
+            If the results cannot be written. As RunError, with the rows so far, if the run fails.
+        Interrupted
+            On Ctrl-C, with the rows so far.
+        """
+        # A long run must not end with results that cannot be written.
+        state = self.options.store if isinstance(self.options.store, (str, os.PathLike)) else None
+        state_file = None if state is None else Path(state)
+        if out is not None or state_file is not None:
+            check_targets(None if out is None else Path(out), state_file)
+
+        # The state is written after the results, so that earlier states are kept until there is a new one.
+        snapshots: list[Snapshot] = []
+        options = self.options if state_file is None else replace(self.options, store=snapshots.append)
+        try:
+            table = simulate_system(self.system, self.scenario, options)
+        except (Interrupted, RunError) as stop:
+            if out is not None:
+                self._save_part(stop, out, force)
+            raise
+        result = self.judged(table)
+        if out is not None:
+            result.save(out, force=force)
+        for snapshot in snapshots:
+            assert state_file is not None
+            set_file_aside(state_file, force=force)
+            write_snapshot(snapshot, state_file)
+        return result
+
+    def judged(self, table: xarray.Dataset) -> Run:
+        """The run of a table: what it changed, which expectations lie within it, and whether these hold.
+
+        Parameters
+        ----------
+        table : xarray.Dataset
+            As `shipcosim.cosim.simulate` gives it.
+        """
+        # What a run was is kept in its table, and so in result.nc and on every page that is made of it.
+        said = [str(remark) for remark in self.remarks]
+        during = json.loads(table.attrs.get("remarks", "[]"))
+        table = table.assign_attrs(remarks=json.dumps([*said, *during]), changed=json.dumps(list(self.changed)))
+        reached, late = within_run(self.scenario, table, self.planned)
+        in_numbers = with_numbers(self.scenario.model_copy(update={"expect": reached}), units_of(self.system))
+        verdicts = judge(table, in_numbers)
+        result = Run(table, self.scenario, self.system, tuple(verdicts), tuple(late), self.remarks)
+        return replace(result, table=table.assign_attrs(not_reached=json.dumps(result.claims_not_reached())))
+
+    def part(self, table: xarray.Dataset) -> Run:
+        """The part of a run that did not get to its end; nothing is judged."""
+        return Run(table.assign_attrs(changed=json.dumps(list(self.changed))), self.scenario, self.system)
+
+    def _save_part(self, stop: Interrupted | RunError, out: AnyPath, force: bool) -> None:
+        """Save the rows so far, unless there are none."""
+        if not stop.table.sizes["time"]:
+            return
+        try:
+            self.part(stop.table).save_part(out, force=force)
+        except ShipcosimError as error:
+            if not isinstance(stop, RunError):
+                raise
+            stop.problems += error.problems
+
+
+@with_known_keywords
+def run(
+    scenario: AnyScenario,
+    *,
+    set: Mapping[str, object] | None = None,
+    parameters: Sequence[AnyPath] = (),
+    components: Mapping[str, AnyPath] | None = None,
+    fmus: Sequence[AnyPath] = (),
+    events: Iterable[Mapping[str, object]] = (),
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
+    strict: bool = False,
+    out: AnyPath | None = None,
+    force: bool = False,
+    **options: Unpack[RunKeywords],
+) -> Run:
+    """Run a scenario and judge what it expects.
+
+    Parameters
+    ----------
+    scenario : Scenario, path or name
+        A scenario file, or its name: ``"four_corner"``.
+    set : mapping of str to value, optional
+        Start values by full name, in the FMUs' units; over those of the scenario.
+    parameters : sequence of path
+        Parameter sets (.ssv) over the scenario's own, as the extended.ssv of a diagnosis; what does not fit is left
+        out and listed in `Run.remarks`.
+    components : mapping of str to path or name, optional
+        FMUs that components run in place of their own, over those of the scenario: ``{"allocator": "my_allocator"}``.
+    fmus : sequence of path
+        Folders in which FMUs are looked for first.
+    events : iterable of mapping
+        As in a scenario file; added to its own.
+    stop_time, step_size, output_interval : float, optional
+        In place of the scenario's, in s or such as ``"10 min"``. [s]
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only.
+    out : path, optional
+        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+    engine, inputs, progress, order, until, resume, store, isolate, timeout
+        As in `shipcosim.options.RunOptions`.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    ShipcosimError
+        If something does not fit together, or the run fails.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> gust = shipcosim.run("gust", stop_time=2.0)
+    >>> gust.passed, gust["vessel.psi"].attrs["units"], len(gust.not_judged)
+    (True, 'rad', 4)
+    """
+    prepared = prepare_run(
+        scenario,
+        set=set,
+        parameters=parameters,
+        components=components,
+        fmus=fmus,
+        events=events,
+        stop_time=stop_time,
+        step_size=step_size,
+        output_interval=output_interval,
+        strict=strict,
+        **options,
+    )
+    return prepared.run(out, force=force)
+
+
+def prepare_run(
+    scenario: AnyScenario,
+    *,
+    set: Mapping[str, object] | None = None,
+    parameters: Sequence[AnyPath] = (),
+    components: Mapping[str, AnyPath] | None = None,
+    fmus: Sequence[AnyPath] = (),
+    events: Iterable[Mapping[str, object]] = (),
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
+    strict: bool = False,
+    changed: Sequence[str] = (),
+    **options: Any,
+) -> PreparedRun:
+    """Read and check a run of a scenario; arguments and errors as for `run`.
+
+    `changed` are further texts on what this run changes, as the row of a study.
+    """
+    given = read_scenario(scenario)
+    # Parameter sets may have been made for another system: what fits is taken as start values, not as sets.
+    system = Reading(components=components, fmus=fmus, strict=strict).system_of_scenario(given)
+    fitting, left_out = values_of_sets(parameters, system)
+    start_values = mapping("set", set)
+    with_values(system, start_values, named("set"))
+
+    # What runs in place of components' own FMUs is part of the scenario, so that the table repeats the run.
+    swapped = {name: str(path) for name, path in fmus_of(components).items()}
+    given = given.model_copy(update={"components": given.components | swapped})
+    times = without_none({"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval})
+    happening = scenario_of(given, system, times | {"set": fitting | start_values, "events": list(events)})
+    how = options_of(options)
+    texts = [
+        *changed,
+        *changes(start_values, parameters, components, fmus, how),
+        *times_changed(times, happening),
+        *(f"event at {event.time:g} s" for event in happening.events[len(given.events) :]),
+    ]
+    return _prepared(system, happening, how, texts, left_out, given.stop_time)
+
+
+@with_known_keywords
+def simulate(
+    system: AnySystem | None = None,
+    scenario: AnyScenario | None = None,
+    *,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
+    set: Mapping[str, object] | None = None,
+    parameters: Sequence[AnyPath] = (),
+    components: Mapping[str, AnyPath] | None = None,
+    events: Iterable[Mapping[str, object]] = (),
+    start_time: float | str | None = None,
+    interpolate: Sequence[str] = (),
+    max_gap: float | str | None = None,
+    strict: bool = False,
+    out: AnyPath | None = None,
+    force: bool = False,
+    **options: Unpack[RunKeywords],
+) -> Run:
+    """Run a system, one of ours or anybody's.
+
+    Parameters
+    ----------
+    system : SystemStructure, System, path or name, optional
+        What runs; the scenario's system if not given. The name of an FMU runs it alone.
+    scenario : Scenario, path or name, optional
+        What happens; the keywords add to it and go before it. A .json or .yaml is a scenario of OSP.
+    stop_time, step_size, output_interval : float, optional
+        By default those of the system's default experiment, and every step is a row. In s, or such as
+        ``"10 min"``. [s]
+    set : mapping of str to value, optional
+        Start values by full name, in the FMUs' units.
+    parameters : sequence of path
+        Parameter sets (.ssv) over those of the system, where it is not a `System`; the last wins.
+    components : mapping of str to path or name, optional
+        FMUs that components run in place of their own, over those of the scenario, where the system is no `System`.
+    events : iterable of mapping
+        As in a scenario file: ``{"time": 10.0, "override": {"vessel.tau_X_5": 1e4}}``.
+    start_time : float, optional
+        As in `shipcosim.options.RunOptions`; by default that of the system's default experiment. [s]
+    interpolate : sequence of str
+        Columns of `inputs`, or patterns such as ``"*"``, that change linearly between their rows; others are held.
+    max_gap : float, optional
+        Longest time between two rows of `inputs` that is not taken for lost data. [s]
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only.
+    out : path, optional
+        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+    engine, inputs, progress, order, until, resume, store, isolate, timeout
+        As in `shipcosim.options.RunOptions`: `until` and `store` stop at a time and keep the state of the whole
+        system, `resume` continues from there; `isolate` has each component run in a process of its own.
+
+    Returns
+    -------
+    Run
+        Its `table` has one row per output interval, `time` in s; variables are named ``component.connector``. It is
+        read like its table: ``run["vessel.x"]``.
+
+    Raises
+    ------
+    ShipcosimError
+        If something does not fit together, or the run fails.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> drift = shipcosim.simulate("gunnerus_open", stop_time=1.0, step_size=0.1, set={"port_rpm": 60.0})
+    >>> drift.sizes["time"], bool(drift["vessel.u"][-1] > 0.0)
+    (11, True)
+    """
+    prepared = prepare_simulation(
+        system,
+        scenario,
+        stop_time=stop_time,
+        step_size=step_size,
+        output_interval=output_interval,
+        set=set,
+        parameters=parameters,
+        components=components,
+        events=events,
+        start_time=start_time,
+        interpolate=interpolate,
+        max_gap=max_gap,
+        strict=strict,
+        **options,
+    )
+    return prepared.run(out, force=force)
+
+
+def prepare_simulation(
+    system: AnySystem | None = None,
+    scenario: AnyScenario | None = None,
+    *,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    output_interval: float | str | None = None,
+    set: Mapping[str, object] | None = None,
+    parameters: Sequence[AnyPath] = (),
+    components: Mapping[str, AnyPath] | None = None,
+    events: Iterable[Mapping[str, object]] = (),
+    start_time: float | str | None = None,
+    interpolate: Sequence[str] = (),
+    max_gap: float | str | None = None,
+    strict: bool = False,
+    **options: Any,
+) -> PreparedRun:
+    """Read and check a run of a system; arguments and errors as for `simulate`."""
+    osp_events = None
+    if isinstance(scenario, (str, os.PathLike)) and not is_osp(scenario):
+        scenario = read_scenario(scenario)
+    elif not isinstance(scenario, Scenario):
+        osp_events, scenario = scenario, None
+    ship = system_for(system, scenario, parameters, components, strict)
+
+    # A run that continues has the start time of the run before; a scenario's times are on a clock that starts at 0.
+    if start_time is None:
+        continues = options.get("resume") is not None
+        start_time = ship.experiment.start_time if scenario is None and not continues else 0.0
+    inputs = fed_by(options.get("inputs"), ship, interpolate, max_gap)
+    how = options_of({"start_time": start_time, **options, "inputs": inputs})
+    start_values = settings_of_one(ship, mapping("set", set))
+    with_values(ship, start_values, named("set"))
+    times = without_none({"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval})
+    happening = scenario_of(scenario, ship, times | {"set": start_values, "events": list(events)})
+    happening, remarks = with_osp_events(happening, osp_events, how.start_time)
+    texts = changes(start_values, parameters, components, (), how)
+    if scenario is not None:
+        texts += times_changed(times, happening)
+    return _prepared(ship, happening, how, texts, remarks, 0.0 if scenario is None else scenario.stop_time)
+
+
+def system_for(
+    system: AnySystem | None,
+    scenario: Scenario | None,
+    parameters: Sequence[AnyPath] = (),
+    components: Mapping[str, AnyPath] | None = None,
+    strict: bool = False,
+) -> System:
+    """The checked system that is given, or the scenario's, with the scenario's parameter sets and FMUs."""
+    if system is None and scenario is None:
+        raise ShipcosimError(Problem("simulate", "system is missing.", "Give a system or a scenario."))
+    if scenario is None or isinstance(system, System):
+        assert system is not None
+        return Reading(parameters=parameters, components=components, strict=strict).system(system)
+    swapped = {**scenario.component_paths(), **(components or {})}
+    sets = [*scenario.parameter_paths, *listed(parameters)]
+    reading = Reading(parameters=sets, components=swapped, strict=strict)
+    return reading.system(scenario.system_path if system is None else system)
+
+
+def fed_by(
+    table: xarray.Dataset | None, system: System, interpolate: Sequence[str], max_gap: float | str | None
+) -> xarray.Dataset | None:
+    """The table that feeds a system's inputs, with what its columns do between their rows; arguments of `simulate`."""
+    if table is None:
+        if interpolate or max_gap is not None:
+            found = "There is no table that this could be about."
+            raise ShipcosimError(
+                Problem(f"{named('interpolate')}, {named('max_gap')}", found, f"Give one as {named('inputs')}.")
+            )
+        return None
+    longest = in_seconds({"max_gap": max_gap}, ["max_gap"])["max_gap"]
+    table = interpolated(table, system, interpolate)
+    return table if longest is None else table.assign_attrs(max_gap=longest)
+
+
+def is_osp(path: AnyPath) -> bool:
+    """Whether a scenario file is one of OSP, by its ending."""
+    return os.fspath(path).lower().endswith((".json", ".yaml", ".yml"))
+
+
+def options_of(given: Mapping[str, Any]) -> RunOptions:
+    """Options of a run, with times that are texts in seconds.
+
+    Raises
+    ------
+    ShipcosimError
+        If a time is none, or a timeout is given for components that are not isolated.
+    """
+    if given.get("timeout") is not None and not given.get("isolate"):
+        raise ShipcosimError(Problem(named("timeout"), "Without isolate there is no limit to a component's time."))
+    return RunOptions(**in_seconds(given, ("start_time", "until", "timeout")))
+
+
+def changes(
+    start_values: Mapping[str, object],
+    parameters: Sequence[AnyPath],
+    components: Mapping[str, AnyPath] | None,
+    fmus: Sequence[AnyPath],
+    options: RunOptions,
+) -> list[str]:
+    """What a run changes of what the files say, each as a text; files by their names, whoever runs it from wherever."""
+    texts = [f"{name} = {_text(value)}" for name, value in start_values.items()]
+    texts += [f"parameter set {Path(one).name}" for one in listed(parameters)]
+    texts += [f"{name} runs {Path(fmu).name}" for name, fmu in (components or {}).items()]
+    texts += [f"FMUs of folder {Path(one).name}" for one in fmus]
+    if options.engine != RunOptions.engine:
+        texts.append(f"engine {options.engine}")
+    if options.order != RunOptions.order:
+        texts.append(f"order {options.order}")
+    if options.until is not None:
+        texts.append(f"until {options.until:g} s")
+    if isinstance(options.resume, (str, os.PathLike)):
+        texts.append(f"continued from {Path(options.resume).name}")
+    return texts
+
+
+def times_changed(times: Mapping[str, object], scenario: Scenario) -> list[str]:
+    """Times that this run has in place of its scenario's, each as a text."""
+    return [f"{name.replace('_', ' ')} {getattr(scenario, name):g} s" for name in times]
+
+
+def _text(value: object) -> str:
+    """A start value as one writes it in a file."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value.item() if hasattr(value, "item") else value)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _prepared(
+    system: System,
+    scenario: Scenario,
+    options: RunOptions,
+    changed: Sequence[str],
+    remarks: Sequence[Problem],
+    planned: float,
+) -> PreparedRun:
+    """Check a scenario with its system, and gather what should be known before the run."""
+    happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
+    problems = check_scenario(scenario, happening)
+    found = [*remarks, *(one for one in system.remarks if one.where not in system.components)]
+    if errors := [problem for problem in problems if problem.severity == "error"]:
+        raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
+    # A run that is shorter than planned leaves events and expectations out on purpose.
+    of_times = check_times(scenario) if scenario.stop_time < planned else ()
+    found += [problem for problem in problems if problem not in of_times]
+    return PreparedRun(system, scenario, options, tuple(changed), tuple(found), planned)

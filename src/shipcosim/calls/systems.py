@@ -1,0 +1,297 @@
+"""Systems: opened, checked, compared between engines, their capability."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from shipcosim import library
+from shipcosim.calls.arguments import (
+    AnyPath,
+    AnyScenario,
+    AnySystem,
+    Reading,
+    find,
+    in_seconds,
+    listed,
+    mapping,
+    named,
+    system_and_scenario,
+    without_none,
+)
+from shipcosim.calls.keywords import with_known_keywords
+from shipcosim.errors import Problem, ShipcosimError, held_strictly
+from shipcosim.options import RunOptions
+from shipcosim.results.check import CheckedFiles
+from shipcosim.results.shown import parts_of
+from shipcosim.results.studies import CapabilityOfShip, EngineComparison
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import System, SystemStructure, osp_file, pack
+from shipcosim.ssp import read as read_structure
+from shipcosim.staging import check_targets
+
+__all__ = ["capability", "check", "compare", "read"]
+
+SYSTEM_OF_CAPABILITY = "gunnerus_dp"
+"""Whose capability is computed where no system is given."""
+
+
+def read(path: AnyPath, *, fmus: Iterable[AnyPath] | None = None) -> SystemStructure:
+    """Read a system structure to look at it, change it, run it, write it.
+
+    Parameters
+    ----------
+    path : path or name
+        A .ssp (with ``#Variant.ssd`` behind it for another SSD), a folder with a SystemStructure.ssd, a .ssd, or the
+        name of a system.
+    fmus : iterable of path, optional
+        Folders searched for FMUs that are not beside the SSD; those of its project and ours if not given.
+
+    Returns
+    -------
+    SystemStructure
+        It may have faults: `check` lists them.
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such system.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> sorted(shipcosim.read("otter_open").components)
+    ['environment', 'left', 'right', 'vessel']
+    """
+    found = find("system", path)
+    return read_structure(found, fmus=library.fmus(found) if fmus is None else fmus)
+
+
+@with_known_keywords
+def check(
+    files: AnyPath | Sequence[AnyPath],
+    *,
+    channels: AnyPath | None = None,
+    hosts: Sequence[str] = (),
+    strict: bool = False,
+) -> CheckedFiles:
+    """Validate files: schema, then meaning. Loads no binary and runs nothing.
+
+    Parameters
+    ----------
+    files : path or name, or a list of them
+        Systems, scenarios, studies, causes, parameter sets, FMUs, ship files, channel files, measured data.
+    channels : path, optional
+        Channel file of measured data.
+    hosts : sequence of str
+        ``"libcosim"`` or ``"ecos"``: what it would ignore or refuse is an error.
+    strict : bool
+        Refuse what breaks a standard, even where it can mean one thing only.
+
+    Returns
+    -------
+    CheckedFiles
+
+    Raises
+    ------
+    ShipcosimError
+        If there is no such file, name or tool.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.check("four_corner").passed
+    True
+    """
+    from shipcosim.checks import check_any, estimates_in, variables_in
+    from shipcosim.ssp.portability.check import check_host
+
+    tools = [hosts] if isinstance(hosts, str) else hosts
+    for tool in tools:
+        check_host(tool)
+    paths = {os.fspath(one): library.find_any(os.fspath(one)) for one in listed(files)}
+    table = None if channels is None else Path(channels)
+    found = {name: check_any(path, table, tools) for name, path in paths.items()}
+    held = {name: tuple(held_strictly(problems) if strict else problems) for name, problems in found.items()}
+    variables = {name: tuple(rows) for name, path in paths.items() if (rows := variables_in(path))}
+    estimates = {name: tuple(rows) for name, path in paths.items() if (rows := estimates_in(path))}
+    return CheckedFiles(held, variables, estimates)
+
+
+@with_known_keywords
+def compare(
+    what: AnyScenario | AnySystem,
+    *,
+    stop_time: float | str | None = None,
+    step_size: float | str | None = None,
+    set: Mapping[str, object] | None = None,
+    parameters: Sequence[AnyPath] = (),
+    components: Mapping[str, AnyPath] | None = None,
+    fmus: Sequence[AnyPath] = (),
+    events: AnyPath | None = None,
+    tolerance: float = 1e-9,
+    as_read: bool = False,
+    strict: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+) -> EngineComparison:
+    """Run on every engine that is installed, and on ours with half the step; by how much does each signal differ?
+
+    Parameters
+    ----------
+    what : Scenario, SystemStructure, System, path or name
+        A scenario or a system; a name is a scenario's where there is one.
+    stop_time, step_size : float, optional
+        In place of the scenario's, or of the system's default experiment. [s]
+    set : mapping of str to value, optional
+        Start values by full name, in the FMUs' units.
+    parameters : sequence of path
+        Parameter sets (.ssv) over those of the scenario or system.
+    components : mapping of str to path or name, optional
+        FMUs that components run in place of their own.
+    fmus : sequence of path
+        Folders in which FMUs are looked for first.
+    events : path, optional
+        Scenario file of OSP (.json, .yaml): what happens besides.
+    tolerance : float
+        Difference from which on a signal differs, relative to its range.
+    as_read : bool
+        Let libcosim and ecos read the file themselves, as their users run it.
+    strict : bool
+        Refuse what breaks a standard, also where it can mean one thing only.
+    progress : callable, optional
+        Called with (parts done, parts in all).
+
+    Returns
+    -------
+    EngineComparison
+
+    Raises
+    ------
+    ShipcosimError
+        If our own engine cannot run it.
+    """
+    from shipcosim.cosim.compare import compare
+
+    reading = Reading(parameters=parameters, components=components, fmus=fmus, strict=strict)
+    times = in_seconds({"stop_time": stop_time, "step_size": step_size}, ["stop_time", "step_size"])
+    keys = without_none(times) | {"set": mapping("set", set)}
+    system, scenario, remarks = system_and_scenario(what, reading, keys, events)
+    flaws = [problem for problem in system.remarks if problem.flaw]
+    with _as_read(what, system, scenario, parameters) if as_read else nullcontext({}) as tools:
+        found = compare(system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools)
+    name = scenario.name or system.name
+    return EngineComparison(**parts_of(found), name=name, flaws=(*flaws, *remarks))
+
+
+@contextmanager
+def _as_read(
+    given: AnyScenario | AnySystem, system: System, scenario: Scenario, parameters: Sequence[AnyPath]
+) -> Iterator[dict[str, Any]]:
+    """Arguments with which the tools of a comparison read a system's file themselves.
+
+    Parameters
+    ----------
+    given : path or name
+        An .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml.
+    system : System
+        As we read it.
+    scenario : Scenario
+        Its steps.
+    parameters : sequence of path
+        Parameter sets that are not in the file: there must be none.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is none of these, a component runs another FMU than the file says, or the system does not start at 0.
+    """
+    from shipcosim.cosim.engines.as_read import readers
+    from shipcosim.ssp.portability.as_interpreted import taken_by, told_set
+
+    if not isinstance(given, (str, os.PathLike)):
+        raise ShipcosimError(Problem("as_read", "There is no file that a tool could read.", "Give the path of one."))
+    name = library.find_any(os.fspath(given))
+    path, fmus = Path(name), library.fmus(name)
+    if parameters:
+        raise ShipcosimError(Problem(named("parameters"), "A tool that reads the file itself does not know them."))
+    if system.swapped:
+        found = f"A tool that reads the file itself runs the FMU that it names for {', '.join(system.swapped)}."
+        raise ShipcosimError(Problem(name, found, f"Compare FMUs in place of others without {named('as_read')}."))
+    if system.experiment.start_time:
+        found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
+        raise ShipcosimError(Problem(name, found, "Let it start at 0."))
+    with TemporaryDirectory(prefix="shipcosim-") as folder:
+        if structure := osp_file(path):
+            yield {"readers": readers(structure.resolve(), scenario)}
+            return
+        if path.is_dir():
+            packed = Path(folder) / "system.ssp"
+            pack(path, fmus, packed)
+        elif path.suffix.lower() == ".ssp":
+            packed = path.resolve()
+        else:
+            remedy = "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml."
+            raise ShipcosimError(Problem(name, "The tools cannot read this themselves.", remedy))
+        yield {
+            "readers": readers(packed, scenario, set_name=told_set(name, fmus=fmus)),
+            "taken": partial(taken_by, path=name, fmus=fmus),
+        }
+
+
+@with_known_keywords
+def capability(
+    system: AnyPath = SYSTEM_OF_CAPABILITY,
+    *,
+    parameters: Sequence[AnyPath] = (),
+    ship: str | None = None,
+    failures: Sequence[Sequence[str]] = (),
+    out: AnyPath | None = None,
+    force: bool = False,
+) -> CapabilityOfShip:
+    """Static DP capability: the weather that a ship's thrusters balance, intact and after each single failure.
+
+    Parameters
+    ----------
+    system : path or name
+        A system with thrusters.
+    parameters : sequence of path or name
+        Parameter sets over the system's own; the last wins.
+    ship : path or name, optional
+        Ship with capability.toml; the one that is named as the last set if not given.
+    failures : sequence of sequence of str
+        Thrusters that one failure takes out together: ``[("port", "tunnel")]``.
+    out : path, optional
+        Folder that gets report.html, capability.csv and capability.nc; nothing is written without.
+    force : bool
+        Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+    Returns
+    -------
+    CapabilityOfShip
+
+    Raises
+    ------
+    ShipcosimError
+        With everything that is missing or cannot be.
+
+    Examples
+    --------
+    >>> import shipcosim
+    >>> shipcosim.capability().notation
+    'DP capability-L1(5, 4, 0, 0)'
+    """
+    from shipcosim.capability import capability_of, vessel_of
+
+    if out is not None:
+        check_targets(Path(out))
+    groups = [(one,) if isinstance(one, str) else tuple(one) for one in failures]
+    vessel = vessel_of(os.fspath(system), [Path(one) for one in listed(parameters)], ship)
+    result = CapabilityOfShip(**parts_of(capability_of(vessel, groups)))
+    if out is not None:
+        result.save(out, force=force)
+    return result

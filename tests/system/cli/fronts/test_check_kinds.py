@@ -1,0 +1,44 @@
+"""`check` knows what a .toml describes by its keys, whatever is wrong with it."""
+
+import pytest
+
+from shipcosim.checks import kind_of_toml
+
+KINDS = {
+    "src/shipcosim/diagnose/hypotheses/causes/*.toml": "cause",
+    "scenarios/**/*.toml": "scenario",
+    "studies/*.toml": "study",
+    "ssp/ships/osv/ship.toml": "ship",
+    "tests/system/measured/channels/*.toml": "channels",
+}
+
+
+@pytest.mark.parametrize("pattern", KINDS)
+def test_files_of_the_project_are_of_their_kind(pattern, root):
+    files = list(root.glob(pattern))
+    assert files and {kind_of_toml(file) for file in files} == {KINDS[pattern]}
+
+
+@pytest.mark.parametrize("pattern", ["src/shipcosim/diagnose/hypotheses/causes/*.toml", "ssp/ships/osv/ship.toml"])
+def test_a_file_that_is_no_toml_is_still_of_its_kind(pattern, root, tmp_path):
+    for file in root.glob(pattern):
+        broken = tmp_path / "broken.toml"
+        broken.write_text(file.read_text(encoding="utf-8") + "\nbroken = = 1\n", encoding="utf-8")
+        assert kind_of_toml(broken) == KINDS[pattern]
+
+
+def test_a_cause_is_right_or_its_mistakes_are_said(root, tmp_path, call):
+    own = root / "src/shipcosim/diagnose/hypotheses/causes/tow.toml"
+    assert call("check", own).code == 0
+    wrong = tmp_path / "tow.toml"
+    wrong.write_text('cause = "tow"\nsentense = "A line pulls"\n')
+    done = call("check", wrong)
+    assert done.code == 1 and "tow.toml, sentense" in done.out and "docs/add-a-cause.md" in done.out
+
+
+def test_a_channel_file_is_right_or_its_mistakes_are_said(root, tmp_path, call):
+    assert call("check", root / "tests/system/measured/channels/otter.toml").code == 0
+    wrong = tmp_path / "channels.toml"
+    wrong.write_text('north = "N"\nheadin = "psi"\n')
+    done = call("check", wrong)
+    assert done.code == 1 and "Did you mean 'heading'?" in done.out and "time" in done.out
