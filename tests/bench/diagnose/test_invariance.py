@@ -1,7 +1,7 @@
 """At night: the same log told otherwise gets the same answer, turned accordingly; no truth is asked."""
 
 import pytest
-from diagnose.test_invariance import TURN, agree, answer, check_mirrored, drawn
+from diagnose.test_invariance import TURN, agree, answer, drawn
 
 from trial import variants
 
@@ -32,3 +32,11 @@ def test_rows_between_the_rows_still_name_the_cause(answer):
 
 def test_mirroring_the_ship_mirrors_a_tow(answer):
     check_mirrored("tow", answer)
+
+
+def test_mirroring_the_ship_mirrors_a_turned_thruster(answer):
+    check_mirrored("azimuth_offset", answer)
+
+
+def check_mirrored(cause, answer):
+    agree(answer(cause), answer(cause, "mirrored", variants.mirrored), variants.mirrored_finding, 0.5)

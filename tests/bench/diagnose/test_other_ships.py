@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 from diagnose import ferry, usv
+from diagnose.test_other_ships import along, short_ferry
 
+from shipcosim.diagnose.explanation.null_distribution import healthy_records
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
+from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.pipeline import find_causes
 from shipcosim.series import write_table
 
@@ -91,3 +95,11 @@ def test_what_is_wrong_with_the_usv_is_named(label, tmp_path):
 )
 def test_the_healthy_usv_is_consistent(rate, tmp_path):
     assert found_in(usv.log(seed=30, rate=rate), usv.structure, tmp_path).verdict == "consistent"
+
+
+def test_healthy_ferries_drawn_with_places_of_their_thrusters_keep_to_the_track():
+    model, record, motion = along(ferry.structure, short_ferry)
+    problem = IdentificationProblem(record, model, (), first_noise(record, 96.0), motion)
+    healthy = healthy_records(problem, motion, 4, np.random.default_rng(0))
+    off = np.hypot(healthy.measured[..., 0] - motion.x, healthy.measured[..., 1] - motion.y)
+    assert off.shape == (4, record.time.size) and off.max() < 10.0

@@ -55,14 +55,6 @@ def test_turning_the_earth_turns_a_force_over_ground(answer):
     agree(answer("tow"), turned, lambda *f: variants.turned_finding(*f, TURN), 0.5)
 
 
-def test_mirroring_the_ship_mirrors_a_turned_thruster(answer):
-    check_mirrored("azimuth_offset", answer)
-
-
-def check_mirrored(cause, answer):
-    agree(answer(cause), answer(cause, "mirrored", variants.mirrored), variants.mirrored_finding, 0.5)
-
-
 def tables_agree(one, other):
     assert set(one) == set(other)
     for name in one:

@@ -8,13 +8,10 @@ from diagnose import ferry, twin, usv
 from scipy.integrate import solve_ivp
 
 import shipcosim as sc
-from shipcosim.diagnose.explanation.null_distribution import healthy_records
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
-from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.linearisation import Regressor, advanced, linearise
-from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.ship.dynamics import loads, motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, first_motion, record_of
@@ -23,6 +20,7 @@ from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.motion import Motion
 
 LOSS = ParameterEstimate(0.3, 0.02, "1")
+NORTH_EAST = (("north", -9e3), ("east", 8e3))  # N
 LEFT_TOE = usv.SIDES["left"][1]
 short_ferry = cache(lambda: ferry.log(minutes=5.0))
 short_usv = cache(lambda: usv.log(minutes=3.0))
@@ -91,14 +89,6 @@ def test_a_ship_of_our_own_size_is_still_moved_by_one_step_a_row():
     record = record_of(twin.logs()["healthy"], twin.model())
     assert record.substeps(twin.model()) == 1
     assert record.substeps(along(usv.structure, short_usv)[0]) == 4
-
-
-def test_healthy_ferries_drawn_with_places_of_their_thrusters_keep_to_the_track():
-    model, record, motion = along(ferry.structure, short_ferry)
-    problem = IdentificationProblem(record, model, (), first_noise(record, 96.0), motion)
-    healthy = healthy_records(problem, motion, 4, np.random.default_rng(0))
-    off = np.hypot(healthy.measured[..., 0] - motion.x, healthy.measured[..., 1] - motion.y)
-    assert off.shape == (4, record.time.size) and off.max() < 10.0
 
 
 def test_the_slipstream_is_that_of_the_unit_which_the_system_wires():

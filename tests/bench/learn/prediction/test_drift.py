@@ -8,7 +8,7 @@ import torch
 from learn.prediction.test_drift import SHIP, sailed
 
 from prediction import paper_iv_rollouts
-from shipcosim.learn.prediction import paper_iv, rollouts, training
+from shipcosim.learn.prediction import drift, paper_iv, rollouts, training
 from shipcosim.models.prediction import paper_iv as law
 
 
@@ -50,3 +50,11 @@ def test_rollouts_of_paper_iv_are_its_predictions_and_learn_bit_by_bit():
     other, _ = paper_iv_rollouts.fit(arrays, pieces, ship, recipe, 4, lambda done, total: None)
     assert history[-1] < history[0]
     assert all(one[name].tobytes() == other[name].tobytes() for name in one)
+
+
+def test_a_few_steps_go_down_and_repeat_bit_by_bit():
+    recipe, data = replace(training.OURS, steps=3, learning_rate=0.02), sailed()
+    one, history = drift.fit(data, SHIP, recipe, lambda done, total: None)
+    other, _ = drift.fit(data, SHIP, recipe, lambda done, total: None)
+    assert one.tobytes() == other.tobytes()
+    assert history[-1]["all worlds"] < history[0]["all worlds"]
