@@ -83,7 +83,9 @@ def static_optimum(
     ]
     for first, last in (pair for of_unit in choices for pair in of_unit):
         if not (0.0 <= last - first <= np.pi or last - first >= 2.0 * np.pi):
-            raise ValueError(f"cone from {first} to {last} rad: more than half a circle, which is not convex; split it")
+            raise ValueError(
+                f"cone from {first} to {last} rad: more than half a circle, which is not convex; split it"
+            )
     tau = np.asarray(tau, float)
     found = [_convex(tau, units, chosen, yaw_lever) for chosen in product(*choices)]
     cost = [one.power + (one.missed**2 / _slack(units, yaw_lever)).sum(-1) / 2.0 for one in found]
@@ -118,13 +120,17 @@ def _convex(tau, units, cones, yaw_lever):
         prices = np.where(good[:, None], prices + step, prices)
         old = value, slope, curve, thrusts, angles
         value, slope, curve, thrusts, angles = (
-            np.where(good.reshape(-1, *(1,) * (a.ndim - 1)), a, b) for a, b in zip(new, old, strict=True)
+            np.where(good.reshape(-1, *(1,) * (a.ndim - 1)), a, b)
+            for a, b in zip(new, old, strict=True)
         )
         damping = np.maximum(np.where(good, 0.2 * damping, 8.0 * damping), 1e-10)
         if (np.abs(slope * scale).max(-1) < 1e-6).all():
             break
     missed = tau - _load(units, thrusts, angles)
-    power = np.sum([_price(unit, f) * np.abs(f) ** 1.5 for unit, f in zip(units, thrusts.T, strict=True)], axis=0)
+    power = np.sum(
+        [_price(unit, f) * np.abs(f) ** 1.5 for unit, f in zip(units, thrusts.T, strict=True)],
+        axis=0,
+    )
     return Optimum(power, thrusts, angles, missed)
 
 
@@ -172,9 +178,17 @@ def _taken(unit, cone, g):
     most = np.where(along < 0.0, -min(unit.least, 0.0), unit.most)
     free, f = f < most, np.sign(along) * np.minimum(f, most)
     gain = along * f - price * np.abs(f) ** 1.5
-    u, t = np.stack([np.cos(angle), np.sin(angle)], -1), np.stack([-np.sin(angle), np.cos(angle)], -1)
+    u, t = (
+        np.stack([np.cos(angle), np.sin(angle)], -1),
+        np.stack([-np.sin(angle), np.cos(angle)], -1),
+    )
     rate = np.where(free, 2.0 * np.abs(along) / (1.5 * price) ** 2, 0.0)
     bend = rate[:, None, None] * u[:, :, None] * u[:, None, :]
     inside = turns & (np.abs(off) < half)
-    bend = bend + np.where(inside, f / np.maximum(size, 1e-12), 0.0)[:, None, None] * t[:, :, None] * t[:, None, :]
+    bend = (
+        bend
+        + np.where(inside, f / np.maximum(size, 1e-12), 0.0)[:, None, None]
+        * t[:, :, None]
+        * t[:, None, :]
+    )
     return gain, f[:, None] * u, f, angle, bend

@@ -10,7 +10,13 @@ from shipcosim.angles import TURN, wrap_series
 from shipcosim.capability.conditions import Condition
 from shipcosim.capability.particulars import Hull
 
-ETA_1 = {"open": 800.0, "cycloidal": 900.0, "tunnel": 900.0, "contra-rotating": 950.0, "ducted": 1200.0}
+ETA_1 = {
+    "open": 800.0,
+    "cycloidal": 900.0,
+    "tunnel": 900.0,
+    "contra-rotating": 950.0,
+    "ducted": 1200.0,
+}
 ETA_2_INLET = {"broken": 1.0, "rounded": 1.07, "other": 0.93}
 ETA_2_ASTERN = {
     ("fixed", False): 0.9,
@@ -60,7 +66,9 @@ class Thruster:
     angle: float = 0.0
 
 
-def nominal_thrust(diameter: float, power: float, eta_1: float, eta_2: float, eta_m: float) -> float:
+def nominal_thrust(
+    diameter: float, power: float, eta_1: float, eta_2: float, eta_m: float
+) -> float:
     """Thrust at the bollard, eta1 eta2 (D P eta_M)^(2/3) with D in m and P in kW.
 
     Parameters
@@ -85,7 +93,9 @@ def nominal_thrust(diameter: float, power: float, eta_1: float, eta_2: float, et
     return eta_1 * eta_2 * (diameter * power / 1000.0 * eta_m) ** (2.0 / 3.0)
 
 
-def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_from: NDArray) -> NDArray:
+def ventilation(
+    thruster: Thruster, hull: Hull, condition: Condition, weather_from: NDArray
+) -> NDArray:
     """Share of the thrust that a propeller near a moving surface keeps.
 
     Phi(2 (2 xi / D) - 1.5 sigma), Phi the normal distribution, xi the submergence of the shaft, and sigma a measure of

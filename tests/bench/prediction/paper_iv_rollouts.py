@@ -77,7 +77,9 @@ def stretches(sailed: Sailed, ship: Ship, first: int = 10, every: int = 8) -> St
     return Stretches(*map(torch.from_numpy, joined))
 
 
-def ahead(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship) -> torch.Tensor:
+def ahead(
+    weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship
+) -> torch.Tensor:
     """Predictions by each network alone, as `models.prediction.paper_iv.predict` makes them.
 
     Parameters
@@ -108,13 +110,20 @@ def ahead(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stre
         then = [a + paper_iv.PERIOD * (b + c) for a, b, c in zip(nu, dot, residual, strict=True)]
         u, v, r = (0.5 * (a + b) for a, b in zip(nu, then, strict=True))
         north, east = to_ned(psi + 0.5 * paper_iv.PERIOD * r, u, v)
-        x, y, psi, nu = x + paper_iv.PERIOD * north, y + paper_iv.PERIOD * east, psi + paper_iv.PERIOD * r, then
+        x, y, psi, nu = (
+            x + paper_iv.PERIOD * north,
+            y + paper_iv.PERIOD * east,
+            psi + paper_iv.PERIOD * r,
+            then,
+        )
         if second + 1 in HORIZONS:
             found.append(torch.stack([x, y, psi], dim=-1))
     return torch.stack(found)
 
 
-def loss(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship) -> torch.Tensor:
+def loss(
+    weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship
+) -> torch.Tensor:
     """What predictions miss at 10, 30 and 60 s, nearly in proportion where it is much; as of our predictor.
 
     Parameters
@@ -129,12 +138,20 @@ def loss(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stret
     """
     off = ahead(weights, scales, data, ship) - data.reached[:, None]
     turned = torch.atan2(off[..., 2].sin(), off[..., 2].cos())
-    missed = torch.stack([off[..., 0], off[..., 1], turned], dim=-1) / torch.from_numpy(SCALES)[:, None, None, :]
+    missed = (
+        torch.stack([off[..., 0], off[..., 1], turned], dim=-1)
+        / torch.from_numpy(SCALES)[:, None, None, :]
+    )
     return (torch.sqrt(1.0 + missed * missed) - 1.0).mean()
 
 
 def fit(
-    scales: dict[str, np.ndarray], data: Stretches, ship: Ship, recipe: PaperIVTraining, steps: int, progress: Progress
+    scales: dict[str, np.ndarray],
+    data: Stretches,
+    ship: Ship,
+    recipe: PaperIVTraining,
+    steps: int,
+    progress: Progress,
 ) -> tuple[dict[str, np.ndarray], list[float]]:
     """Train the ensemble from the first weights of one-step training.
 
