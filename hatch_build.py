@@ -10,4 +10,6 @@ class Shipped(BuildHookInterface):
 
     def initialize(self, version, build_data):
         if version != "editable":
-            build_data["force_include"] |= {folder: f"shipcosim/shipped/{folder}" for folder in SHIPPED}
+            build_data["force_include"] |= {
+                folder: f"shipcosim/shipped/{folder}" for folder in SHIPPED
+            }

@@ -10,7 +10,15 @@ import time
 from pathlib import Path
 
 BIN = Path(sys.executable).parent
-TESTS = [str(BIN / "pytest"), "-n", "2", "--dist", "loadfile", "--no-loadscope-reorder", "--durations=25"]
+TESTS = [
+    str(BIN / "pytest"),
+    "-n",
+    "2",
+    "--dist",
+    "loadfile",
+    "--no-loadscope-reorder",
+    "--durations=25",
+]
 ALONE = [str(BIN / "pytest"), "-s", "--durations=25"]
 LINT = {
     "ruff check": [str(BIN / "ruff"), "check", "."],
@@ -33,7 +41,12 @@ def main(target: str) -> int:
     if target == "test":
         beside = {"pyright": [str(BIN / "pyright")]}
         return run(LINT | BUILD | {"tests": [*TESTS, "tests/unit", "tests/system", "src"]}, beside)
-    benches = [*TESTS, "tests/bench", "tests/system/bench", *(f"--ignore={folder}" for folder in TIMED)]
+    benches = [
+        *TESTS,
+        "tests/bench",
+        "tests/system/bench",
+        *(f"--ignore={folder}" for folder in TIMED),
+    ]
     numeric = [*TESTS, "tests/unit/models", "tests/system/learn", "tests/system/diagnose"]
     failed = run(BUILD | {"tests by the clock": [*ALONE, *TIMED]})
     failed |= run({"benches": benches}, SHIPCOSIM_FRESH_SEEDS="1")
@@ -41,7 +54,9 @@ def main(target: str) -> int:
     return failed
 
 
-def run(steps: dict[str, list[str]], beside: dict[str, list[str]] | None = None, **environment: str) -> int:
+def run(
+    steps: dict[str, list[str]], beside: dict[str, list[str]] | None = None, **environment: str
+) -> int:
     """Run steps one after the other up to the first that fails, others beside them; 0 if none failed."""
     start = time.monotonic()
     started = {

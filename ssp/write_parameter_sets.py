@@ -34,7 +34,11 @@ def kinds(fmu: str) -> tuple[type, ...]:
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
-    found = next(c for c in vars(module).values() if getattr(c, "__module__", "") == spec.name and hasattr(c, "groups"))
+    found = next(
+        c
+        for c in vars(module).values()
+        if getattr(c, "__module__", "") == spec.name and hasattr(c, "groups")
+    )
     return tuple(group.kind for group in found.groups)
 
 

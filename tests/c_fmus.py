@@ -234,7 +234,12 @@ int F(fmiGetEventIndicators)(M* m, double* z, size_t n) { refresh(m); indicators
 int F(fmiTerminate)(M* m) { return 0; }
 """
 )
-ADAPTERS = {("1.0", "CoSimulation"): FMI1_CS, ("1.0", "ModelExchange"): FMI1_ME, "2.0": FMI2, "3.0": FMI3}
+ADAPTERS = {
+    ("1.0", "CoSimulation"): FMI1_CS,
+    ("1.0", "ModelExchange"): FMI1_ME,
+    "2.0": FMI2,
+    "3.0": FMI3,
+}
 FMI1_NAMES = """
 CancelStep CompletedIntegratorStep DoStep EventUpdate FreeModelInstance FreeSlaveInstance GetBoolean GetBooleanStatus
 GetContinuousStates GetDerivatives GetEventIndicators GetInteger GetIntegerStatus GetModelTypesPlatform
@@ -271,16 +276,35 @@ def build(folder, name, version, model, description, form=None, code=""):
     from fmpy import platform, platform_tuple, sharedLibraryExtension
 
     text = (
-        HEAD + (model + DEFAULTS + ADAPTERS[(version, form) if version == "1.0" else version] if model else "") + code
+        HEAD
+        + (
+            model + DEFAULTS + ADAPTERS[(version, form) if version == "1.0" else version]
+            if model
+            else ""
+        )
+        + code
     )
-    text += "\n".join(_stub(n, version, name) for n in functions_of(version) if not _is_there(n, version, text))
+    text += "\n".join(
+        _stub(n, version, name) for n in functions_of(version) if not _is_there(n, version, text)
+    )
     (folder / f"{name}.c").write_text(text)
     library = folder / f"{name}{sharedLibraryExtension}"
-    options = ["-shared", "-fPIC", "-O1", f"-DID={name}", "-o", library, folder / f"{name}.c", "-lm"]
+    options = [
+        "-shared",
+        "-fPIC",
+        "-O1",
+        f"-DID={name}",
+        "-o",
+        library,
+        folder / f"{name}.c",
+        "-lm",
+    ]
     subprocess.run([compiler(), *options], check=True)
     with zipfile.ZipFile(folder / f"{name}.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", description)
-        archive.write(library, f"binaries/{platform_tuple if version == '3.0' else platform}/{library.name}")
+        archive.write(
+            library, f"binaries/{platform_tuple if version == '3.0' else platform}/{library.name}"
+        )
     return folder / f"{name}.fmu"
 
 
@@ -291,21 +315,29 @@ def functions_of(version):
     if version == "1.0":
         return [f"fmi{name}" for name in FMI1_NAMES.split()]
     own = f"fmi{version[0]}"
-    header = (Path(fmpy.__file__).parent / "c-code" / f"{own}Functions.h").read_text(encoding="utf-8")
+    header = (Path(fmpy.__file__).parent / "c-code" / f"{own}Functions.h").read_text(
+        encoding="utf-8"
+    )
     return sorted(set(re.findall(rf"FMI\d_Export \w+\s+({own}\w+);", header)))
 
 
 def _stub(function, version, name):
     return (
-        f"int {name}_{function}(void) {{ return 3; }}" if version == "1.0" else f"int {function}(void) {{ return 3; }}"
+        f"int {name}_{function}(void) {{ return 3; }}"
+        if version == "1.0"
+        else f"int {function}(void) {{ return 3; }}"
     )
 
 
 def _is_there(function, version, text):
-    return f"F({function})" in text if version == "1.0" else f" {function}(" in text.replace("*", " ")
+    return (
+        f"F({function})" in text if version == "1.0" else f" {function}(" in text.replace("*", " ")
+    )
 
 
-def describe(name, version, variables, forms=("ModelExchange",), n_states=0, n_indicators=0, **attributes):
+def describe(
+    name, version, variables, forms=("ModelExchange",), n_states=0, n_indicators=0, **attributes
+):
     """modelDescription.xml.
 
     Parameters
@@ -326,7 +358,11 @@ def describe(name, version, variables, forms=("ModelExchange",), n_states=0, n_i
     if version != "3.0":
         root["numberOfEventIndicators"] = n_indicators
     own = _attributes({"modelIdentifier": name} | attributes)
-    elements = "" if version == "1.0" else "".join(f"<{form} {own}/>" for form in sorted(forms, reverse=True))
+    elements = (
+        ""
+        if version == "1.0"
+        else "".join(f"<{form} {own}/>" for form in sorted(forms, reverse=True))
+    )
     references = {variable[0]: variable[1] for variable in variables}
     shown = "".join(_variable(version, references, *variable) for variable in variables)
     tail = _structure(version, variables, n_indicators)
@@ -350,7 +386,9 @@ def _variable(version, references, name, reference, causality, kind, start):
         reference += 100 * (kind == "Int32")
         return f'<{kind} name="{name}" valueReference="{reference}" causality="{causality}"{given}{state}/>'
     if version == "1.0":
-        how = {"local": "", "parameter": ' variability="parameter"'}.get(causality, f' causality="{causality}"')
+        how = {"local": "", "parameter": ' variability="parameter"'}.get(
+            causality, f' causality="{causality}"'
+        )
         return f'<ScalarVariable name="{name}" valueReference="{reference}"{how}><{kind}{given}/></ScalarVariable>'
     if name.startswith("der("):
         given += f' derivative="{list(references).index(_state_of(name)) + 1}"'
@@ -370,10 +408,17 @@ def _structure(version, variables, n_indicators):
     outputs = [(i, v) for i, v in enumerate(variables, start=1) if v[2] == "output"]
     derivatives = [(i, v) for i, v in enumerate(variables, start=1) if v[0].startswith("der(")]
     if version == "3.0":
-        shown = "".join(f'<Output valueReference="{v[1] + 100 * (v[3] == "Integer")}"/>' for _, v in outputs)
-        shown += "".join(f'<ContinuousStateDerivative valueReference="{v[1]}"/>' for _, v in derivatives)
+        shown = "".join(
+            f'<Output valueReference="{v[1] + 100 * (v[3] == "Integer")}"/>' for _, v in outputs
+        )
+        shown += "".join(
+            f'<ContinuousStateDerivative valueReference="{v[1]}"/>' for _, v in derivatives
+        )
         return f"<ModelStructure>{shown}</ModelStructure>"
-    shown = "".join(_unknowns(part, found) for part, found in (("Outputs", outputs), ("Derivatives", derivatives)))
+    shown = "".join(
+        _unknowns(part, found)
+        for part, found in (("Outputs", outputs), ("Derivatives", derivatives))
+    )
     return f"<ModelStructure>{shown}</ModelStructure>"
 
 

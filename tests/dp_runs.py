@@ -16,7 +16,9 @@ WIND_8 = {
 }
 WIND_10 = WIND_8 | {"environment.wind_speed": 10.0, "environment.current_speed": 0.5}
 SEA = {"environment.waves_from": NORTH_EAST}
-MODERATE = WIND_8 | SEA | {"environment.significant_wave_height": 0.3, "environment.peak_period": 5.0}
+MODERATE = (
+    WIND_8 | SEA | {"environment.significant_wave_height": 0.3, "environment.peak_period": 5.0}
+)
 ROUGH = WIND_10 | SEA | {"environment.significant_wave_height": 0.5, "environment.peak_period": 6.0}
 
 
@@ -47,12 +49,20 @@ def simulate(seeds, values, events=(), *, stop_time, h=0.05, every=1, record=Non
     columns = {"environment.seed": seeds, "sensors.seed": [seed + 100 for seed in seeds]}
     columns |= {name: np.broadcast_to(value, len(seeds)).tolist() for name, value in values.items()}
     held = [
-        (time, {name: np.broadcast_to(value, len(seeds)).tolist() for name, value in changes.items()})
+        (
+            time,
+            {name: np.broadcast_to(value, len(seeds)).tolist() for name, value in changes.items()},
+        )
         for time, changes in events
     ]
     variations = [
         {name: column[k] for name, column in columns.items()}
-        | {"events": [{"time": t, "override": {name: column[k] for name, column in all_.items()}} for t, all_ in held]}
+        | {
+            "events": [
+                {"time": t, "override": {name: column[k] for name, column in all_.items()}}
+                for t, all_ in held
+            ]
+        }
         for k in range(len(seeds))
     ]
     scenario = Scenario(
@@ -65,4 +75,6 @@ def simulate(seeds, values, events=(), *, stop_time, h=0.05, every=1, record=Non
     )
     runs = shipcosim.simulate_many(None, scenario, variations, record=record, components=components)
     assert not any(runs.error.values), runs.error.values
-    return {"time": runs.time.values} | {str(name): signal.values.T for name, signal in runs.items()}
+    return {"time": runs.time.values} | {
+        str(name): signal.values.T for name, signal in runs.items()
+    }

@@ -29,13 +29,24 @@ def rows_of(structure, system, n_steps, scenario=None):
     assert execution.add_observer(observer)
     if scenario:
         manager = CosimManipulator.create_scenario_manager()
-        assert execution.add_manipulator(manager) and execution.load_scenario(manager, str(scenario))
-    calls = {kind: getattr(observer, f"last_{kind.lower()}_values") for kind in ("Real", "Integer", "Boolean")}
+        assert execution.add_manipulator(manager) and execution.load_scenario(
+            manager, str(scenario)
+        )
+    calls = {
+        kind: getattr(observer, f"last_{kind.lower()}_values")
+        for kind in ("Real", "Integer", "Boolean")
+    }
     outputs = [
         (name, execution.slave_index_from_instance_name(name), kind, variables)
         for name, component in system.components.items()
         for kind in calls
-        if (variables := [v for v in component.fmu.variables.values() if (v.causality, v.kind) == ("output", kind)])
+        if (
+            variables := [
+                v
+                for v in component.fmu.variables.values()
+                if (v.causality, v.kind) == ("output", kind)
+            ]
+        )
     ]
     rows = {f"{name}.{v.name}": [] for name, _, _, variables in outputs for v in variables}
     for _ in range(n_steps):

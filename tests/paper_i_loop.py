@@ -20,7 +20,8 @@ from shipcosim.models.ship.hull import HullParameters
 
 STEP, SETTLED, RISE, END = 0.05, 60.0, 150.0, 400.0  # s
 HULL, WIND, LAW = (
-    parameters(kind, "osv") for kind in (HullParameters, WindParameters, filtered_pid.FilteredPidParameters)
+    parameters(kind, "osv")
+    for kind in (HullParameters, WindParameters, filtered_pid.FilteredPidParameters)
 )
 DRIFT = drift_table(parameters(vessel.DriftParameters, "osv").drift_table)
 NAMES = ("bow_1", "bow_2", "stern_1", "stern_2", "port", "starboard")
@@ -41,19 +42,28 @@ def networks(allocator, variants):
     """Networks of an allocator, of these cutoffs and seeds of the hidden layer, as one whose weights are arrays."""
     inputs, targets = paper_i.samples(*paper_i.read_exercise(), allocator, 6)
     found = [paper_i.fitted(inputs, targets, seed=seed, cutoff=cutoff) for cutoff, seed in variants]
-    put = {name: np.stack([one[name] for one in found], axis=-1) for name in ("scale", "hidden", "bias", "output")}
+    put = {
+        name: np.stack([one[name] for one in found], axis=-1)
+        for name in ("scale", "hidden", "bias", "output")
+    }
     return Network(**put, least=targets.min(axis=0), most=targets.max(axis=0))
 
 
 def sailed(found, allocator, wind_from):
     """Wind that rises from 4 to 8 m/s and waves of 2 m from one direction: paper I's test."""
     zero = np.zeros(found.bias.shape[-1])
-    ship, desired, pid = Motion(*(zero,) * 6), Desired(*(zero,) * 9), filtered_pid.at_rest(zero, zero, zero)
+    ship, desired, pid = (
+        Motion(*(zero,) * 6),
+        Desired(*(zero,) * 9),
+        filtered_pid.at_rest(zero, zero, zero),
+    )
     commands, real = np.zeros((6, len(zero))), [zero] * 6
     distance, turned, broken, sea = zero, zero, zero, components(2.0, 8.0, wind_from, 3.3, 1)
     for number in range(round(END / STEP)):
         t = number * STEP
-        waves = wave_response(t, *ship[:5], sea, DRIFT, length=HULL.length, breadth=HULL.breadth, draught=HULL.draught)
+        waves = wave_response(
+            t, *ship[:5], sea, DRIFT, length=HULL.length, breadth=HULL.breadth, draught=HULL.draught
+        )
         measured = tuple(low + wave for low, wave in zip(ship[:3], waves[1][:3], strict=True))
         pid = filtered_pid.step(pid, measured, desired, STEP, parameters=LAW)
         seen = commands if allocator == 2 else ()

@@ -55,7 +55,10 @@ def parameters(kind: type[Kind], name: str = "gunnerus-33m9", component: str = "
 
 def unit_on_centreline(**changes: float) -> AzimuthParameters:
     """An azimuth thruster of the lengthened ship on her centreline, without a neighbour."""
-    return replace(parameters(AzimuthParameters), **{"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0} | changes)
+    return replace(
+        parameters(AzimuthParameters),
+        **{"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0} | changes,
+    )
 
 
 def equipped(fmu: Any, component: str, name: str = "gunnerus-33m9") -> Any:
@@ -75,7 +78,12 @@ def lend(structure: Any, component: str, *kinds: type) -> None:
     for kind in kinds:
         made = parameters(kind)
         for field in fields(kind):
-            if field.default is MISSING or field.name in ("cross_flow_drag", "lift", "lift_x", "X_uu"):
+            if field.default is MISSING or field.name in (
+                "cross_flow_drag",
+                "lift",
+                "lift_x",
+                "X_uu",
+            ):
                 structure.set(f"{component}.{field.name}", getattr(made, field.name))
 
 

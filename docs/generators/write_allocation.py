@@ -55,7 +55,9 @@ def run(name, law, variant):
         values["allocator.variant"] = variant
     folder = build_stale(ROOT)
     parts = {"allocator": Path(folder) / f"{law}.fmu"}
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[folder], components=parts)
+    system = read_system(
+        scenario.system_path, scenario.parameter_paths, fmus=[folder], components=parts
+    )
     return simulate(system, scenario.model_copy(update={"set": values}))
 
 
@@ -113,8 +115,16 @@ def draw(path, tables):
 
 def shade(panel, degrees):
     """Forbidden sectors between the least and the largest angle."""
-    for turn in range(int(np.floor(degrees.min() / 180.0)), int(np.floor(degrees.max() / 180.0)) + 1):
-        panel.axhspan(SECTOR[0] + 180.0 * turn, SECTOR[1] + 180.0 * turn, color="#f3dede", linewidth=0.0, zorder=0)
+    for turn in range(
+        int(np.floor(degrees.min() / 180.0)), int(np.floor(degrees.max() / 180.0)) + 1
+    ):
+        panel.axhspan(
+            SECTOR[0] + 180.0 * turn,
+            SECTOR[1] + 180.0 * turn,
+            color="#f3dede",
+            linewidth=0.0,
+            zorder=0,
+        )
 
 
 if __name__ == "__main__":

@@ -15,15 +15,24 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-NUMBERS, PICTURE = ROOT / "docs" / "generated" / "dead-reckoning.json", ROOT / "docs" / "images" / "dead-reckoning.png"
+NUMBERS, PICTURE = (
+    ROOT / "docs" / "generated" / "dead-reckoning.json",
+    ROOT / "docs" / "images" / "dead-reckoning.png",
+)
 COLOURS = ("#9ec9e8", "#4f97cf", "#c8632b", "#7a2d12")
-LAWS = {"motion-filter": "our filter", "paper-ii": "LSTM, paper II", "kalman": "Kalman filter, paper II"}
+LAWS = {
+    "motion-filter": "our filter",
+    "paper-ii": "LSTM, paper II",
+    "kalman": "Kalman filter, paper II",
+}
 ROWS = {"held": "DP keeps GNSS, as in paper II", "rides": "DP rides on dead reckoning"}
 
 
 def draw(path, found):
     """The picture of what the bench found."""
-    figure, axes = plt.subplots(2, 3, figsize=(11.0, 8.0), subplot_kw={"projection": "polar"}, layout="constrained")
+    figure, axes = plt.subplots(
+        2, 3, figsize=(11.0, 8.0), subplot_kw={"projection": "polar"}, layout="constrained"
+    )
     for line, (key, about) in zip(axes, ROWS.items(), strict=True):
         most = np.percentile([value for name in LAWS for value in found[key][name]], 97.0)
         for panel, (name, title) in zip(line, LAWS.items(), strict=True):
@@ -35,7 +44,9 @@ def draw(path, found):
             for state, colour in enumerate(COLOURS):
                 _ring(panel, found, found[key][name], state, colour)
     axes[0, 0].legend(fontsize=7, loc="lower left", bbox_to_anchor=(-0.25, -0.15))
-    figure.suptitle("Mean error over a minute without GNSS [m], by where wind and waves come from", fontsize=10)
+    figure.suptitle(
+        "Mean error over a minute without GNSS [m], by where wind and waves come from", fontsize=10
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=100)
     plt.close(figure)

@@ -15,14 +15,19 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-NUMBERS, PICTURE = ROOT / "docs" / "generated" / "docking.json", ROOT / "docs" / "images" / "docking.png"
+NUMBERS, PICTURE = (
+    ROOT / "docs" / "generated" / "docking.json",
+    ROOT / "docs" / "images" / "docking.png",
+)
 COLOURS = {"kinetic": "#c8632b", "paper III": "#7a6bb0", "ours": "#2f77b5"}
 TITLES = {"familiar": "familiar harbours", "unseen": "unseen harbours"}
 
 
 def draw(path, found):
     """The picture of what the bench found."""
-    figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.4), layout="constrained", width_ratios=(1.0, 1.0, 1.3))
+    figure, axes = plt.subplots(
+        1, 3, figsize=(13.0, 4.4), layout="constrained", width_ratios=(1.0, 1.0, 1.3)
+    )
     most = 1.05 * max(np.max(found["error_m"][kind]["ours"]) for kind in TITLES)
     for panel, kind in zip(axes, TITLES, strict=False):
         _errors(panel, found["error_m"][kind])

@@ -12,7 +12,14 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from shipcosim.models.control.margins import AXES, Delays, linear_loop, margins, open_loop, wave_suppression
+from shipcosim.models.control.margins import (
+    AXES,
+    Delays,
+    linear_loop,
+    margins,
+    open_loop,
+    wave_suppression,
+)
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.ships import read_ship
@@ -40,9 +47,14 @@ COLORS = ("#2a78b8", "#c8632b", "#3d8f4f")
 def loops():
     """Linear loop by peak period, and the control law."""
     ship = read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9")
-    model, noise = ship.parameters(DpShip, "controller"), ship.parameters(ObserverParameters, "controller")
+    model, noise = (
+        ship.parameters(DpShip, "controller"),
+        ship.parameters(ObserverParameters, "controller"),
+    )
     law = ship.parameters(ControlParameters, "controller")
-    return {period: linear_loop(model, noise, law, Delays(), 2.0 * np.pi / period) for period in PERIODS}, law
+    return {
+        period: linear_loop(model, noise, law, Delays(), 2.0 * np.pi / period) for period in PERIODS
+    }, law
 
 
 def rows(found, law):
@@ -50,7 +62,9 @@ def rows(found, law):
     for period, loop in found.items():
         for axis, name in enumerate(AXES):
             one = margins(loop, axis)
-            waves = 20.0 * np.log10(wave_suppression(loop, axis, np.array([2.0 * np.pi / period]), law)[0])
+            waves = 20.0 * np.log10(
+                wave_suppression(loop, axis, np.array([2.0 * np.pi / period]), law)[0]
+            )
             yield (
                 f"| {period} | {name} | {one.crossover:.3f} | {np.degrees(one.phase):.0f} | {one.gain:.1f} | "
                 f"{one.sensitivity:.2f} | {one.delay:.1f} | {waves:.0f} |\n"
@@ -60,11 +74,15 @@ def rows(found, law):
 def draw(found, picture=PICTURE):
     """Picture: size and angle of the loop gain and size of the sensitivity over the frequency, by axis and sea."""
     w = np.geomspace(0.005, 2.0, 300)
-    figure, axes = plt.subplots(3, 1, figsize=(8.0, 8.5), sharex=True, height_ratios=(3, 3, 2), layout="constrained")
+    figure, axes = plt.subplots(
+        3, 1, figsize=(8.0, 8.5), sharex=True, height_ratios=(3, 3, 2), layout="constrained"
+    )
     for period, style in SHOWN.items():
         for axis, (name, color) in enumerate(zip(AXES, COLORS, strict=True)):
             gain = open_loop(found[period], axis, w)
-            look = dict(color=color, linestyle=style, linewidth=1.4, label=f"{name}, waves of {period} s")
+            look = dict(
+                color=color, linestyle=style, linewidth=1.4, label=f"{name}, waves of {period} s"
+            )
             axes[0].loglog(w, np.abs(gain), **look)
             angle = np.unwrap(np.angle(gain))
             axes[1].semilogx(w, np.degrees(angle - 2.0 * np.pi * (angle[0] > 0.0)), **look)
@@ -72,10 +90,17 @@ def draw(found, picture=PICTURE):
     axes[0].set(ylabel="loop gain |L| [1]", ylim=(0.01, 100.0))
     axes[0].axhline(1.0, color="#888888", linewidth=0.8)
     axes[0].legend(fontsize=8, ncols=2)
-    axes[1].set(ylabel="angle of L [deg]", ylim=(-360.0, -90.0), yticks=(-360, -270, -180, -140, -90))
+    axes[1].set(
+        ylabel="angle of L [deg]", ylim=(-360.0, -90.0), yticks=(-360, -270, -180, -140, -90)
+    )
     axes[1].axhline(-180.0, color="#888888", linewidth=0.8)
     axes[1].axhline(-140.0, color="#888888", linewidth=0.8, linestyle=":")
-    axes[2].set(ylabel="sensitivity |1/(1+L)| [1]", xlabel="frequency [rad/s]", ylim=(0.0, 2.2), xlim=(w[0], w[-1]))
+    axes[2].set(
+        ylabel="sensitivity |1/(1+L)| [1]",
+        xlabel="frequency [rad/s]",
+        ylim=(0.0, 2.2),
+        xlim=(w[0], w[-1]),
+    )
     axes[2].axhline(2.0, color="#888888", linewidth=0.8, linestyle=":")
     for part in axes:
         part.grid(True, which="both", color="#eeeeee", linewidth=0.6)
@@ -88,7 +113,9 @@ def write_dp_loop():
     found, law = loops()
     text = PAGE.read_text(encoding="utf-8")
     before, after = text.split(BEGIN)[0], text.split(END)[1]
-    PAGE.write_text(before + BEGIN + HEAD + "".join(rows(found, law)) + END + after, encoding="utf-8")
+    PAGE.write_text(
+        before + BEGIN + HEAD + "".join(rows(found, law)) + END + after, encoding="utf-8"
+    )
     draw(found)
 
 

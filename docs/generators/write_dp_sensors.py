@@ -24,7 +24,11 @@ SHOWN = ("all_references_lost", "reference_drifts")
 """Scenarios in the picture."""
 PAGE, PICTURE = ROOT / "docs" / "dp-sensors.md", ROOT / "docs" / "images" / "dp-sensors.png"
 BEGIN, END = "<!-- table of the scenarios -->\n", "<!-- end of the table -->"
-REJECTED = [f"position_{i}_rejected" for i in (1, 2, 3)] + ["compass_1_rejected", "compass_2_rejected", "wind_rejected"]
+REJECTED = [f"position_{i}_rejected" for i in (1, 2, 3)] + [
+    "compass_1_rejected",
+    "compass_2_rejected",
+    "wind_rejected",
+]
 
 
 def run(path):
@@ -45,7 +49,9 @@ def row(scenario, table):
     distance = float(np.hypot(late["vessel.x"], late["vessel.y"]).max())
     reckoned = float(table["controller.dead_reckoning_time"].max())
     turn = float(np.degrees(np.abs(late["vessel.psi"])).max())
-    said = ", ".join(name.removesuffix("_rejected").replace("_", " ") for name in REJECTED if at[name].any())
+    said = ", ".join(
+        name.removesuffix("_rejected").replace("_", " ") for name in REJECTED if at[name].any()
+    )
     held = all(verdict.passed for verdict in judge(table, scenario))
     found = f"{table['time'].values[np.argmax(seen)] - failed:.1f}"
     name = scenario.path.stem
@@ -61,12 +67,18 @@ def draw(lost, drifts, picture=PICTURE):
     for column, table in enumerate((lost, drifts)):
         time = table["time"]
         for i, color in zip((1, 2, 3), ("#88aacc", "#99bb88", "#cc9977"), strict=True):
-            measured = table[f"sensors.x_{i}_meas"].where(table[f"sensors.position_{i}_valid"] > 0.5)
+            measured = table[f"sensors.x_{i}_meas"].where(
+                table[f"sensors.position_{i}_valid"] > 0.5
+            )
             axes[0, column].plot(time, measured, color=color, lw=0.6, label=f"reference {i}")
         axes[0, column].plot(time, table["vessel.x"], color="#111111", lw=1.4, label="ship")
-        axes[0, column].plot(time, table["controller.x_hat"], color="#d62728", lw=1.1, label="estimate")
+        axes[0, column].plot(
+            time, table["controller.x_hat"], color="#d62728", lw=1.1, label="estimate"
+        )
         axes[0, column].set(ylim=(-2.0, 4.0))
-        axes[1, column].step(time, table["controller.positions_used"], color="#1f77b4", where="post")
+        axes[1, column].step(
+            time, table["controller.positions_used"], color="#1f77b4", where="post"
+        )
         axes[1, column].set(xlabel="time [s]", ylim=(-0.3, 3.3), xlim=(80.0, float(time[-1])))
     axes[0, 0].set(title="all references lost from 240 to 300 s", ylabel="north [m]")
     axes[0, 1].set(title="reference 3 drifts from 120 s on")

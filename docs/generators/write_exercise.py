@@ -25,19 +25,36 @@ THRUSTERS = ("bow_1", "bow_2", "stern_1", "stern_2", "port", "starboard")
 def exercise() -> xr.Dataset:
     """Table of the run."""
     scenario = read_scenario(ROOT / "scenarios" / "paper_i" / "exercise.toml")
-    return simulate(read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(ROOT)]), scenario)
+    return simulate(
+        read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(ROOT)]),
+        scenario,
+    )
 
 
 def training_set(run: xr.Dataset) -> xr.Dataset:
     """Load of all thrusters together to 0.1 N and N.m, and their commands to 1e-6, of each step."""
     run = run.isel(time=slice(1, None))
-    loads = {axis: np.sum([run[f"{name}.tau_{axis}"].values for name in THRUSTERS], axis=0) for axis in "XYN"}
+    loads = {
+        axis: np.sum([run[f"{name}.tau_{axis}"].values for name in THRUSTERS], axis=0)
+        for axis in "XYN"
+    }
     columns = [
-        (f"tau_{axis}", loads[axis].round(1), "N.m" if axis == "N" else "N", "load of all thrusters") for axis in "XYN"
+        (
+            f"tau_{axis}",
+            loads[axis].round(1),
+            "N.m" if axis == "N" else "N",
+            "load of all thrusters",
+        )
+        for axis in "XYN"
     ]
     for number, name in enumerate(THRUSTERS, 1):
         columns.append(
-            (f"command_{number}", run[f"{name}.command"].values.round(6), "1", f"{name}, in rpm or deg of pitch")
+            (
+                f"command_{number}",
+                run[f"{name}.command"].values.round(6),
+                "1",
+                f"{name}, in rpm or deg of pitch",
+            )
         )
     return make_table(run["time"].values, columns)
 

@@ -74,7 +74,13 @@ OTHERS = {
 """FMU that can take a component's place: what that component has of the ship and this one does not need."""
 PARAMETERS = {
     "azimuth_thruster": {"y": 0.0, "neighbour_x": 0.0, "neighbour_y": 0.0},
-    "earth_force": {"north": 1000.0, "east": 2000.0, "onset_time": 10.0, "ramp_time": 20.0, "x": -17.0},
+    "earth_force": {
+        "north": 1000.0,
+        "east": 2000.0,
+        "onset_time": 10.0,
+        "ramp_time": 20.0,
+        "x": -17.0,
+    },
     "drift_force": {"north": 1500.0, "east": -1000.0, "onset_time": 5.0, "yaw_arm": -1.5},
     "varying_current": {"north_start": 0.3, "east_end": -0.2, "time_start": 10.0, "time_end": 50.0},
     "fixed_thruster": {"speed_loss": 0.1, "direction": 0.2},
@@ -87,21 +93,60 @@ PARAMETERS = {
         "speed_loss": 0.1,
     },
     "fixed_angle_allocator": {
-        **{"x_1": -27.0, "y_1": -3.5, "azimuth_1": -0.785, "thrust_min_1": -1.4e5, "thrust_max_1": 2.3e5},
-        **{"x_2": -27.0, "y_2": 3.5, "azimuth_2": 0.785, "thrust_min_2": -1.4e5, "thrust_max_2": 2.3e5},
+        **{
+            "x_1": -27.0,
+            "y_1": -3.5,
+            "azimuth_1": -0.785,
+            "thrust_min_1": -1.4e5,
+            "thrust_max_1": 2.3e5,
+        },
+        **{
+            "x_2": -27.0,
+            "y_2": 3.5,
+            "azimuth_2": 0.785,
+            "thrust_min_2": -1.4e5,
+            "thrust_max_2": 2.3e5,
+        },
         **{"x_3": 25.0, "azimuth_3": 1.5708, "thrust_min_3": -8e4, "thrust_max_3": 8e4},
         **{"thrust_rate_1": 2.3e4, "thrust_rate_2": 2.3e4, "thrust_rate_3": 8e3, "yaw_lever": 25.0},
     },
     "optimal_units_allocator": {
-        **{"x_1": -27.0, "y_1": -3.5, "azimuth_1": -0.785, "thrust_max_1": 2.3e5, "azimuth_rate_1": 0.2},
-        **{"x_2": -27.0, "y_2": 3.5, "azimuth_2": 2.356, "thrust_max_2": 2.3e5, "azimuth_rate_2": 0.2},
-        **{"azimuth_first_1": -1.4, "azimuth_last_1": 1.4, "azimuth_first_2": 1.74, "azimuth_last_2": 4.54},
-        **{"x_3": 25.0, "azimuth_3": 1.5708, "thrust_min_3": -8e4, "thrust_max_3": 8e4, "thrust_least_1": 4e3},
+        **{
+            "x_1": -27.0,
+            "y_1": -3.5,
+            "azimuth_1": -0.785,
+            "thrust_max_1": 2.3e5,
+            "azimuth_rate_1": 0.2,
+        },
+        **{
+            "x_2": -27.0,
+            "y_2": 3.5,
+            "azimuth_2": 2.356,
+            "thrust_max_2": 2.3e5,
+            "azimuth_rate_2": 0.2,
+        },
+        **{
+            "azimuth_first_1": -1.4,
+            "azimuth_last_1": 1.4,
+            "azimuth_first_2": 1.74,
+            "azimuth_last_2": 4.54,
+        },
+        **{
+            "x_3": 25.0,
+            "azimuth_3": 1.5708,
+            "thrust_min_3": -8e4,
+            "thrust_max_3": 8e4,
+            "thrust_least_1": 4e3,
+        },
         **{"thrust_rate_1": 2.3e4, "thrust_rate_2": 2.3e4, "thrust_rate_3": 8e3, "yaw_lever": 25.0},
     },
     "rough_vessel": {
         **{"strip_factors": "-1 1.3; 0 1; 1 0.8", "cross_flow_power": 1.9, "drag_power": 2.1},
-        **{"wind_factors": "0 1 1 1; 90 1.1 0.9 1.2; 360 1 1 1", "memory_surge": 0.1, "memory_sway": 0.2},
+        **{
+            "wind_factors": "0 1 1 1; 90 1.1 0.9 1.2; 360 1 1 1",
+            "memory_surge": 0.1,
+            "memory_sway": 0.2,
+        },
         **{"memory_yaw": 0.1, "memory_time": 5.0},
     },
     "neural_units_allocator": {f"diameter_{number}": 1.9 for number in range(1, 5)},
@@ -109,8 +154,18 @@ PARAMETERS = {
         **{"wind_shelter": 0.6, "land_towards": 1.0, "tide_shelter": 0.5, "channel": 0.3},
         **{"river_speed": 0.5, "river_to": 2.0, "river_x": 50.0, "river_y": -30.0},
     },
-    "helmsman": {"waypoints": "-600 -80; -200 -15; 0 -15", "berth_heading": 0.2, "look_interval": 3.0},
-    "instruments": {"heading_bias": 0.05, "lever_x": 3.0, "lever_y": -2.0, "velocity_scale": 1.1, "lag": 1.3},
+    "helmsman": {
+        "waypoints": "-600 -80; -200 -15; 0 -15",
+        "berth_heading": 0.2,
+        "look_interval": 3.0,
+    },
+    "instruments": {
+        "heading_bias": 0.05,
+        "lever_x": 3.0,
+        "lever_y": -2.0,
+        "velocity_scale": 1.1,
+        "lag": 1.3,
+    },
 }
 """FMU: its parameters in its reference result that are neither the ship's nor as by default."""
 
@@ -123,7 +178,9 @@ def fmu_class(name):
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
     return next(
-        c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name and hasattr(c, "step")
+        c
+        for c in vars(module).values()
+        if isinstance(c, type) and c.__module__ == spec.name and hasattr(c, "step")
     )
 
 
@@ -142,16 +199,24 @@ def parameters_of(name):
     kinds, found = [group.kind for group in fmu_class(name).groups], {}
     ship, component = ELSEWHERE.get(name, (SHIP, COMPONENTS.get(name)))
     if component and name != "environment":
-        quantities = read_ship(ROOT / "ssp" / "ships" / ship).parameter_set({component: kinds + OTHERS.get(name, [])})
+        quantities = read_ship(ROOT / "ssp" / "ships" / ship).parameter_set(
+            {component: kinds + OTHERS.get(name, [])}
+        )
         known = {variable.name for variable in fmu_class(name).variables}
-        found = {key: quantity.value for key, quantity in quantities[component].items() if key in known}
+        found = {
+            key: quantity.value for key, quantity in quantities[component].items() if key in known
+        }
     return found | PARAMETERS.get(name, {})
 
 
 def readme(name):
     """README of an FMU with its table of variables as it should be."""
     path = ROOT / "fmus" / name / "README.md"
-    text = path.read_text(encoding="utf-8").partition(MARK)[0].rstrip() if path.is_file() else f"# {name}"
+    text = (
+        path.read_text(encoding="utf-8").partition(MARK)[0].rstrip()
+        if path.is_file()
+        else f"# {name}"
+    )
     return f"{text}\n\n{MARK}\n{table_of_variables(fmu_class(name))}"
 
 
@@ -201,7 +266,9 @@ def own_inputs(name):
     if not path.is_file():
         return np.arange(0.0, DURATION + INTERVAL, INTERVAL), {}
     table = read_table(path)
-    inputs = [variable.name for variable in fmu_class(name).variables if variable.causality == "input"]
+    inputs = [
+        variable.name for variable in fmu_class(name).variables if variable.causality == "input"
+    ]
     return table["time"].values, {key: table[key].values for key in inputs if key in table}
 
 
@@ -212,12 +279,18 @@ def reference(name, table, system):
         times, inputs = table["time"].values, inputs_of(COMPONENTS[name], table, system)
     values = inputs | driven(name, times, inputs)
     about = {variable.name: variable for variable in fmu_class(name).variables}
-    columns = [(key, values[key], about[key].unit, about[key].description) for key in about if key in values]
+    columns = [
+        (key, values[key], about[key].unit, about[key].description)
+        for key in about
+        if key in values
+    ]
     return make_table(times, columns)
 
 
 if __name__ == "__main__":
     run, system = four_corner()
-    for name in sorted(path.stem for path in ROOT.glob("fmus/*/*.py") if path.stem == path.parent.name):
+    for name in sorted(
+        path.stem for path in ROOT.glob("fmus/*/*.py") if path.stem == path.parent.name
+    ):
         (ROOT / "fmus" / name / "README.md").write_text(readme(name), encoding="utf-8")
         write_table(reference(name, run, system), ROOT / "fmus" / name / "reference.csv")

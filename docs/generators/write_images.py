@@ -33,7 +33,13 @@ HEIGHTS = {"four_corner": 1140, "diagnosis": 1020, "capability": 1030, "study": 
 SHIPCOSIM = Path(sys.executable).with_name("shipcosim")
 WIDTH = 1280
 SQUARE, CLEARLY = 20, 12  # px; of 255 shades of grey: a letter more or less is not
-SWITCHES = ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars")
+SWITCHES = (
+    "--headless=new",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--hide-scrollbars",
+)
 
 
 def browser(profile: Path) -> webdriver.Chrome:
@@ -56,7 +62,9 @@ def picture(driver: webdriver.Chrome, page: str, height: int) -> bytes:
     driver.get(page)
     while driver.execute_script("return document.body.dataset.drawn") != "all":
         time.sleep(0.1)
-    shot = base64.b64decode(driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"])
+    shot = base64.b64decode(
+        driver.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})["data"]
+    )
     written = io.BytesIO()
     Image.open(io.BytesIO(shot)).convert("RGB").save(written, "PNG", optimize=True)
     return written.getvalue()
@@ -83,7 +91,9 @@ def dp_sensors(path: Path) -> None:
     """Two of the scenarios in which sensors fail, run now."""
     import write_dp_sensors as sensors
 
-    sensors.draw(*(sensors.run(sensors.SCENARIOS / f"{name}.toml")[1] for name in sensors.SHOWN), path)
+    sensors.draw(
+        *(sensors.run(sensors.SCENARIOS / f"{name}.toml")[1] for name in sensors.SHOWN), path
+    )
 
 
 def sea_trials(path: Path) -> None:
@@ -93,22 +103,34 @@ def sea_trials(path: Path) -> None:
     write_sea_trials.draw(write_sea_trials.studied(), path)
 
 
-DRAWN: dict[str, Callable[[Path], None]] = {"dp-loop": dp_loop, "dp-sensors": dp_sensors, "sea_trials_2022": sea_trials}
+DRAWN: dict[str, Callable[[Path], None]] = {
+    "dp-loop": dp_loop,
+    "dp-sensors": dp_sensors,
+    "sea_trials_2022": sea_trials,
+}
 
 
 def path_of(name: str) -> Path:
     """Where a picture is kept."""
-    return (ROOT / "docs" / "generated" / "pictures" if name == "sea_trials_2022" else IMAGES) / f"{name}.png"
+    return (
+        ROOT / "docs" / "generated" / "pictures" if name == "sea_trials_2022" else IMAGES
+    ) / f"{name}.png"
 
 
 def of_page(name: str, folder: Path) -> bytes:
     """The picture of a page that is made now. PNG."""
-    done = subprocess.run([SHIPCOSIM, *PAGES[name], "--out", str(folder / name)], cwd=ROOT, stdout=subprocess.DEVNULL)
+    done = subprocess.run(
+        [SHIPCOSIM, *PAGES[name], "--out", str(folder / name)], cwd=ROOT, stdout=subprocess.DEVNULL
+    )
     if done.returncode not in (0, 1):  # 1: it ran and found something, as the diagnosis shall
         raise SystemExit(f"{' '.join(PAGES[name])} failed")
     driver = browser(folder / f"{name}-profile")
     try:
-        return picture(driver, f"{(folder / name / 'report.html').as_uri()}{TIMES.get(name, '')}", HEIGHTS[name])
+        return picture(
+            driver,
+            f"{(folder / name / 'report.html').as_uri()}{TIMES.get(name, '')}",
+            HEIGHTS[name],
+        )
     finally:
         driver.quit()
 

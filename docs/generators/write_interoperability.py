@@ -26,21 +26,30 @@ HEAD = """# Which feature works in which tool: the record
 def table(found):
     """Markdown of verdicts by engine and feature."""
     versions = {"libcosim": "libcosimpy", "ecos": "ecospy", "FMPy": "fmpy"}
-    heads = [f"{engine} ({version(versions[engine])})" if engine in versions else engine for engine in ENGINES]
+    heads = [
+        f"{engine} ({version(versions[engine])})" if engine in versions else engine
+        for engine in ENGINES
+    ]
     lines = [f"| feature | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
     last = ""
     for group, feature, _ in sorted(rows().values(), key=lambda row: row[0]):
         if group != last:
             lines.append(f"| **{group}** |" + " |" * len(heads))
             last = group
-        lines.append(f"| {feature} | " + " | ".join(found[engine][feature] for engine in ENGINES) + " |")
+        lines.append(
+            f"| {feature} | " + " | ".join(found[engine][feature] for engine in ENGINES) + " |"
+        )
     return "\n".join(lines) + "\n"
 
 
 def recorded(text):
     """Verdicts that the page states, by engine and feature."""
     body = [line for line in text.splitlines() if line.startswith("| ")][1:]
-    cells = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in body if not line.startswith("| **")]
+    cells = [
+        [cell.strip() for cell in line.strip("|").split(" | ")]
+        for line in body
+        if not line.startswith("| **")
+    ]
     return {engine: {row[0]: row[1 + i] for row in cells} for i, engine in enumerate(ENGINES)}
 
 

@@ -35,11 +35,16 @@ def tables():
     model = ship_model_of(read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]))
     manoeuvres = library(model)
     lines = ["| | manoeuvre | minutes |", "|---|---|---|"]
-    lines += [f"| {i} | {one.name} | {one.minutes:g} |" for i, one in enumerate(manoeuvres, start=1)]
+    lines += [
+        f"| {i} | {one.name} | {one.minutes:g} |" for i, one in enumerate(manoeuvres, start=1)
+    ]
     numbers = " | ".join(str(i) for i in range(1, 1 + len(manoeuvres)))
     lines += ["", f"| cause of typical size | {numbers} |", "|---" * (1 + len(manoeuvres)) + "|"]
     found = testability(model, hypotheses_of(read_catalogue(), model), NOISE, manoeuvres, WIND)
-    lines += [f"| {label.replace('_', ' ')} | {' | '.join(map(_nats, nats))} |" for label, nats in found.items()]
+    lines += [
+        f"| {label.replace('_', ' ')} | {' | '.join(map(_nats, nats))} |"
+        for label, nats in found.items()
+    ]
     return "\n".join(lines) + "\n"
 
 

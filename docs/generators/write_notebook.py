@@ -35,13 +35,33 @@ def outputs_of(cell: dict, number: int, scope: dict) -> list[dict]:
     except Exception as error:
         if RAISES not in cell["metadata"].get("tags", ()):
             raise
-        trace = error._render_traceback_() if hasattr(error, "_render_traceback_") else [repr(error)]
-        return [{"output_type": "error", "ename": type(error).__name__, "evalue": str(error), "traceback": trace}]
+        trace = (
+            error._render_traceback_() if hasattr(error, "_render_traceback_") else [repr(error)]
+        )
+        return [
+            {
+                "output_type": "error",
+                "ename": type(error).__name__,
+                "evalue": str(error),
+                "traceback": trace,
+            }
+        ]
     shown = [{"output_type": "stream", "name": "stdout", "text": lines(printed)}] if printed else []
     if value is not None:
-        data = {kind: lines(getattr(value, name)()) for kind, name in SHOWN.items() if hasattr(value, name)}
+        data = {
+            kind: lines(getattr(value, name)())
+            for kind, name in SHOWN.items()
+            if hasattr(value, name)
+        }
         data["text/plain"] = lines(repr(value))
-        shown.append({"output_type": "execute_result", "execution_count": number, "metadata": {}, "data": data})
+        shown.append(
+            {
+                "output_type": "execute_result",
+                "execution_count": number,
+                "metadata": {},
+                "data": data,
+            }
+        )
     return shown
 
 

@@ -49,10 +49,15 @@ def runs():
     """Tables of the drift scenario, one a seed."""
     scenario = read_scenario(ROOT / "scenarios" / "drift.toml")
     fmus, kinetic = [build_stale(ROOT)], {"predictor": "predictor"}
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=fmus, components=kinetic)
+    system = read_system(
+        scenario.system_path, scenario.parameter_paths, fmus=fmus, components=kinetic
+    )
     for seed in SEEDS:
         seeds = {"environment.seed": seed, "sensors.seed": seed + 1}
-        yield simulate(system, scenario.model_copy(update={"set": scenario.set | seeds, "output_interval": 1.0}))
+        yield simulate(
+            system,
+            scenario.model_copy(update={"set": scenario.set | seeds, "output_interval": 1.0}),
+        )
 
 
 def of(table: xarray.Dataset, component: str, names: str) -> tuple:
@@ -63,27 +68,41 @@ def of(table: xarray.Dataset, component: str, names: str) -> tuple:
 def predictions(table):
     """Positions 10, 30 and 60 s ahead by row: as the FMU predicts them, and with more or less knowledge."""
     ship = read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9")
-    model = {"hull": ship.parameters(HullParameters, "vessel"), "wind": ship.parameters(WindParameters, "vessel")}
+    model = {
+        "hull": ship.parameters(HullParameters, "vessel"),
+        "wind": ship.parameters(WindParameters, "vessel"),
+    }
     estimate = Motion(*of(table, "controller", "x_hat y_hat psi_hat u_hat v_hat r_hat"))
     bias = of(table, "controller", "tau_X_bias tau_Y_bias tau_N_bias")
     allocated = of(table, "allocator", "tau_X tau_Y tau_N")
     mast = ship.parameters(MastParameters, "controller")
     measured = of(table, "sensors", "wind_speed_meas wind_from_meas")
     known = Known(estimate, bias, allocated, *wind_from_mast(*measured, *estimate[3:], mast=mast))
-    told = known._replace(thrusters=of(table, "vessel", "tau_thrusters_X tau_thrusters_Y tau_thrusters_N"))
+    told = known._replace(
+        thrusters=of(table, "vessel", "tau_thrusters_X tau_thrusters_Y tau_thrusters_N")
+    )
     psi, none = estimate.psi, 0.0 * estimate.psi
-    drift = earth_fixed(table["vessel.psi"].values, of(table, "vessel", "tau_drift_X tau_drift_Y tau_drift_N"))
-    wind, current = (of(table, "environment", f"{one}_north {one}_east") for one in ("wind", "current"))
+    drift = earth_fixed(
+        table["vessel.psi"].values, of(table, "vessel", "tau_drift_X tau_drift_Y tau_drift_N")
+    )
+    wind, current = (
+        of(table, "environment", f"{one}_north {one}_east") for one in ("wind", "current")
+    )
     cases = {
         "bias held as a force, no current": (
             known,
             Surroundings(*air_velocity(known), none, none, *earth_fixed(psi, bias), ()),
         ),
-        "true wind, waves and thrust, no current": (told, Surroundings(*wind, none, none, *drift, ())),
+        "true wind, waves and thrust, no current": (
+            told,
+            Surroundings(*wind, none, none, *drift, ()),
+        ),
         "true wind, waves, thrust and current": (told, Surroundings(*wind, *current, *drift, ())),
     }
     shown = {t: of(table, "predictor", f"x_{t} y_{t}") for t in HORIZONS}
-    found = {"**the predictor**": [[np.roll(axis, -1) for axis in shown[t]] for t in HORIZONS]}  # shown a step later
+    found = {
+        "**the predictor**": [[np.roll(axis, -1) for axis in shown[t]] for t in HORIZONS]
+    }  # shown a step later
     for name, (given, around) in cases.items():
         ahead = predict(given, around, horizons=HORIZONS, longest_step=1.0, **model)
         found[name] = [(motion.x, motion.y) for motion in ahead]

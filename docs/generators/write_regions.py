@@ -17,7 +17,9 @@ HEAD = "# Regions with 90 % of the truths, by variant; written by docs/generator
 
 def regions(records, variant=None):
     """Parameters of the regions of a variant, or of the kinetic predictor."""
-    fmu, settings = ("predictor", {}) if variant is None else ("drift_predictor", {"variant": variant})
+    fmu, settings = (
+        ("predictor", {}) if variant is None else ("drift_predictor", {"variant": variant})
+    )
     settings |= {} if variant is None else {"own_regions": False}
     return calibrated([scores(record, fmu, settings=settings) for record in records])
 
@@ -28,7 +30,10 @@ def section(widths):
 
 
 if __name__ == "__main__":
-    worlds = sail_all([draw(seed) for seed in SEEDS], progress=lambda done, total: print(done, total, file=sys.stderr))
+    worlds = sail_all(
+        [draw(seed) for seed in SEEDS],
+        progress=lambda done, total: print(done, total, file=sys.stderr),
+    )
     print(section(regions(worlds)))
     variants = sorted(file.stem for file in FILE.parent.glob("*.npz"))
     parts = [f"\n[{variant}]\n{section(regions(worlds, variant))}" for variant in variants]

@@ -27,7 +27,10 @@ SECTION = math.pi / 4.0
 def weather(seeds):
     """Wind, waves and current of each seed: wind of 2 to 14 m/s from anywhere, waves that such wind makes near land."""
     draw = np.random.default_rng(int(seeds[0]))
-    wind, towards = draw.uniform(2.0, 14.0, len(seeds)), draw.uniform(-math.pi, math.pi, (2, len(seeds)))
+    wind, towards = (
+        draw.uniform(2.0, 14.0, len(seeds)),
+        draw.uniform(-math.pi, math.pi, (2, len(seeds))),
+    )
     return {
         "environment.significant_wave_height": 0.05 * wind,
         "environment.peak_period": draw.uniform(4.0, 7.0, len(seeds)),
@@ -45,13 +48,20 @@ def recorded(seeds, events, stop_time):
     values = weather(seeds)
     changes = [(time, change(values)) for time, change in events]
     found = dp_runs.simulate(
-        seeds, values, changes, stop_time=stop_time, every=round(INTERVAL / 0.05), record="controller"
+        seeds,
+        values,
+        changes,
+        stop_time=stop_time,
+        every=round(INTERVAL / 0.05),
+        record="controller",
     )
     requests = np.stack([found[f"controller.tau_{axis}_cmd"].T for axis in "XYN"], -1)
     return np.round(requests / UNIT).astype(np.int16)
 
 
-STATIONKEEPING = [(150.0, lambda values: {"environment.wind_from": values["environment.wind_from"] - SECTION})]
+STATIONKEEPING = [
+    (150.0, lambda values: {"environment.wind_from": values["environment.wind_from"] - SECTION})
+]
 FOUR_CORNERS = [
     (0.0, lambda _: {"reference.x_set": 20.0}),
     (250.0, lambda _: {"reference.y_set": -20.0}),

@@ -24,7 +24,18 @@ LOG = ROOT.parent / "shared" / "measured" / "gunnerus_trials_2022" / "trials.csv
 CHANNELS = ROOT / "tests" / "system" / "measured" / "channels" / "gunnerus.toml"
 PAGE = ROOT / "docs" / "generated" / "sea-trials-2022.md"
 PICTURE = ROOT / "docs" / "generated" / "pictures" / "sea_trials_2022.png"
-SHOWN = ("speed", "rate", "t90", "t180", "t20", "speed at 90", "advance", "transfer", "tactical diameter", "drift")
+SHOWN = (
+    "speed",
+    "rate",
+    "t90",
+    "t180",
+    "t20",
+    "speed at 90",
+    "advance",
+    "transfer",
+    "tactical diameter",
+    "drift",
+)
 MEASURED, BEFORE, AFTER = "#c8501e", "#8a8a8a", "#1f5fa8"
 OTHER = {"port": "starboard", "starboard": "port"}
 
@@ -34,7 +45,8 @@ def sets_table(ranking, most=8):
     rows = ["| causes | estimates | nats behind |", "|:--|:--|--:|"]
     for one in [one for one in ranking if one.plausible][:most]:
         told = "; ".join(
-            f"{e.estimate:.3g} ± {e.std:.1g}{'' if e.unit == '1' else ' ' + e.unit}" for e in estimates(one)
+            f"{e.estimate:.3g} ± {e.std:.1g}{'' if e.unit == '1' else ' ' + e.unit}"
+            for e in estimates(one)
         )
         rows.append(f"| {one.label} | {told} | {ranking[0].evidence - one.evidence:.1f} |")
     none = next(one for one in ranking if not one.hypotheses)
@@ -43,13 +55,22 @@ def sets_table(ranking, most=8):
 
 def errors_table(found):
     """Errors before and after, on circles to the other side and on zig-zags."""
-    rows = ["| | fitted on port, judged on starboard | fitted on starboard, judged on port |", "|:--|--:|--:|"]
-    names = [f"turning circle: {name}" for name in SHOWN] + ["zig-zag: peak rate", "zig-zag: swing", "zig-zag: speed"]
+    rows = [
+        "| | fitted on port, judged on starboard | fitted on starboard, judged on port |",
+        "|:--|--:|--:|",
+    ]
+    names = [f"turning circle: {name}" for name in SHOWN] + [
+        "zig-zag: peak rate",
+        "zig-zag: swing",
+        "zig-zag: speed",
+    ]
     for name in names:
         unit = "deg" if name.endswith("drift") else "%"
         both = [found.held_out[side] for side in ("port", "starboard")]
         rows.append(
-            f"| {name} | " + " | ".join(f"{o.before[name]:.1f} → {o.after[name]:.1f} {unit}" for o in both) + " |"
+            f"| {name} | "
+            + " | ".join(f"{o.before[name]:.1f} → {o.after[name]:.1f} {unit}" for o in both)
+            + " |"
         )
     return "\n".join(rows)
 
@@ -59,7 +80,10 @@ def manoeuvres_table(found, most=14):
     head = ["manoeuvre, to both sides", "minutes", *(f"{a} / {b}" for a, b in found.pairs)]
     rows = ["| " + " | ".join(head) + " |", "|:--|--:|" + ":--|" * len(found.pairs)]
     sailed = "turning circle with 35 deg at full speed", "zig-zag 20/20 at full speed"
-    for one in [*found.separations[:most], *(one for one in found.separations[most:] if one.manoeuvre in sailed)]:
+    for one in [
+        *found.separations[:most],
+        *(one for one in found.separations[most:] if one.manoeuvre in sailed),
+    ]:
         told = [f"{nats:.1f}: {_told(one.telling[pair])}" for pair, nats in one.nats.items()]
         rows.append("| " + " | ".join([one.manoeuvre, f"{one.minutes:.0f}", *told]) + " |")
     return "\n".join(rows)
@@ -71,7 +95,9 @@ def _told(telling):
 
 def whole_table(found):
     """Errors of all trials with the causes fitted to all of them: in-sample."""
-    before, after = (errors(found.trials, found.model, c, orders=True) for c in ({}, changes_of(found.best)))
+    before, after = (
+        errors(found.trials, found.model, c, orders=True) for c in ({}, changes_of(found.best))
+    )
     return ", ".join(
         f"{name} {before[name]:.1f} → {after[name]:.1f} %"
         for name in ("straight run: speed", "turning circle: speed", "turning circle: rate")
@@ -89,20 +115,33 @@ def draw(found, picture=PICTURE):
         causes = found.held_out[OTHER[side]].fitted
         (motions,) = sailed([trial], found.model, [{}, causes], orders=True)
         lines = (("measured", MEASURED, trial.measured), ("as modelled", BEFORE, motions[0]))
-        for name, colour, motion in (*lines, ("with causes fitted on the other side", AFTER, motions[1])):
+        for name, colour, motion in (
+            *lines,
+            ("with causes fitted on the other side", AFTER, motions[1]),
+        ):
             north, east = (motion[:, i] - motion[0, i] for i in (0, 1))
             c, s = np.cos(trial.measured[0, 2]), np.sin(trial.measured[0, 2])
-            track.plot(trial.side * (c * east - s * north), c * north + s * east, color=colour, label=name, lw=1.3)
+            track.plot(
+                trial.side * (c * east - s * north),
+                c * north + s * east,
+                color=colour,
+                label=name,
+                lw=1.3,
+            )
             turned = np.degrees(trial.side * (motion[:, 2] - motion[0, 2]))
             heading.plot(trial.time, turned, color=colour, lw=1.3)
         angle = np.degrees(np.arcsin(trial.steering))
-        track.set(aspect="equal", title=f"{angle:.0f}° to {side}", xlabel="to the side of the turn [m]")
+        track.set(
+            aspect="equal", title=f"{angle:.0f}° to {side}", xlabel="to the side of the turn [m]"
+        )
         heading.set(xlabel="time, as the way tells it [s]", xlim=(0, 80), ylim=(0, 260))
         heading.axhline(90.0, color="#cccccc", lw=0.6)
         heading.axhline(180.0, color="#cccccc", lw=0.6)
     axes[0, 0].set(ylabel="ahead [m]")
     axes[1, 0].set(ylabel="heading turned [deg]")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="lower center", ncols=3, frameon=False)
+    figure.legend(
+        *axes[0, 0].get_legend_handles_labels(), loc="lower center", ncols=3, frameon=False
+    )
     figure.tight_layout(rect=(0, 0.05, 1, 1))
     figure.savefig(picture, dpi=110, metadata={"Software": None})
     plt.close(figure)
@@ -160,7 +199,12 @@ trials, 171 rpm.
 
 def studied():
     """The study of the trials, made now."""
-    return study(LOG, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]), CHANNELS, orders=True)
+    return study(
+        LOG,
+        read_system(ROOT / "ssp" / "gunnerus_open", fmus=[build_stale(ROOT)]),
+        CHANNELS,
+        orders=True,
+    )
 
 
 if __name__ == "__main__":

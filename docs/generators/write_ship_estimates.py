@@ -19,18 +19,36 @@ from shipcosim.ssp import read_system
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "generated" / "ship-estimates.md"
 AZIMUTH = {"kind": "azimuth", "ducted": True, "diameter": 1.9, "power": 500e3, "rpm": 203.0}
-GUNNERUS = [{"name": "port", "x": -14.0, "y": -2.0} | AZIMUTH, {"name": "starboard", "x": -14.0, "y": 2.0} | AZIMUTH]
+GUNNERUS = [
+    {"name": "port", "x": -14.0, "y": -2.0} | AZIMUTH,
+    {"name": "starboard", "x": -14.0, "y": 2.0} | AZIMUTH,
+]
 STERN = {"name": "propeller", "kind": "rudder", "x": -3.386, "y": 0.0, "diameter": 0.204}
 STERN |= {"rudder_x": -3.5, "rudder_area": 0.0539, "rudder_span": 0.345}
 SCREW = {"name": "screw", "kind": "fixed", "command": "thrust", "x": 0.0, "y": 0.0}
 SHIPS = {
-    "gunnerus-33m9": dict(length=33.9, breadth=9.6, draught=2.786, displacement=531e3, service_speed=5.14),
-    "gunnerus-28m9": dict(length=28.9, breadth=9.6, draught=2.7, displacement=410931.81, service_speed=5.14),
+    "gunnerus-33m9": dict(
+        length=33.9, breadth=9.6, draught=2.786, displacement=531e3, service_speed=5.14
+    ),
+    "gunnerus-28m9": dict(
+        length=28.9, breadth=9.6, draught=2.7, displacement=410931.81, service_speed=5.14
+    ),
     "kvlcc2": dict(
-        length=7.0, breadth=1.2688, draught=0.455, displacement=3272.0, service_speed=1.179, water_density=1000.0
+        length=7.0,
+        breadth=1.2688,
+        draught=0.455,
+        displacement=3272.0,
+        service_speed=1.179,
+        water_density=1000.0,
     ),
     "otter": dict(
-        length=2.0, breadth=1.08, draught=0.195, displacement=80.0, service_speed=3.09, hulls=2, hull_breadth=0.25
+        length=2.0,
+        breadth=1.08,
+        draught=0.195,
+        displacement=80.0,
+        service_speed=3.09,
+        hulls=2,
+        hull_breadth=0.25,
     ),
     "blueboat": dict(
         length=1.2,
@@ -54,10 +72,30 @@ HULL = {
     "cross_flow_drag": ("cross-flow drag coefficient", "1"),
 }
 RUDDER = (
-    *("k0", "wake", "thrust_deduction", "lift_gradient", "rudder_deduction", "hull_share", "hull_x"),
-    *("race_gain", "wake_ratio", "straightening_starboard", "straightening_port", "straightening_x"),
+    *(
+        "k0",
+        "wake",
+        "thrust_deduction",
+        "lift_gradient",
+        "rudder_deduction",
+        "hull_share",
+        "hull_x",
+    ),
+    *(
+        "race_gain",
+        "wake_ratio",
+        "straightening_starboard",
+        "straightening_port",
+        "straightening_x",
+    ),
 )
-TAKEN = {"race_gain", "wake_ratio", "straightening_starboard", "straightening_port", "straightening_x"}
+TAKEN = {
+    "race_gain",
+    "wake_ratio",
+    "straightening_starboard",
+    "straightening_port",
+    "straightening_x",
+}
 """Of KVLCC2 herself, so no test on her."""
 BEYOND = 2.0
 """Tolerances beyond which an estimate counts as missed."""
@@ -115,7 +153,9 @@ def _derivatives(name, ship, theirs):
         return
     L, d, rho = 7.0, 0.455, 1000.0
     scale = 0.5 * rho * L * d
-    yaw_by_u = scale * L * theirs["mmg_Y_r"] - theirs["A11"]  # Clarke's hold the Coriolis load of the added mass
+    yaw_by_u = (
+        scale * L * theirs["mmg_Y_r"] - theirs["A11"]
+    )  # Clarke's hold the Coriolis load of the added mass
     for key, unit, value in (
         ("Y_uv", "N.s2/m2", scale * theirs["mmg_Y_v"]),
         ("Y_ur", "N.s2/(m.rad)", yaw_by_u),
@@ -128,11 +168,22 @@ def _derivatives(name, ship, theirs):
 def _propeller():
     """Bollard thrust of R/V Gunnerus' azimuths at 203 rpm, propeller and rudder of KVLCC2."""
     unit = described("gunnerus-33m9").units[0]
-    given = read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9").entries["port"]["thrust_polynomial"].value
+    given = (
+        read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9")
+        .entries["port"]["thrust_polynomial"]
+        .value
+    )
     KT = parse(given)[0][1]
     thrust = KT * 1025.0 * (203.0 / 60.0) ** 2 * 1.9**4
     entry = unit.entries["thrust_max"]
-    yield Row("gunnerus-33m9", "bollard thrust at 203 rpm", "N", thrust, float(entry.value), entry.tolerance)
+    yield Row(
+        "gunnerus-33m9",
+        "bollard thrust at 203 rpm",
+        "N",
+        thrust,
+        float(entry.value),
+        entry.tolerance,
+    )
     known = read_ship(ROOT / "ssp" / "ships" / "kvlcc2").entries["propeller"]
     (stern,) = described("kvlcc2").units
     for key in RUDDER:
@@ -142,24 +193,43 @@ def _propeller():
 
 def _weather():
     """Largest loads of wind and waves of R/V Gunnerus, by estimated areas."""
-    ship, known = described("gunnerus-33m9"), read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9").entries["vessel"]
+    ship, known = (
+        described("gunnerus-33m9"),
+        read_ship(ROOT / "ssp" / "ships" / "gunnerus-33m9").entries["vessel"],
+    )
     scale = ship.vessel["wind_load_scale"].tolerance
     tables = [np.array(parse(entries["wind_table"].value)) for entries in (known, ship.vessel)]
     for axis, unit in ((1, "N.s2/m2"), (2, "N.s2/m2"), (3, "N.s2/m")):
         theirs, ours = (np.abs(table[:, axis]).max() for table in tables)
-        yield Row("gunnerus-33m9", f"largest wind load {'XYN'[axis - 1]}", unit, theirs, ours, scale * ours)
+        yield Row(
+            "gunnerus-33m9",
+            f"largest wind load {'XYN'[axis - 1]}",
+            unit,
+            theirs,
+            ours,
+            scale * ours,
+        )
     tables = [np.array(parse(entries["drift_table"].value)) for entries in (known, ship.vessel)]
     for axis in (2, 3):
         theirs, ours = (np.abs(table[:, axis]).max() for table in tables)
-        yield Row("gunnerus-33m9", f"largest wave drift {'XY'[axis - 2]}", "N/m2", theirs, ours, ours)
+        yield Row(
+            "gunnerus-33m9", f"largest wave drift {'XY'[axis - 2]}", "N/m2", theirs, ours, ours
+        )
 
 
 def turning_circles(folder: Path) -> list[tuple[str, float, float, float, float]]:
     """Advance and tactical diameter of KVLCC2 by her particulars alone, measured and simulated, in lengths."""
     (open_system,) = make_systems(described("kvlcc2"), folder, [build_stale(ROOT)])
     system, found = read_system(open_system, fmus=[build_stale(ROOT)]), []
-    for side, name, advance, diameter in ((1.0, "starboard", 3.25, 3.34), (-1.0, "port", 3.11, 3.08)):
-        at_start = {"vessel.u_start": 1.179, "propeller_rpm": 660.0, "propeller_azimuth": -35.0 * side}
+    for side, name, advance, diameter in (
+        (1.0, "starboard", 3.25, 3.34),
+        (-1.0, "port", 3.11, 3.08),
+    ):
+        at_start = {
+            "vessel.u_start": 1.179,
+            "propeller_rpm": 660.0,
+            "propeller_azimuth": -35.0 * side,
+        }
         run = sc.simulate(system, stop_time=120.0, step_size=0.05, set=at_start)
         turned = np.abs(np.unwrap(run["vessel.psi"].values))
         quarter, half = (int(np.argmax(turned >= angle)) for angle in (np.pi / 2, np.pi))

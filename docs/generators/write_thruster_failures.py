@@ -25,7 +25,14 @@ and heading are the largest from then on, and in the last 100 s. `shipcosim run 
 | scenario | what must hold | distance, last 100 s [m] | heading, last 100 s [deg] | alarms, after [s] | verdict |
 |---|---|---|---|---|---|
 """
-ALARMS = ("port_faulty", "starboard_faulty", "tunnel_faulty", "position_alarm", "heading_alarm", "force_alarm")
+ALARMS = (
+    "port_faulty",
+    "starboard_faulty",
+    "tunnel_faulty",
+    "position_alarm",
+    "heading_alarm",
+    "force_alarm",
+)
 LATE = 100.0  # s before the end
 
 

@@ -3,7 +3,12 @@
 from shipcosim.angles import wrap
 from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import where
-from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step
+from shipcosim.models.propulsion.azimuth import (
+    AzimuthParameters,
+    azimuth_loads,
+    azimuth_replay,
+    azimuth_step,
+)
 from shipcosim.models.propulsion.drive import at_rest, powers
 from shipcosim.models.propulsion.failures import PLENTY, Failures
 
@@ -18,18 +23,26 @@ class AzimuthThruster(Fmu):
     r = Input("rad/s", "ship's yaw rate")
     failed = Input("1", "without power: no motor torque, direction kept", start=False)
     stop = Input("1", "emergency stop: as failed, by command", start=False)
-    full_thrust = Input("1", "failure: the drive gives its largest thrust ahead, whatever is commanded", start=False)
+    full_thrust = Input(
+        "1", "failure: the drive gives its largest thrust ahead, whatever is commanded", start=False
+    )
     rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
     azimuth_frozen = Input("1", "failure: the unit keeps its direction", start=False)
     rpm_reversed = Input("1", "failure: the measured shaft speed has the wrong sign", start=False)
     azimuth_reversed = Input("1", "failure: the measured direction has the wrong sign", start=False)
-    rate_share = Input("1", "share that is left of the largest rates of thrust and turning", start=1.0)
+    rate_share = Input(
+        "1", "share that is left of the largest rates of thrust and turning", start=1.0
+    )
     power_limit = Input("W", "power that the switchboard grants the motor", start=PLENTY)
     rpm_in = Input("rpm", "shaft speed of a replay")
     azimuth_in = Input("rad", "direction of positive thrust of a replay, clockwise from the bow")
-    neighbour_azimuth = Input("rad", "direction of positive thrust of the unit whose slipstream can meet this one")
+    neighbour_azimuth = Input(
+        "rad", "direction of positive thrust of the unit whose slipstream can meet this one"
+    )
     neighbour_rpm = Input("rpm", "shaft speed of that unit")
-    thrust_share = Input("1", "share of the thrust that the slipstreams of other units leave", start=1.0)
+    thrust_share = Input(
+        "1", "share of the thrust that the slipstreams of other units leave", start=1.0
+    )
 
     thrust = Output("N", "delivered thrust along the axis")
     side_force = Output("N", "force across the axis, 90 deg clockwise of the thrust")
@@ -46,8 +59,14 @@ class AzimuthThruster(Fmu):
     saturated = Output("1", "at a limit of thrust, its rate, or the motor", start=False)
     available = Output("1", "has neither failed nor been stopped", start=True)
 
-    replay = Parameter(False, "1", "shaft speed and direction follow rpm_in and azimuth_in; nothing else acts on them")
-    azimuth_start = Parameter(0.0, "rad", "direction of positive thrust at the start, clockwise from the bow")
+    replay = Parameter(
+        False,
+        "1",
+        "shaft speed and direction follow rpm_in and azimuth_in; nothing else acts on them",
+    )
+    azimuth_start = Parameter(
+        0.0, "rad", "direction of positive thrust at the start, clockwise from the bow"
+    )
     unit = Parameters(AzimuthParameters)
 
     def start(self):
@@ -58,9 +77,14 @@ class AzimuthThruster(Fmu):
         if self.replay:
             self.state = self._replayed()
         else:
-            command, water = (self.thrust_cmd, self.azimuth_cmd), (self.u_r, self.v_r, self.r)
-            self.state = azimuth_step(self.state, *command, *water, self._failures(), h, unit=self.unit)
-        reported = self.state.reported  # the propeller's thrust; of a reversed shaft speed with the wrong sign
+            command = (self.thrust_cmd, self.azimuth_cmd)
+            water = (self.u_r, self.v_r, self.r)
+            self.state = azimuth_step(
+                self.state, *command, *water, self._failures(), h, unit=self.unit
+            )
+        reported = (
+            self.state.reported
+        )  # the propeller's thrust; of a reversed shaft speed with the wrong sign
         self._write(reported if self.replay else where(self.rpm_reversed, -reported, reported))
 
     def _replayed(self):
@@ -81,12 +105,16 @@ class AzimuthThruster(Fmu):
 
     def _write(self, propeller_thrust=None):
         state = self.state
-        flow, neighbour = (self.u_r, self.v_r, self.r), (self.neighbour_azimuth, self.neighbour_rpm)
+        flow = (self.u_r, self.v_r, self.r)
+        neighbour = (self.neighbour_azimuth, self.neighbour_rpm)
         known = {"propeller_thrust": propeller_thrust, "thrust_share": self.thrust_share}
         loads = azimuth_loads(state, *flow, *neighbour, unit=self.unit, **known)
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads
-        self.azimuth, self.rpm, self.torque = state.azimuth, 60.0 * state.n, state.torque
+        self.azimuth = state.azimuth
+        self.rpm = 60.0 * state.n
+        self.torque = state.torque
         self.power, self.brake_power = powers(state, self.unit)
         self.thrust_feedback = state.reported
         self.azimuth_feedback = where(self.azimuth_reversed, -state.azimuth, state.azimuth)
-        self.saturated, self.available = state.saturated, not (self.failed | self.stop)
+        self.saturated = state.saturated
+        self.available = not (self.failed | self.stop)

@@ -24,7 +24,9 @@ class DeadReckoning(Fmu):
     position_valid = Input("1", "GNSS works", start=True)
     psi_meas = Input("rad", "heading by compass, clockwise from north")
     wind_speed_meas = Input("m/s", "apparent wind speed at the mast")
-    wind_from_meas = Input("rad", "direction of the apparent wind at the mast, clockwise from the bow")
+    wind_from_meas = Input(
+        "rad", "direction of the apparent wind at the mast, clockwise from the bow"
+    )
     command_1 = Input("1", "actual command of the first bow tunnel, in the unit of its map")
     command_2 = Input("1", "actual command of the second bow tunnel, in the unit of its map")
     command_3 = Input("1", "actual command of the first stern tunnel, in the unit of its map")
@@ -36,15 +38,20 @@ class DeadReckoning(Fmu):
     y_hat = Output("m", "east position: by GNSS, reckoned while it is lost")
     u_hat = Output("m/s", "surge velocity over ground as reckoned, at the last sample")
     v_hat = Output("m/s", "sway velocity over ground as reckoned, at the last sample")
-    position_region = Output("m", "radius of the circle about the position that has the true one in 90 % of cases")
+    position_region = Output(
+        "m", "radius of the circle about the position that has the true one in 90 % of cases"
+    )
     lost_for = Output("s", "time since GNSS was lost, at the last sample; 0 while it works")
 
-    variant = Parameter("motion-filter", "1", "which training: the name of a file of weights", origin="choice")
+    variant = Parameter(
+        "motion-filter", "1", "which training: the name of a file of weights", origin="choice"
+    )
 
     def start(self):
         arrays = read_arrays(self._weights())
         self.law = "motion_filter" if "bow" in arrays else "velocity_network"
-        self.design, self.region = self._module().design(arrays), region_of(arrays)
+        self.design = self._module().design(arrays)
+        self.region = region_of(arrays)
         self.taken = samples_due(self.start_time, SAMPLE_TIME)
         self.state = self._module().start(self._measured(), design=self.design)
         self._show(self.start_time)
@@ -53,13 +60,17 @@ class DeadReckoning(Fmu):
         due = samples_due(t, SAMPLE_TIME)
         if self.taken < due:
             self.taken = due
-            self.state = self._module().step(self.state, self._measured(), SAMPLE_TIME, design=self.design)
+            self.state = self._module().step(
+                self.state, self._measured(), SAMPLE_TIME, design=self.design
+            )
         self._show(t + h)
 
     def _weights(self):
         known = sorted(file.stem for file in WEIGHTS.glob("*.npz"))
         if self.variant not in known:
-            raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(known)}.")
+            raise ValueError(
+                f"variant '{self.variant}': there is none. There are {', '.join(known)}."
+            )
         return WEIGHTS / f"{self.variant}.npz"
 
     def _module(self):
@@ -81,9 +92,12 @@ class DeadReckoning(Fmu):
 
     def _show(self, t):
         """Outputs at t: between samples the reckoned position moves on with its velocity."""
-        state, since = self.state, t - (self.taken - 1) * SAMPLE_TIME
+        state = self.state
+        since = t - (self.taken - 1) * SAMPLE_TIME
         north, east = to_ned(self.psi_meas, state.u, state.v)
         self.x_hat = self.x_meas if self.position_valid else number(state.x + since * north)
         self.y_hat = self.y_meas if self.position_valid else number(state.y + since * east)
-        self.u_hat, self.v_hat, self.lost_for = number(state.u), number(state.v), number(state.lost_for)
+        self.u_hat = number(state.u)
+        self.v_hat = number(state.v)
+        self.lost_for = number(state.lost_for)
         self.position_region = number(radius(state.lost_for, state.sea, region=self.region))

@@ -27,35 +27,57 @@ class DockingPredictor(Fmu):
     v_meas = Input("m/s", "measured sway velocity over ground")
     r_meas = Input("rad/s", "measured yaw rate")
     wind_speed_meas = Input("m/s", "measured apparent wind speed at the mast")
-    wind_from_meas = Input("rad", "measured direction of the apparent wind at the mast, clockwise from the bow")
+    wind_from_meas = Input(
+        "rad", "measured direction of the apparent wind at the mast, clockwise from the bow"
+    )
     port_thrust_cmd = Input("N", "commanded thrust of the port azimuth")
-    port_azimuth_cmd = Input("rad", "commanded direction of the port azimuth, clockwise from the bow")
+    port_azimuth_cmd = Input(
+        "rad", "commanded direction of the port azimuth, clockwise from the bow"
+    )
     port_rpm = Input("rpm", "shaft speed of the port azimuth")
     port_azimuth = Input("rad", "direction of the port azimuth, clockwise from the bow")
     starboard_thrust_cmd = Input("N", "commanded thrust of the starboard azimuth")
-    starboard_azimuth_cmd = Input("rad", "commanded direction of the starboard azimuth, clockwise from the bow")
+    starboard_azimuth_cmd = Input(
+        "rad", "commanded direction of the starboard azimuth, clockwise from the bow"
+    )
     starboard_rpm = Input("rpm", "shaft speed of the starboard azimuth")
     starboard_azimuth = Input("rad", "direction of the starboard azimuth, clockwise from the bow")
     tunnel_thrust_cmd = Input("N", "commanded thrust of the tunnel, positive to starboard")
     tunnel_rpm = Input("rpm", "motor speed of the tunnel")
 
-    predicted_at = Output("s", "time at which the prediction was made, from which its seconds count")
+    predicted_at = Output(
+        "s", "time at which the prediction was made, from which its seconds count"
+    )
     x_10 = Output("m", "north position in 10 s")
     y_10 = Output("m", "east position in 10 s")
     psi_10 = Output("rad", "heading in 10 s")
-    position_region_10 = Output("m", "radius about the place in 10 s that has the true one in 90 % of cases, or 0")
-    heading_region_10 = Output("rad", "half-width about the heading in 10 s that has the true one in 90 %, or 0")
+    position_region_10 = Output(
+        "m", "radius about the place in 10 s that has the true one in 90 % of cases, or 0"
+    )
+    heading_region_10 = Output(
+        "rad", "half-width about the heading in 10 s that has the true one in 90 %, or 0"
+    )
     x_20 = Output("m", "north position in 20 s")
     y_20 = Output("m", "east position in 20 s")
     psi_20 = Output("rad", "heading in 20 s")
-    position_region_20 = Output("m", "radius about the place in 20 s that has the true one in 90 % of cases, or 0")
-    heading_region_20 = Output("rad", "half-width about the heading in 20 s that has the true one in 90 %, or 0")
+    position_region_20 = Output(
+        "m", "radius about the place in 20 s that has the true one in 90 % of cases, or 0"
+    )
+    heading_region_20 = Output(
+        "rad", "half-width about the heading in 20 s that has the true one in 90 %, or 0"
+    )
     x_30 = Output("m", "north position in 30 s")
     y_30 = Output("m", "east position in 30 s")
     psi_30 = Output("rad", "heading in 30 s")
-    position_region_30 = Output("m", "radius about the place in 30 s that has the true one in 90 % of cases, or 0")
-    heading_region_30 = Output("rad", "half-width about the heading in 30 s that has the true one in 90 %, or 0")
-    learned = Output("1", "share of the learned correction in the prediction; 0 is the equations of motion alone")
+    position_region_30 = Output(
+        "m", "radius about the place in 30 s that has the true one in 90 % of cases, or 0"
+    )
+    heading_region_30 = Output(
+        "rad", "half-width about the heading in 30 s that has the true one in 90 %, or 0"
+    )
+    learned = Output(
+        "1", "share of the learned correction in the prediction; 0 is the equations of motion alone"
+    )
 
     mast = Parameters(MastParameters)
     hull = Parameters(HullParameters)
@@ -65,12 +87,18 @@ class DockingPredictor(Fmu):
 
     def start(self):
         if self.variant not in VARIANTS:
-            raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(VARIANTS)}.")
+            raise ValueError(
+                f"variant '{self.variant}': there is none. There are {', '.join(VARIANTS)}."
+            )
         file = "paper-iii" if self.variant == "paper-iii" else "ours"
         self.law = law_of(self.variant, read_arrays(WEIGHTS / f"{file}.npz"))
         self.model = Model(self.hull, self.wind, self.helm)
-        self.made, self.state = samples_due(self.start_time, 1.0), self.law.begin(self._aboard(), self.model)
-        self.errors, self.awaited = (0.0, 0.0), []
+        self.made, self.state = (
+            samples_due(self.start_time, 1.0),
+            self.law.begin(self._aboard(), self.model),
+        )
+        self.errors = (0.0, 0.0)
+        self.awaited = []
         self._predict(self.start_time)
 
     def step(self, t, h):

@@ -36,7 +36,9 @@ class DpController(Fmu):
     compass_2_valid = Input("1", "compass 2 says that it works", start=True)
     r_meas = Input("rad/s", "yaw rate by the rate gyro")
     wind_speed_meas = Input("m/s", "apparent wind speed at the mast")
-    wind_from_meas = Input("rad", "direction of the apparent wind at the mast, clockwise from the bow")
+    wind_from_meas = Input(
+        "rad", "direction of the apparent wind at the mast, clockwise from the bow"
+    )
     wind_valid = Input("1", "the anemometer says that it works", start=True)
     position_time_meas = Input("s", "time at which positions and velocities were sampled")
     heading_time_meas = Input("s", "time at which headings and yaw rate were sampled")
@@ -63,21 +65,39 @@ class DpController(Fmu):
     u_hat = Output("m/s", "estimated surge velocity over ground")
     v_hat = Output("m/s", "estimated sway velocity over ground")
     r_hat = Output("rad/s", "estimated yaw rate")
-    tau_X_bias = Output("N", "estimated force forward that neither thrust nor measured wind explains")
-    tau_Y_bias = Output("N", "estimated force to starboard that neither thrust nor measured wind explains")
-    tau_N_bias = Output("N.m", "estimated yaw moment that neither thrust nor measured wind explains")
+    tau_X_bias = Output(
+        "N", "estimated force forward that neither thrust nor measured wind explains"
+    )
+    tau_Y_bias = Output(
+        "N", "estimated force to starboard that neither thrust nor measured wind explains"
+    )
+    tau_N_bias = Output(
+        "N.m", "estimated yaw moment that neither thrust nor measured wind explains"
+    )
     wave_frequency_hat = Output("rad/s", "frequency that the wave filter has adapted to")
     position_error = Output("m", "distance of the estimated ship from the reference")
     heading_error = Output("rad", "estimated heading less the reference")
     dead_reckoning_time = Output("s", "time since the last trusted position; 0 while there is one")
     positions_used = Output("1", "position references in use", start=3)
     compasses_used = Output("1", "compasses in use", start=2)
-    position_1_rejected = Output("1", "reference 1 says that it works and is not believed", start=False)
-    position_2_rejected = Output("1", "reference 2 says that it works and is not believed", start=False)
-    position_3_rejected = Output("1", "reference 3 says that it works and is not believed", start=False)
-    compass_1_rejected = Output("1", "compass 1 says that it works and is not believed", start=False)
-    compass_2_rejected = Output("1", "compass 2 says that it works and is not believed", start=False)
-    wind_rejected = Output("1", "the anemometer is lost or not believed: the wind is not fed forward", start=False)
+    position_1_rejected = Output(
+        "1", "reference 1 says that it works and is not believed", start=False
+    )
+    position_2_rejected = Output(
+        "1", "reference 2 says that it works and is not believed", start=False
+    )
+    position_3_rejected = Output(
+        "1", "reference 3 says that it works and is not believed", start=False
+    )
+    compass_1_rejected = Output(
+        "1", "compass 1 says that it works and is not believed", start=False
+    )
+    compass_2_rejected = Output(
+        "1", "compass 2 says that it works and is not believed", start=False
+    )
+    wind_rejected = Output(
+        "1", "the anemometer is lost or not believed: the wind is not fed forward", start=False
+    )
 
     ship = Parameters(observer.DpShip)
     noise = Parameters(observer.ObserverParameters)
@@ -104,7 +124,11 @@ class DpController(Fmu):
         self.taken += 1
         allocated = (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated)
         period = self.noise.sample_period
-        fixes = self._fixes() if self.position_time_meas > self.voting.position_time else self.voting.positions.fixes
+        fixes = (
+            self._fixes()
+            if self.position_time_meas > self.voting.position_time
+            else self.voting.positions.fixes
+        )
         self.voting, estimate = voting.step(
             t,
             self.voting,
@@ -136,9 +160,27 @@ class DpController(Fmu):
 
     def _fixes(self):
         return (
-            Fix(self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas, number(self.position_1_valid)),
-            Fix(self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas, number(self.position_2_valid)),
-            Fix(self.x_3_meas, self.y_3_meas, self.u_3_meas, self.v_3_meas, number(self.position_3_valid)),
+            Fix(
+                self.x_1_meas,
+                self.y_1_meas,
+                self.u_1_meas,
+                self.v_1_meas,
+                number(self.position_1_valid),
+            ),
+            Fix(
+                self.x_2_meas,
+                self.y_2_meas,
+                self.u_2_meas,
+                self.v_2_meas,
+                number(self.position_2_valid),
+            ),
+            Fix(
+                self.x_3_meas,
+                self.y_3_meas,
+                self.u_3_meas,
+                self.v_3_meas,
+                number(self.position_3_valid),
+            ),
         )
 
     def _telegrams(self, fixes):
@@ -169,22 +211,36 @@ class DpController(Fmu):
         )
 
     def _show(self, estimate, state):
-        self.estimate, self.state = estimate, state
-        self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd = state.tau_X, state.tau_Y, state.tau_N
-        self.x_hat, self.y_hat, self.psi_hat = estimate.x, estimate.y, wrap(estimate.psi)
-        self.u_hat, self.v_hat, self.r_hat = estimate.u, estimate.v, estimate.r
-        self.tau_X_bias, self.tau_Y_bias = to_body(estimate.psi, estimate.bias_north, estimate.bias_east)
+        self.estimate = estimate
+        self.state = state
+        self.tau_X_cmd = state.tau_X
+        self.tau_Y_cmd = state.tau_Y
+        self.tau_N_cmd = state.tau_N
+        self.x_hat = estimate.x
+        self.y_hat = estimate.y
+        self.psi_hat = wrap(estimate.psi)
+        self.u_hat = estimate.u
+        self.v_hat = estimate.v
+        self.r_hat = estimate.r
+        self.tau_X_bias, self.tau_Y_bias = to_body(
+            estimate.psi, estimate.bias_north, estimate.bias_east
+        )
         self.tau_N_bias = estimate.bias_N
         self.wave_frequency_hat = estimate.wave_frequency
         self.position_error, self.heading_error = control.errors(estimate, self._desired())
 
     def _say(self, t):
         """Outputs on which sensors are believed."""
-        positions, compasses = self.voting.positions, self.voting.compasses
-        self.dead_reckoning_time = voting.dead_reckoning_time(t, self.voting, parameters=self.limits)
-        (one, two), (first, second) = compasses.used, compasses.headings
+        positions = self.voting.positions
+        compasses = self.voting.compasses
+        self.dead_reckoning_time = voting.dead_reckoning_time(
+            t, self.voting, parameters=self.limits
+        )
+        (one, two) = compasses.used
+        (first, second) = compasses.headings
         self.compasses_used = round(one + two)
-        self.compass_1_rejected, self.compass_2_rejected = first.valid > one, second.valid > two
+        self.compass_1_rejected = first.valid > one
+        self.compass_2_rejected = second.valid > two
         if self.voting.position_new:
             self.positions_used = round(sum(positions.used))
             self.position_1_rejected, self.position_2_rejected, self.position_3_rejected = (

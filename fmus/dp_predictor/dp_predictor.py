@@ -23,11 +23,15 @@ class DpPredictor(KineticPredictor):
 
     def predict(self, state, known):
         motions = (
-            self.reckoned(state, known) if known.goal is None or thrust_is_lost(known) else self._held(state, known)
+            self.reckoned(state, known)
+            if known.goal is None or thrust_is_lost(known)
+            else self._held(state, known)
         )
         return Prediction(motions, self.regions.positions, self.regions.headings)
 
     def _held(self, state, known):
-        loop = controlled.ControlLoop(self.reference, self.ship, self.law, self.units, self.design, self.observer)
+        loop = controlled.ControlLoop(
+            self.reference, self.ship, self.law, self.units, self.design, self.observer
+        )
         ahead = {"horizons": HORIZONS, "longest_step": self.longest_step}
         return controlled.predict(known, state, **ahead, hull=self.hull, wind=self.wind, loop=loop)

@@ -1,7 +1,12 @@
 """FMU of the mean drift load of waves."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.environment.earth_fixed_loads import DriftForceParameters, OnsetParameters, drift_force, onset
+from shipcosim.models.environment.earth_fixed_loads import (
+    DriftForceParameters,
+    OnsetParameters,
+    drift_force,
+    onset,
+)
 
 
 class DriftForce(Fmu):
@@ -23,7 +28,14 @@ class DriftForce(Fmu):
         self._write(t + h)
 
     def _write(self, t):
-        drift, begin = self.drift, self.begin
+        drift = self.drift
+        begin = self.begin
         share = onset(t, onset_time=begin.onset_time, ramp_time=begin.ramp_time)
-        law = {"surge_share": drift.surge_share, "sway_power": drift.sway_power, "yaw_arm": drift.yaw_arm}
-        self.tau_X, self.tau_Y, self.tau_N = drift_force(self.psi, share * drift.north, share * drift.east, **law)
+        law = {
+            "surge_share": drift.surge_share,
+            "sway_power": drift.sway_power,
+            "yaw_arm": drift.yaw_arm,
+        }
+        self.tau_X, self.tau_Y, self.tau_N = drift_force(
+            self.psi, share * drift.north, share * drift.east, **law
+        )

@@ -28,24 +28,38 @@ class DriftPredictor(MotionPredictor):
     ship = Parameters(DpShip)
     assumed = Parameters(SurroundingsParameters)
     regions = Parameters(RegionParameters)
-    longest_step = Parameter(2.0, "s", "longest step of the integration without what is learned", minimum=0.01)
-    variant = Parameter("ours", "1", "what predicts: the name of a file of weights, ours or paper-iv", origin="choice")
+    longest_step = Parameter(
+        2.0, "s", "longest step of the integration without what is learned", minimum=0.01
+    )
+    variant = Parameter(
+        "ours",
+        "1",
+        "what predicts: the name of a file of weights, ours or paper-iv",
+        origin="choice",
+    )
 
     own_regions = Parameter(
-        True, "1", "regions are those calibrated for the variant, and not those of the parameters", origin="choice"
+        True,
+        "1",
+        "regions are those calibrated for the variant, and not those of the parameters",
+        origin="choice",
     )
 
     def begin(self, known):
         files = {file.stem: file for file in WEIGHTS.glob("*.npz")}
         if self.variant not in files:
-            raise ValueError(f"variant '{self.variant}': there is none. There are {', '.join(sorted(files))}.")
+            raise ValueError(
+                f"variant '{self.variant}': there is none. There are {', '.join(sorted(files))}."
+            )
         if self.own_regions:
             widths = tomllib.loads((WEIGHTS / "regions.toml").read_text(encoding="utf-8"))
             self.regions = replace(self.regions, **widths[self.variant])
         arrays = read_arrays(files[self.variant])
         if self.variant == "paper-iv":
             if self.prediction_period != paper_iv.PERIOD:
-                raise ValueError(f"prediction_period = {self.prediction_period:g} s: networks of paper IV step by 1 s.")
+                raise ValueError(
+                    f"prediction_period = {self.prediction_period:g} s: networks of paper IV step by 1 s."
+                )
             self.ensemble = paper_iv.ensemble_of(arrays)
             return paper_iv.begin(known)
         self.trained = drift_off.trained_of(arrays)
@@ -54,12 +68,19 @@ class DriftPredictor(MotionPredictor):
     def follow(self, state, known, since):
         if self.variant == "paper-iv":
             return paper_iv.step(state, known, hull=self.hull, wind=self.wind)
-        model = {"hull": self.hull, "wind": self.wind, "ship": self.ship, "parameters": self.assumed}
+        model = {
+            "hull": self.hull,
+            "wind": self.wind,
+            "ship": self.ship,
+            "parameters": self.assumed,
+        }
         return drift_off.step(state, known, since, trained=self.trained, **model)
 
     def predict(self, state, known):
         if self.variant == "paper-iv":
-            return Prediction(self._paper_iv(state, known), self.regions.positions, self.regions.headings, 1.0)
+            return Prediction(
+                self._paper_iv(state, known), self.regions.positions, self.regions.headings, 1.0
+            )
         motions, share = drift_off.predict(
             state,
             known,
@@ -74,6 +95,10 @@ class DriftPredictor(MotionPredictor):
 
     def _paper_iv(self, past, known):
         seconds = round(HORIZONS[-1])
-        found = paper_iv.predict(past, known, self.ensemble, seconds=seconds, hull=self.hull, wind=self.wind)
+        found = paper_iv.predict(
+            past, known, self.ensemble, seconds=seconds, hull=self.hull, wind=self.wind
+        )
         motions = (found[round(horizon) - 1] for horizon in HORIZONS)
-        return tuple(Motion(*map(float, motion._replace(psi=wrap(motion.psi)))) for motion in motions)
+        return tuple(
+            Motion(*map(float, motion._replace(psi=wrap(motion.psi)))) for motion in motions
+        )

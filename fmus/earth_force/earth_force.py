@@ -1,7 +1,12 @@
 """FMU of a force of constant direction over the earth."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.environment.earth_fixed_loads import EarthForceParameters, OnsetParameters, earth_force, onset
+from shipcosim.models.environment.earth_fixed_loads import (
+    EarthForceParameters,
+    OnsetParameters,
+    earth_force,
+    onset,
+)
 
 
 class EarthForce(Fmu):
@@ -23,7 +28,8 @@ class EarthForce(Fmu):
         self._write(t + h)
 
     def _write(self, t):
-        force, begin = self.force, self.begin
+        force = self.force
+        begin = self.begin
         share = onset(t, onset_time=begin.onset_time, ramp_time=begin.ramp_time)
         self.tau_X, self.tau_Y, self.tau_N = earth_force(
             self.psi, share * force.north, share * force.east, x=force.x, y=force.y

@@ -19,7 +19,9 @@ class Environment(Fmu):
     wind_speed = Input("m/s", "setpoint of the mean wind speed at 10 m", minimum=0.0)
     wind_from = Input("rad", "setpoint of the direction the wind comes from, clockwise from north")
     current_speed = Input("m/s", "setpoint of the current's speed", minimum=0.0)
-    current_to = Input("rad", "setpoint of the direction the current flows to, clockwise from north")
+    current_to = Input(
+        "rad", "setpoint of the direction the current flows to, clockwise from north"
+    )
 
     wind_north = Output("m/s", "velocity of the air towards north, gusts included")
     wind_east = Output("m/s", "velocity of the air towards east, gusts included")
@@ -37,9 +39,13 @@ class Environment(Fmu):
     model = Parameters(EnvironmentParameters)
 
     def start(self):
-        self.means = EnvironmentState(self.wind_speed, wrap(self.wind_from), self.current_speed, wrap(self.current_to))
-        self.wave_height, self.wave_period = self.model.significant_wave_height, self.model.peak_period
-        self.wave_from, self.wave_seed = self.model.waves_from, self.model.seed
+        self.means = EnvironmentState(
+            self.wind_speed, wrap(self.wind_from), self.current_speed, wrap(self.current_to)
+        )
+        self.wave_height = self.model.significant_wave_height
+        self.wave_period = self.model.peak_period
+        self.wave_from = self.model.waves_from
+        self.wave_seed = self.model.seed
         self.wave_peak_enhancement = self.model.peak_enhancement
         self._write(self.start_time)
 
@@ -49,9 +55,19 @@ class Environment(Fmu):
         self._write(tidy_time(t + h))
 
     def _write(self, t):
-        model, means = self.model, self.means
-        self.wind_north, self.wind_east = air_velocity(t, means, gust_scale=model.gust_scale, seed=model.seed)
+        model = self.model
+        means = self.means
+        self.wind_north, self.wind_east = air_velocity(
+            t, means, gust_scale=model.gust_scale, seed=model.seed
+        )
         self.current_north, self.current_east = water_velocity(means)
-        self.wind_speed_mean, self.wind_from_mean = means.wind_speed, means.wind_from
-        sea = self.wave_height, self.wave_period, self.wave_from, self.wave_peak_enhancement, self.wave_seed
+        self.wind_speed_mean = means.wind_speed
+        self.wind_from_mean = means.wind_from
+        sea = (
+            self.wave_height,
+            self.wave_period,
+            self.wave_from,
+            self.wave_peak_enhancement,
+            self.wave_seed,
+        )
         self.elevation = waves.elevation(t, 0.0, 0.0, waves.components(*sea))

@@ -29,5 +29,7 @@ class FixedThruster(Fmu):
 
     def _push(self):
         speed = self.rpm_in * pi / 30.0
-        loads = fixed_loads(self.thrust_in, speed, self.u_r, self.v_r, self.r, thruster=self.thruster)
+        loads = fixed_loads(
+            self.thrust_in, speed, self.u_r, self.v_r, self.r, thruster=self.thruster
+        )
         self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads

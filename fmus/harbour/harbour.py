@@ -23,7 +23,8 @@ class Harbour(Fmu):
 
     def start(self):
         place = self.x, self.y
-        wind, current = (self.sea_wind_north, self.sea_wind_east), (self.sea_current_north, self.sea_current_east)
+        wind = (self.sea_wind_north, self.sea_wind_east)
+        current = (self.sea_current_north, self.sea_current_east)
         self.wind_north, self.wind_east = local_wind(*place, *wind, harbour=self.land)
         self.current_north, self.current_east = local_current(*place, *current, harbour=self.land)
 

@@ -1,7 +1,12 @@
 """FMU of the instruments: measured motion with their errors and lag."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.ship.instruments import InstrumentParameters, history_with, motion_at, readings
+from shipcosim.models.ship.instruments import (
+    InstrumentParameters,
+    history_with,
+    motion_at,
+    readings,
+)
 
 
 class Instruments(Fmu):
@@ -18,7 +23,9 @@ class Instruments(Fmu):
     y_meas = Output("m", "position east of the antenna")
     psi_meas = Output("rad", "measured heading, clockwise from north")
     u_meas = Output("m/s", "velocity of the antenna over ground along the measured heading")
-    v_meas = Output("m/s", "velocity of the antenna over ground, 90 deg to starboard of the measured heading")
+    v_meas = Output(
+        "m/s", "velocity of the antenna over ground, 90 deg to starboard of the measured heading"
+    )
     r_meas = Output("rad/s", "measured yaw rate")
 
     errors = Parameters(InstrumentParameters)

@@ -33,13 +33,21 @@ class MappedThruster(Fmu):
     thruster = Parameters(MapParameters)
 
     def start(self):
-        self.command = self.command_in if self.replay else mapped_command(0.0, thruster=self.thruster)
-        self.at_no_speed = mapped_thrust(self.command, thruster=self.thruster) if self.replay else 0.0
+        self.command = (
+            self.command_in if self.replay else mapped_command(0.0, thruster=self.thruster)
+        )
+        self.at_no_speed = (
+            mapped_thrust(self.command, thruster=self.thruster) if self.replay else 0.0
+        )
         self._push()
 
     def step(self, t, h):
         wanted = self._wanted()
-        asked = self.command_in if self.replay and not self.failed else mapped_command(wanted, thruster=self.thruster)
+        asked = (
+            self.command_in
+            if self.replay and not self.failed
+            else mapped_command(wanted, thruster=self.thruster)
+        )
         self.command = commanded(self.command, asked, h, thruster=self.thruster)
         if self.thruster.command_rate > 0.0:
             wanted = mapped_thrust(self.command, thruster=self.thruster)

@@ -39,11 +39,18 @@ class PidController(Fmu):
         self._show(step(self.state, measured, self._desired(), h, parameters=self.law))
 
     def _desired(self):
-        return Desired(self.x_d, self.y_d, self.psi_d, self.x_d_dot, self.y_d_dot, self.r_d, 0.0, 0.0, 0.0)
+        return Desired(
+            self.x_d, self.y_d, self.psi_d, self.x_d_dot, self.y_d_dot, self.r_d, 0.0, 0.0, 0.0
+        )
 
     def _show(self, state):
         self.state = state
-        self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd = state.tau_X, state.tau_Y, state.tau_N
-        self.x_hat, self.y_hat, self.psi_hat = state.x, state.y, wrap(state.psi)
+        self.tau_X_cmd = state.tau_X
+        self.tau_Y_cmd = state.tau_Y
+        self.tau_N_cmd = state.tau_N
+        self.x_hat = state.x
+        self.y_hat = state.y
+        self.psi_hat = wrap(state.psi)
         surge, sway, yaw = errors(state, self._desired())
-        self.position_error, self.heading_error = hypot(surge, sway), -yaw
+        self.position_error = hypot(surge, sway)
+        self.heading_error = -yaw

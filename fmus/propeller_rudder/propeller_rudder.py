@@ -8,7 +8,9 @@ class PropellerRudder(Fmu):
     """Propeller and the rudder in its race, by the MMG standard method; speed and rudder as given, no drive."""
 
     rpm_in = Input("rpm", "speed of the shaft, negative astern")
-    azimuth_in = Input("rad", "rudder: direction into which it turns the race, positive turns the ship to port")
+    azimuth_in = Input(
+        "rad", "rudder: direction into which it turns the race, positive turns the ship to port"
+    )
     u_r = Input("m/s", "ship's velocity forward through the water")
     v_r = Input("m/s", "ship's velocity to starboard through the water")
     r = Input("rad/s", "ship's yaw rate")
@@ -28,5 +30,7 @@ class PropellerRudder(Fmu):
         self._push()
 
     def _push(self):
-        loads = propeller_rudder_loads(self.rpm_in / 60.0, self.azimuth_in, self.u_r, self.v_r, self.r, unit=self.unit)
+        loads = propeller_rudder_loads(
+            self.rpm_in / 60.0, self.azimuth_in, self.u_r, self.v_r, self.r, unit=self.unit
+        )
         self.thrust, self.side_force, self.tau_X, self.tau_Y, self.tau_N = loads

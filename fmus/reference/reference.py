@@ -28,17 +28,29 @@ class Reference(Fmu):
     model = Parameters(ReferenceParameters)
     x_start = Parameter(0.0, "m", "north position that the reference starts from, at rest")
     y_start = Parameter(0.0, "m", "east position that the reference starts from")
-    psi_start = Parameter(0.0, "rad", "heading that the reference starts from, clockwise from north")
+    psi_start = Parameter(
+        0.0, "rad", "heading that the reference starts from, clockwise from north"
+    )
 
     def start(self):
         self._show(at_rest(self.x_start, self.y_start, self.psi_start))
 
     def step(self, t, h):
-        self._show(step(self.state, (self.x_set, self.y_set, self.psi_set), h, parameters=self.model))
+        self._show(
+            step(self.state, (self.x_set, self.y_set, self.psi_set), h, parameters=self.model)
+        )
 
     def _show(self, state):
         self.state = state
-        self.x_d, self.y_d, self.psi_d = state.x, state.y, wrap(state.psi)
-        self.x_d_dot, self.y_d_dot, self.r_d = state.x_dot, state.y_dot, state.r
-        self.x_d_ddot, self.y_d_ddot, self.r_d_dot = state.x_ddot, state.y_ddot, state.r_dot
-        self.x_goal, self.y_goal, self.psi_goal = self.x_set, self.y_set, self.psi_set
+        self.x_d = state.x
+        self.y_d = state.y
+        self.psi_d = wrap(state.psi)
+        self.x_d_dot = state.x_dot
+        self.y_d_dot = state.y_dot
+        self.r_d = state.r
+        self.x_d_ddot = state.x_ddot
+        self.y_d_ddot = state.y_ddot
+        self.r_d_dot = state.r_dot
+        self.x_goal = self.x_set
+        self.y_goal = self.y_set
+        self.psi_goal = self.psi_set

@@ -3,7 +3,12 @@
 from shipcosim.fmi import Parameters
 from shipcosim.interfaces import Ship
 from shipcosim.models.core.motion import Load
-from shipcosim.models.ship.rough_form import RoughFormParameters, form_loads, memory_loads, rough_wind_loads
+from shipcosim.models.ship.rough_form import (
+    RoughFormParameters,
+    form_loads,
+    memory_loads,
+    rough_wind_loads,
+)
 from shipcosim.models.ship.vessel import through_water
 
 
@@ -16,15 +21,21 @@ class RoughVessel(Ship):
         self.remembered = self._velocity()
 
     def wind_load(self) -> Load:
-        return rough_wind_loads(self.apparent_wind_speed, self.apparent_wind_from, wind=self.wind, form=self.form)
+        return rough_wind_loads(
+            self.apparent_wind_speed, self.apparent_wind_from, wind=self.wind, form=self.form
+        )
 
     def form_load(self) -> Load:
         form = form_loads(*self._velocity(), hull=self.hull, form=self.form)
-        memory, _ = memory_loads(self._velocity(), self.remembered, 0.0, hull=self.hull, form=self.form)
+        memory, _ = memory_loads(
+            self._velocity(), self.remembered, 0.0, hull=self.hull, form=self.form
+        )
         return form[0] + memory[0], form[1] + memory[1], form[2] + memory[2]
 
     def remember(self, h: float) -> None:
-        _, self.remembered = memory_loads(self._velocity(), self.remembered, h, hull=self.hull, form=self.form)
+        _, self.remembered = memory_loads(
+            self._velocity(), self.remembered, h, hull=self.hull, form=self.form
+        )
 
     def _velocity(self):
         ship = self.state

@@ -22,26 +22,40 @@ class Sensors(Fmu):
     v_wave = Input("m/s", "rate of the first-order motion to starboard")
     r_wave = Input("rad/s", "rate of the first-order motion in yaw")
     apparent_wind_speed = Input("m/s", "wind speed relative to the ship at 10 m above her origin")
-    apparent_wind_from = Input("rad", "direction the apparent wind comes from, clockwise from the bow")
+    apparent_wind_from = Input(
+        "rad", "direction the apparent wind comes from, clockwise from the bow"
+    )
 
     position_1_lost = Input("1", "position reference 1 drops out", start=False)
     position_1_frozen = Input("1", "position reference 1 repeats its last value", start=False)
     position_1_north = Input("m", "offset of position reference 1 towards north")
     position_1_east = Input("m", "offset of position reference 1 towards east")
-    position_1_north_rate = Input("m/s", "drift of position reference 1 towards north, from when it is not 0")
-    position_1_east_rate = Input("m/s", "drift of position reference 1 towards east, from when it is not 0")
+    position_1_north_rate = Input(
+        "m/s", "drift of position reference 1 towards north, from when it is not 0"
+    )
+    position_1_east_rate = Input(
+        "m/s", "drift of position reference 1 towards east, from when it is not 0"
+    )
     position_2_lost = Input("1", "position reference 2 drops out", start=False)
     position_2_frozen = Input("1", "position reference 2 repeats its last value", start=False)
     position_2_north = Input("m", "offset of position reference 2 towards north")
     position_2_east = Input("m", "offset of position reference 2 towards east")
-    position_2_north_rate = Input("m/s", "drift of position reference 2 towards north, from when it is not 0")
-    position_2_east_rate = Input("m/s", "drift of position reference 2 towards east, from when it is not 0")
+    position_2_north_rate = Input(
+        "m/s", "drift of position reference 2 towards north, from when it is not 0"
+    )
+    position_2_east_rate = Input(
+        "m/s", "drift of position reference 2 towards east, from when it is not 0"
+    )
     position_3_lost = Input("1", "position reference 3 drops out", start=False)
     position_3_frozen = Input("1", "position reference 3 repeats its last value", start=False)
     position_3_north = Input("m", "offset of position reference 3 towards north")
     position_3_east = Input("m", "offset of position reference 3 towards east")
-    position_3_north_rate = Input("m/s", "drift of position reference 3 towards north, from when it is not 0")
-    position_3_east_rate = Input("m/s", "drift of position reference 3 towards east, from when it is not 0")
+    position_3_north_rate = Input(
+        "m/s", "drift of position reference 3 towards north, from when it is not 0"
+    )
+    position_3_east_rate = Input(
+        "m/s", "drift of position reference 3 towards east, from when it is not 0"
+    )
     compass_1_lost = Input("1", "compass 1 drops out", start=False)
     compass_1_frozen = Input("1", "compass 1 repeats its last value", start=False)
     compass_1_offset = Input("rad", "offset of compass 1")
@@ -76,7 +90,9 @@ class Sensors(Fmu):
     compass_2_valid = Output("1", "compass 2 says that it works", start=True)
     r_meas = Output("rad/s", "yaw rate by the rate gyro")
     wind_speed_meas = Output("m/s", "apparent wind speed at the mast, mean over some seconds")
-    wind_from_meas = Output("rad", "direction of the apparent wind at the mast, clockwise from the bow")
+    wind_from_meas = Output(
+        "rad", "direction of the apparent wind at the mast, clockwise from the bow"
+    )
     wind_valid = Output("1", "the anemometer says that it works", start=True)
     position_time_meas = Output("s", "time at which positions and velocities were sampled")
     heading_time_meas = Output("s", "time at which headings and yaw rate were sampled")
@@ -87,12 +103,20 @@ class Sensors(Fmu):
 
     def start(self):
         failures = self._failures(self._references())
-        self._show(sensors.start(self.start_time, self._truth(), failures, parameters=self.model, mast=self.mast))
+        self._show(
+            sensors.start(
+                self.start_time, self._truth(), failures, parameters=self.model, mast=self.mast
+            )
+        )
 
     def step(self, t, h):
         if self.state.taken < samples_due(t, self.model.period):
             failures = self._failures(self._references())
-            self._show(sensors.step(t, self.state, self._truth(), failures, parameters=self.model, mast=self.mast))
+            self._show(
+                sensors.step(
+                    t, self.state, self._truth(), failures, parameters=self.model, mast=self.mast
+                )
+            )
 
     def _truth(self):
         return sensors.Truth(
@@ -137,17 +161,26 @@ class Sensors(Fmu):
     def _failures(self, positions):
         compasses = (
             sensors.CompassFailure(
-                self.compass_1_lost, self.compass_1_frozen, self.compass_1_offset, self.compass_1_rate
+                self.compass_1_lost,
+                self.compass_1_frozen,
+                self.compass_1_offset,
+                self.compass_1_rate,
             ),
             sensors.CompassFailure(
-                self.compass_2_lost, self.compass_2_frozen, self.compass_2_offset, self.compass_2_rate
+                self.compass_2_lost,
+                self.compass_2_frozen,
+                self.compass_2_offset,
+                self.compass_2_rate,
             ),
         )
-        wind = sensors.WindFailure(self.wind_lost, self.wind_frozen, self.wind_scale, self.wind_offset)
+        wind = sensors.WindFailure(
+            self.wind_lost, self.wind_frozen, self.wind_scale, self.wind_offset
+        )
         return sensors.SensorFailures(positions, compasses, wind)
 
     def _show(self, state):
-        self.state, given = state, state.telegrams
+        self.state = state
+        given = state.telegrams
         one, two, three = given.positions
         self.x_1_meas, self.y_1_meas, self.u_1_meas, self.v_1_meas = one[:4]
         self.x_2_meas, self.y_2_meas, self.u_2_meas, self.v_2_meas = two[:4]
@@ -156,8 +189,13 @@ class Sensors(Fmu):
         self.position_2_valid = two.valid > 0.5
         self.position_3_valid = three.valid > 0.5
         one, two = given.compasses
-        self.psi_1_meas, self.compass_1_valid = one.psi, one.valid > 0.5
-        self.psi_2_meas, self.compass_2_valid = two.psi, two.valid > 0.5
+        self.psi_1_meas = one.psi
+        self.compass_1_valid = one.valid > 0.5
+        self.psi_2_meas = two.psi
+        self.compass_2_valid = two.valid > 0.5
         self.r_meas = given.r
-        self.wind_speed_meas, self.wind_from_meas, self.wind_valid = *given.wind[:2], given.wind.valid > 0.5
+        self.wind_speed_meas, self.wind_from_meas, self.wind_valid = (
+            *given.wind[:2],
+            given.wind.valid > 0.5,
+        )
         self.position_time_meas, self.heading_time_meas, self.wind_time_meas = given[4:]

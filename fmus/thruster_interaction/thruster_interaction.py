@@ -1,7 +1,12 @@
 """FMU of the interaction of up to six azimuth thrusters."""
 
 from shipcosim.fmi import Fmu, Input, Output, Parameters
-from shipcosim.models.propulsion.interaction import UNITS, InteractionParameters, pairs, thrust_shares
+from shipcosim.models.propulsion.interaction import (
+    UNITS,
+    InteractionParameters,
+    pairs,
+    thrust_shares,
+)
 
 
 class ThrusterInteraction(Fmu):
@@ -34,9 +39,18 @@ class ThrusterInteraction(Fmu):
         self.step(0.0, 0.0)
 
     def step(self, t, h):
-        azimuths = self.azimuth_1, self.azimuth_2, self.azimuth_3, self.azimuth_4, self.azimuth_5, self.azimuth_6
+        azimuths = (
+            self.azimuth_1,
+            self.azimuth_2,
+            self.azimuth_3,
+            self.azimuth_4,
+            self.azimuth_5,
+            self.azimuth_6,
+        )
         speeds = self.rpm_1, self.rpm_2, self.rpm_3, self.rpm_4, self.rpm_5, self.rpm_6
-        washes = tuple(rpm / 60.0 * d for rpm, d in zip(speeds, self.model.of_units("diameter"), strict=True))
+        washes = tuple(
+            rpm / 60.0 * d for rpm, d in zip(speeds, self.model.of_units("diameter"), strict=True)
+        )
         shares = thrust_shares(azimuths, washes, found=self.found, loss_scale=self.model.loss_scale)
         for number in range(UNITS):
             setattr(self, f"thrust_share_{number + 1}", shares[number])

@@ -11,25 +11,41 @@ class ThrusterMonitor(Fmu):
     port_thrust_cmd = Input("N", "commanded thrust of the port azimuth")
     port_thrust_feedback = Input("N", "reported thrust of the port azimuth")
     port_azimuth_cmd = Input("rad", "commanded angle of the port azimuth, clockwise from the bow")
-    port_azimuth_feedback = Input("rad", "reported angle of the port azimuth, clockwise from the bow")
+    port_azimuth_feedback = Input(
+        "rad", "reported angle of the port azimuth, clockwise from the bow"
+    )
     port_available = Input("1", "port azimuth runs", start=True)
     starboard_thrust_cmd = Input("N", "commanded thrust of the starboard azimuth")
     starboard_thrust_feedback = Input("N", "reported thrust of the starboard azimuth")
-    starboard_azimuth_cmd = Input("rad", "commanded angle of the starboard azimuth, clockwise from the bow")
-    starboard_azimuth_feedback = Input("rad", "reported angle of the starboard azimuth, clockwise from the bow")
+    starboard_azimuth_cmd = Input(
+        "rad", "commanded angle of the starboard azimuth, clockwise from the bow"
+    )
+    starboard_azimuth_feedback = Input(
+        "rad", "reported angle of the starboard azimuth, clockwise from the bow"
+    )
     starboard_available = Input("1", "starboard azimuth runs", start=True)
     tunnel_thrust_cmd = Input("N", "commanded thrust of the tunnel thruster")
     tunnel_thrust_feedback = Input("N", "reported thrust of the tunnel thruster")
     tunnel_available = Input("1", "tunnel thruster runs", start=True)
     position_error = Input("m", "distance of the estimated ship from the reference")
     heading_error = Input("rad", "estimated heading less the reference")
-    tau_X_bias = Input("N", "estimated force forward that neither thrust nor measured wind explains")
-    tau_Y_bias = Input("N", "estimated force to starboard that neither thrust nor measured wind explains")
+    tau_X_bias = Input(
+        "N", "estimated force forward that neither thrust nor measured wind explains"
+    )
+    tau_Y_bias = Input(
+        "N", "estimated force to starboard that neither thrust nor measured wind explains"
+    )
 
     port_faulty = Output("1", "port azimuth does not do what is commanded; stays so", start=False)
-    starboard_faulty = Output("1", "starboard azimuth does not do what is commanded; stays so", start=False)
-    tunnel_faulty = Output("1", "tunnel thruster does not do what is commanded; stays so", start=False)
-    port_deviation = Output("1", "port azimuth's feedback less its command, over the tolerance: above 1 is beyond it")
+    starboard_faulty = Output(
+        "1", "starboard azimuth does not do what is commanded; stays so", start=False
+    )
+    tunnel_faulty = Output(
+        "1", "tunnel thruster does not do what is commanded; stays so", start=False
+    )
+    port_deviation = Output(
+        "1", "port azimuth's feedback less its command, over the tolerance: above 1 is beyond it"
+    )
     starboard_deviation = Output("1", "the same of the starboard azimuth")
     tunnel_deviation = Output("1", "the same of the tunnel thruster")
     position_alarm = Output("1", "the ship has left her place", start=False)
@@ -51,8 +67,13 @@ class ThrusterMonitor(Fmu):
 
     def _look(self, h):
         available = (self.port_available, self.starboard_available, self.tunnel_available)
-        errors, bias = (self.position_error, self.heading_error), (self.tau_X_bias, self.tau_Y_bias)
-        self._show(step(self.state, self._deviations(), available, errors, bias, h, parameters=self.monitor))
+        errors = (self.position_error, self.heading_error)
+        bias = (self.tau_X_bias, self.tau_Y_bias)
+        self._show(
+            step(
+                self.state, self._deviations(), available, errors, bias, h, parameters=self.monitor
+            )
+        )
 
     def _deviations(self):
         limits = self.monitor

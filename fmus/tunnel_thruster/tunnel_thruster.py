@@ -4,7 +4,12 @@ from shipcosim.fmi import Fmu, Input, Output, Parameter, Parameters
 from shipcosim.models.core.maths import pi
 from shipcosim.models.propulsion.drive import at_rest, powers
 from shipcosim.models.propulsion.failures import PLENTY, Failures
-from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
+from shipcosim.models.propulsion.tunnel import (
+    TunnelParameters,
+    tunnel_loads,
+    tunnel_replay,
+    tunnel_step,
+)
 
 
 class TunnelThruster(Fmu):
@@ -15,7 +20,9 @@ class TunnelThruster(Fmu):
     failed = Input("1", "without power: no motor torque", start=False)
     stop = Input("1", "emergency stop: as failed, by command", start=False)
     full_thrust = Input(
-        "1", "failure: the drive gives its largest thrust to starboard, whatever is commanded", start=False
+        "1",
+        "failure: the drive gives its largest thrust to starboard, whatever is commanded",
+        start=False,
     )
     rpm_frozen = Input("1", "failure: the drive keeps its last set point of thrust", start=False)
     rpm_reversed = Input("1", "failure: the measured motor speed has the wrong sign", start=False)
@@ -67,7 +74,9 @@ class TunnelThruster(Fmu):
         state = self.state
         loads = tunnel_loads(state, self.u_r, tunnel=self.tunnel)
         self.thrust, _, self.tau_X, self.tau_Y, self.tau_N = loads
-        self.rpm, self.torque = 60.0 * state.n, state.torque
+        self.rpm = 60.0 * state.n
+        self.torque = state.torque
         self.power, self.brake_power = powers(state, self.tunnel)
         self.thrust_feedback = state.reported
-        self.saturated, self.available = state.saturated, not (self.failed | self.stop)
+        self.saturated = state.saturated
+        self.available = not (self.failed | self.stop)

@@ -14,7 +14,9 @@ class VaryingCurrent(Fmu):
 
     def start(self):
         if not self.ends.time_end > self.ends.time_start:
-            raise ValueError(f"time_end {self.ends.time_end:g} s is not after time_start {self.ends.time_start:g} s")
+            raise ValueError(
+                f"time_end {self.ends.time_end:g} s is not after time_start {self.ends.time_start:g} s"
+            )
         self._write(self.start_time)
 
     def step(self, t, h):
@@ -23,4 +25,6 @@ class VaryingCurrent(Fmu):
     def _write(self, t):
         e = self.ends
         ends = e.north_start, e.east_start, e.north_end, e.east_end
-        self.current_speed, self.current_to = varying_current(t, *ends, time_start=e.time_start, time_end=e.time_end)
+        self.current_speed, self.current_to = varying_current(
+            t, *ends, time_start=e.time_start, time_end=e.time_end
+        )

@@ -92,7 +92,8 @@ def unwrap_series(angle: np.ndarray) -> np.ndarray:
     >>> unwrap_series(np.array([3.0, np.nan, -3.0])).round(2).tolist()
     [3.0, nan, 3.28]
     """
-    found, known = np.array(angle, float), np.isfinite(angle)
+    found = np.array(angle, float)
+    known = np.isfinite(angle)
     found[known] = np.unwrap(found[known])
     return found
 

@@ -13,7 +13,8 @@ import numpy as np
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError
 
-LATE, SMALLEST_STEP = 1e9, 1e-6  # s; beyond what any run has
+LATE = 1e9  # s; beyond what any run has
+SMALLEST_STEP = 1e-6
 OF_SHIP = {"particulars", "thrusters"}
 OF_STUDY = {"factor", "quantity", "sample", "extends", "scenario"}
 OF_CAUSE = {"cause", "sentence"}
@@ -48,7 +49,9 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     """
     path = Path(file.partition("#")[0])
     if not path.exists():
-        raise ShipcosimError(Problem(file, "There is no such file or folder.", "Give the path of one."))
+        raise ShipcosimError(
+            Problem(file, "There is no such file or folder.", "Give the path of one.")
+        )
     try:
         if hosts and (problems := _host_problems(file, path, hosts)) is not None:
             return [*check_any(file, channels), *problems]
@@ -107,7 +110,12 @@ def kind_of_toml(path: Path) -> str:
         keys = set(tomllib.loads(text))
     except (ValueError, RecursionError):
         keys = _top_keys(text)  # faulty TOML: the reader of its kind says where
-    for kind, own in (("ship", OF_SHIP), ("study", OF_STUDY), ("cause", OF_CAUSE), ("scenario", OF_SCENARIO)):
+    for kind, own in (
+        ("ship", OF_SHIP),
+        ("study", OF_STUDY),
+        ("cause", OF_CAUSE),
+        ("scenario", OF_SCENARIO),
+    ):
         if keys & own:
             return kind
     return "channels" if any(role_of(key) for key in keys) else "scenario"
@@ -153,14 +161,20 @@ def _host_problems(file: str, path: Path, hosts: Iterable[str]) -> list[Problem]
     is_scenario = path.suffix.lower() == ".toml" and kind_of_toml(path) == "scenario"
     if not (is_system or is_scenario):
         return None
-    system, swapped = file, {}
+    system = file
+    swapped = {}
     if path.suffix == ".toml":
         scenario = read_scenario(path)
         if check_files(scenario):
             return []
-        system, swapped = scenario.system_path, scenario.component_paths(build=False)
+        system = scenario.system_path
+        swapped = scenario.component_paths(build=False)
     fmus = library.fmus(system, build=False)
-    return [problem for host in hosts for problem in check_for(host, system, fmus=fmus, components=swapped)]
+    return [
+        problem
+        for host in hosts
+        for problem in check_for(host, system, fmus=fmus, components=swapped)
+    ]
 
 
 def variables_in(file: str) -> list[tuple[str, ...]]:
@@ -171,7 +185,14 @@ def variables_in(file: str) -> list[tuple[str, ...]]:
 
     fmu = describe_fmu(Path(file), Findings()) if file.lower().endswith(".fmu") else None
     return [
-        (v.name, v.causality, v.type, v.unit or "", "" if v.start is None else text_of(v.start), v.description)
+        (
+            v.name,
+            v.causality,
+            v.type,
+            v.unit or "",
+            "" if v.start is None else text_of(v.start),
+            v.description,
+        )
         for v in (fmu.variables.values() if fmu else ())
     ]
 
@@ -187,7 +208,8 @@ def check_scenario_file(path: Path) -> list[Problem]:
         return missing
     system = system_of(scenario, build=False)
     try:
-        system, problems = with_values(system, scenario.set, str(path)), []
+        system = with_values(system, scenario.set, str(path))
+        problems = []
     except ShipcosimError as error:
         problems = error.problems
     flaws = [problem for problem in system.remarks if problem.flaw]
@@ -204,10 +226,13 @@ def check_osp_scenario(path: Path) -> list[Problem]:
     if structure is None:
         return read_osp_scenario(path, SMALLEST_STEP, LATE).remarks
     system = read_system(structure)
-    step, stop = system.experiment.step_size or SMALLEST_STEP, system.experiment.stop_time
+    step = system.experiment.step_size or SMALLEST_STEP
+    stop = system.experiment.stop_time
     read = read_osp_scenario(path, step, stop or LATE)
     last = max((event.time for event in read.events), default=0.0) + step
-    found = check_scenario(Scenario(stop_time=stop or last, step_size=step, events=read.events), system)
+    found = check_scenario(
+        Scenario(stop_time=stop or last, step_size=step, events=read.events), system
+    )
     return [*read.remarks, *(replace(problem, where=str(path)) for problem in found)]
 
 
@@ -249,14 +274,19 @@ def check_table(path: Path) -> list[Problem]:
     from shipcosim.series import read_table
 
     table = read_table(path)
-    time, problems = table["time"].values, []
+    time = table["time"].values
+    problems = []
     steps = np.diff(time)
     if not np.isfinite(time).all():
         problems.append(Problem(f"{path}, time", "Not every time is a number."))
     elif (steps <= 0.0).any():
         row = int(np.flatnonzero(steps <= 0.0)[0])
         remedy = "Times should increase from row to row."
-        problems.append(Problem(f"{path}, row {row + 2}", f"{time[row + 1]:g} s follows {time[row]:g} s.", remedy))
+        problems.append(
+            Problem(
+                f"{path}, row {row + 2}", f"{time[row + 1]:g} s follows {time[row]:g} s.", remedy
+            )
+        )
     elif len(steps) and steps.max() > 1.5 * np.median(steps):
         row = int(np.argmax(steps))
         found = f"{steps[row]:g} s without a row after {time[row]:g} s; the usual step is {np.median(steps):g} s."
@@ -275,9 +305,15 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
     fmus = library.fmus(path, build=False)
     problems = check_file(file, fmus=fmus)
     if any(problem.severity == "error" for problem in problems):
-        missing = [folder for folder in fmus if library.fmu_sources(folder.parents[1]) and not folder.is_dir()]
+        missing = [
+            folder
+            for folder in fmus
+            if library.fmu_sources(folder.parents[1]) and not folder.is_dir()
+        ]
         remedy = "`shipcosim build` builds them."
-        problems += [Problem(str(folder), "There are no FMUs yet.", remedy, "remark") for folder in missing]
+        problems += [
+            Problem(str(folder), "There are no FMUs yet.", remedy, "remark") for folder in missing
+        ]
     return problems
 
 

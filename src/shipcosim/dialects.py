@@ -8,13 +8,65 @@ from collections import Counter
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["NOTHING", "WITH_UNIT", "cells_in", "decimal_of", "is_comment", "is_figure", "is_nothing", "separator_of"]
+__all__ = [
+    "NOTHING",
+    "WITH_UNIT",
+    "cells_in",
+    "decimal_of",
+    "is_comment",
+    "is_figure",
+    "is_nothing",
+    "separator_of",
+]
 
 
 NOTHING = frozenset(
-    ("", "n/a", "na", "#n/a", "#na", "nan", "nat", "null", "none", "nil", "-", "--", "---", "?", "*", "**", "***")
-    + ("missing", "invalid", "void", "undefined", "empty", "no data", "nodata", "no value", "n.a.", "1.#qnan", "-nan")
-    + ("#value!", "#ref!", "#div/0!", "-1.#ind", "1.#ind", "....", "off", "fault", "error", "bad", "<null>", "(null)")
+    (
+        "",
+        "n/a",
+        "na",
+        "#n/a",
+        "#na",
+        "nan",
+        "nat",
+        "null",
+        "none",
+        "nil",
+        "-",
+        "--",
+        "---",
+        "?",
+        "*",
+        "**",
+        "***",
+    )
+    + (
+        "missing",
+        "invalid",
+        "void",
+        "undefined",
+        "empty",
+        "no data",
+        "nodata",
+        "no value",
+        "n.a.",
+        "1.#qnan",
+        "-nan",
+    )
+    + (
+        "#value!",
+        "#ref!",
+        "#div/0!",
+        "-1.#ind",
+        "1.#ind",
+        "....",
+        "off",
+        "fault",
+        "error",
+        "bad",
+        "<null>",
+        "(null)",
+    )
 )
 """Words that loggers write where they have no value, in lower case."""
 _NUMBER = r"[+-]?(?:\d[\d.,' ]*|[.,]\d+)(?:[eEdD][+-]?\d+)?"
@@ -47,7 +99,10 @@ def cells_in(line: str, separator: str) -> list[str]:
         return line.split()
     if '"' not in line:
         return [cell.strip() for cell in line.split(separator)]
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
+    return [
+        cell.strip()
+        for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
+    ]
 
 
 def separator_of(lines: list[str]) -> str:
@@ -56,16 +111,27 @@ def separator_of(lines: list[str]) -> str:
     if told and len(told.strip()) == 5:
         return told.strip()[4]
     rows = [line for line in lines if line.strip() and not is_comment(line)]
-    sample = [rows[int(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :] if rows else []
+    sample = (
+        [rows[int(i * (len(rows) - 1) / _SAMPLE)] for i in range(_SAMPLE + 1)][_SAMPLE // 4 :]
+        if rows
+        else []
+    )
     scores = {}
     for separator in _SEPARATORS:
         cells = [cells_in(line, separator) for line in sample]
         width, count = Counter(map(len, cells)).most_common(1)[0] if cells else (0, 0)
         flat = [cell for row in cells for cell in row if cell]
-        good = sum(1.0 if is_figure(c) or is_nothing(c) else 0.6 if _WORD.fullmatch(c) else 0.0 for c in flat)
+        good = sum(
+            1.0 if is_figure(c) or is_nothing(c) else 0.6 if _WORD.fullmatch(c) else 0.0
+            for c in flat
+        )
         scores[separator] = (count / len(cells)) * good / max(len(flat), 1) if width > 1 else 0.0
     best = max(scores.values())
-    return next(separator for separator in _SEPARATORS if scores[separator] > 0.9 * best) if best > 0.0 else ","
+    return (
+        next(separator for separator in _SEPARATORS if scores[separator] > 0.9 * best)
+        if best > 0.0
+        else ","
+    )
 
 
 def is_nothing(cell: str) -> bool:
@@ -102,7 +168,9 @@ def decimal_of(source: str, cells: list[str]) -> str | None:
     if not cells:
         return None
     decimal = next((cell for cell in cells if _is_decimal(cell, ",", ".")), None)
-    grouping = next((cell for cell in cells if _is_decimal(cell, ".", ",") or cell.count(",") > 1), None)
+    grouping = next(
+        (cell for cell in cells if _is_decimal(cell, ".", ",") or cell.count(",") > 1), None
+    )
     if decimal and grouping:
         found = f"a comma is a decimal sign in '{decimal}' and groups thousands in '{grouping}'."
         raise ShipcosimError(Problem(source, found, "Write all numbers alike."))

@@ -6,7 +6,8 @@ from difflib import get_close_matches
 
 LONGEST_TEXT = 4000  # characters of each part of a problem: a name can be as long as a file
 MOST_SHOWN = 100  # problems that anybody reads at once
-MOST_COMPARED, LONGEST_NAME = 1000, 200  # names that a misspelt one is compared with, characters of one that is
+MOST_COMPARED = 1000  # names that a misspelt one is compared with, characters of one that is
+LONGEST_NAME = 200
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,9 @@ class Problem:
         for part in ("where", "found", "remedy"):
             text = getattr(self, part)
             if len(text) > LONGEST_TEXT:
-                object.__setattr__(self, part, f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}")
+                object.__setattr__(
+                    self, part, f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}"
+                )
 
     def __str__(self) -> str:
         text = f"{self.where}: {self.found}" if self.where else self.found
@@ -63,8 +66,15 @@ class ShipcosimError(Exception):
     def _render_traceback_(self) -> list[str]:
         """What IPython and Jupyter show in place of a traceback: the problems, each on lines of its own."""
         shown = worth_showing(self.problems)
-        head = f"{type(self).__name__}: {len(self.problems)} problems" if len(shown) > 1 else type(self).__name__
-        return [f"\x1b[1;31m{head}\x1b[0m", *(f"  {line}" for one in shown for line in str(one).splitlines())]
+        head = (
+            f"{type(self).__name__}: {len(self.problems)} problems"
+            if len(shown) > 1
+            else type(self).__name__
+        )
+        return [
+            f"\x1b[1;31m{head}\x1b[0m",
+            *(f"  {line}" for one in shown for line in str(one).splitlines()),
+        ]
 
 
 def held_strictly(problems: Iterable[Problem]) -> list[Problem]:
@@ -90,7 +100,9 @@ def worth_showing(problems: Iterable[Problem]) -> list[Problem]:
     if len(listed) <= MOST_SHOWN:
         return listed
     listed.sort(key=lambda problem: problem.severity != "error")
-    more = Problem("", f"And {len(listed) - MOST_SHOWN} more.", severity=listed[MOST_SHOWN].severity)
+    more = Problem(
+        "", f"And {len(listed) - MOST_SHOWN} more.", severity=listed[MOST_SHOWN].severity
+    )
     return [*listed[:MOST_SHOWN], more]
 
 
@@ -114,7 +126,11 @@ def suggestion(name: str, known: Iterable[str]) -> str:
         return "There is none."
     shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
     same = [known for known in names[:MOST_COMPARED] if known.lower() == name.lower()]
-    close = same or get_close_matches(name, names[:MOST_COMPARED], n=1) if len(name) < LONGEST_NAME else ()
+    close = (
+        same or get_close_matches(name, names[:MOST_COMPARED], n=1)
+        if len(name) < LONGEST_NAME
+        else ()
+    )
     return f"There is: {shown}." + (f" Did you mean '{close[0]}'?" if close else "")
 
 

@@ -28,9 +28,26 @@ from shipcosim.units import UnitError, spelled_conversion
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["conversion", "make_table", "read_columns", "read_table", "write_file", "write_json", "write_table"]
+__all__ = [
+    "conversion",
+    "make_table",
+    "read_columns",
+    "read_table",
+    "write_file",
+    "write_json",
+    "write_table",
+]
 
-_NOTHING = {"", "#n/a", "#na", "-nan", "n/a", "na", "nan", "null"}  # in lower case: cells without a value
+_NOTHING = {
+    "",
+    "#n/a",
+    "#na",
+    "-nan",
+    "n/a",
+    "na",
+    "nan",
+    "null",
+}  # in lower case: cells without a value
 LARGEST_TABLE = 8 << 30
 """Most bytes that a table is read with: a file can declare more than any memory holds."""
 
@@ -38,7 +55,9 @@ _HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
 
 
 def make_table(
-    time: np.ndarray, columns: Iterable[tuple[str, np.ndarray, str, str]], attributes: dict | None = None
+    time: np.ndarray,
+    columns: Iterable[tuple[str, np.ndarray, str, str]],
+    attributes: dict | None = None,
 ) -> xarray.Dataset:
     """One table from its columns.
 
@@ -55,11 +74,14 @@ def make_table(
 
     columns = list(columns)
     if uneven := [
-        Problem(n, f"has {len(v)} rows, time has {len(time)}.") for n, v, *_ in columns if len(v) != len(time)
+        Problem(n, f"has {len(v)} rows, time has {len(time)}.")
+        for n, v, *_ in columns
+        if len(v) != len(time)
     ]:
         raise ShipcosimError(uneven)
     variables = {
-        name: ("time", values, {"units": unit, "long_name": long_name}) for name, values, unit, long_name in columns
+        name: ("time", values, {"units": unit, "long_name": long_name})
+        for name, values, unit, long_name in columns
     }
     clock = ("time", time, {"units": "s", "long_name": "time"})
     return xarray.Dataset(variables, {"time": clock}, attributes or {})
@@ -85,7 +107,9 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
     writers = {".nc": _netcdf, ".csv": _csv}
     path = Path(path)
     if path.suffix not in writers:
-        raise ShipcosimError(Problem(str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv."))
+        raise ShipcosimError(
+            Problem(str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv.")
+        )
     write_file(path, writers[path.suffix](table))
 
 
@@ -107,7 +131,12 @@ def read_table(path: str | os.PathLike) -> xarray.Dataset:
     ShipcosimError
         If the file cannot be read, has no `time`, or a column is not numeric.
     """
-    readers = {".nc": _read_netcdf, ".csv": _read_rows, ".csv.gz": _read_rows, ".parquet": _read_rows}
+    readers = {
+        ".nc": _read_netcdf,
+        ".csv": _read_rows,
+        ".csv.gz": _read_rows,
+        ".parquet": _read_rows,
+    }
     table = readers[_suffix(path, readers)](Path(path))
     table.encoding["source"] = str(path)
     return table
@@ -149,9 +178,13 @@ def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
     path = Path(path)
     suffix = next((s for s in known if path.name.endswith(s)), None)
     if path.is_dir():
-        raise ShipcosimError(Problem(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}."))
+        raise ShipcosimError(
+            Problem(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
+        )
     if suffix is None:
-        raise ShipcosimError(Problem(str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}."))
+        raise ShipcosimError(
+            Problem(str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}.")
+        )
     if not path.is_file():
         raise ShipcosimError(Problem(str(path), "there is no such file."))
     return suffix
@@ -182,7 +215,9 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
         part.unlink(missing_ok=True)
         size = f"{len(content) / 1e6:.1f} MB"
         raise ShipcosimError(
-            Problem(str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed.")
+            Problem(
+                str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed."
+            )
         ) from error
     except BaseException:
         part.unlink(missing_ok=True)
@@ -253,7 +288,9 @@ def _check_declared(path: Path) -> None:
     with h5py.File(path) as file:
         declared = sum(part.nbytes for part in file.values() if isinstance(part, h5py.Dataset))
     if declared > LARGEST_TABLE:
-        raise ValueError(f"it declares {declared / 2**30:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
+        raise ValueError(
+            f"it declares {declared / 2**30:.3g} GiB, at most {LARGEST_TABLE >> 30} are read"
+        )
 
 
 def _open_netcdf(path: Path) -> xarray.Dataset:
@@ -263,7 +300,9 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
         _check_declared(path)
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
             return table.load()
-    except Exception as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
+    except (
+        Exception
+    ) as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
         said = "".join(c if c.isprintable() else " " for c in str(error))[:200].rstrip(".")
         found = f"is no NetCDF 4 file that can be read: {said or type(error).__name__}."
         raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
@@ -274,12 +313,20 @@ def _read_netcdf(path: Path) -> xarray.Dataset:
     if "time" not in table.coords:
         raise ShipcosimError(_no_time(path, list(map(str, table.variables))))
     problems = [
-        Problem(f"{path}, '{name}'", f"holds values of the type {variable.dtype}, not numbers.", "Leave it out.")
+        Problem(
+            f"{path}, '{name}'",
+            f"holds values of the type {variable.dtype}, not numbers.",
+            "Leave it out.",
+        )
         for name, variable in table.variables.items()
         if variable.dtype.kind not in "fiub"
     ]
     if table["time"].dims != ("time",) or table["time"].size == 0:
-        problems.append(Problem(f"{path}, 'time'", "holds no times of rows.", "Each row is a time and its values."))
+        problems.append(
+            Problem(
+                f"{path}, 'time'", "holds no times of rows.", "Each row is a time and its values."
+            )
+        )
     if problems:
         raise ShipcosimError(problems)
     return table
@@ -287,25 +334,38 @@ def _read_netcdf(path: Path) -> xarray.Dataset:
 
 def _netcdf_columns(table: xarray.Dataset) -> dict[str, tuple[np.ndarray, str]]:
     """The variables with one dimension. Units like "seconds since 2022-10-27" count seconds."""
-    single = {str(name): variable for name, variable in table.variables.items() if variable.ndim == 1}
-    units = {name: str(variable.attrs.get("units", "")).partition(" since ")[0] for name, variable in single.items()}
+    single = {
+        str(name): variable for name, variable in table.variables.items() if variable.ndim == 1
+    }
+    units = {
+        name: str(variable.attrs.get("units", "")).partition(" since ")[0]
+        for name, variable in single.items()
+    }
     numeric = {name: variable.dtype.kind in "fiub" for name, variable in single.items()}
     return {
-        name: (np.asarray(variable.values, float) if numeric[name] else _texts(variable.values), units[name])
+        name: (
+            np.asarray(variable.values, float) if numeric[name] else _texts(variable.values),
+            units[name],
+        )
         for name, variable in single.items()
     }
 
 
 def _texts(values: np.ndarray) -> np.ndarray:
     """Values of a column that are no numbers as texts, as those of a CSV file are."""
-    return np.array([v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in values], dtype=object)
+    return np.array(
+        [v.decode(errors="replace") if isinstance(v, bytes) else str(v) for v in values],
+        dtype=object,
+    )
 
 
 def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
     """Name, unit and values of each column of a CSV or Parquet file."""
     headers, columns = _read_parquet(path) if path.name.endswith(".parquet") else _read_csv(path)
     if not len(columns) or not len(columns[0]):
-        raise ShipcosimError(Problem(str(path), "has no row below its header.", "Each row is a time and its values."))
+        raise ShipcosimError(
+            Problem(str(path), "has no row below its header.", "Each row is a time and its values.")
+        )
     found = []
     for (name, unit), values in zip(map(_name_and_unit, headers), columns, strict=True):
         values, is_stamp = _plain(values)
@@ -322,7 +382,9 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
         raise ShipcosimError(_unreadable(path, error)) from error
     except MemoryError as error:
-        raise ShipcosimError(Problem(str(path), "is larger than the memory.", "Read a part of it.")) from error
+        raise ShipcosimError(
+            Problem(str(path), "is larger than the memory.", "Read a part of it.")
+        ) from error
     if not rows:
         raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
     if decimal == ",":
@@ -358,7 +420,9 @@ def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
         from pyarrow.parquet import read_table as read_parquet
     except ImportError as error:
         remedy = 'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.'
-        raise ShipcosimError(Problem(str(path), "pyarrow, which reads Parquet, is not here.", remedy)) from error
+        raise ShipcosimError(
+            Problem(str(path), "pyarrow, which reads Parquet, is not here.", remedy)
+        ) from error
     try:
         content = read_parquet(path)
     except (OSError, ArrowInvalid) as error:
@@ -374,19 +438,27 @@ def _name_and_unit(header: str) -> tuple[str, str]:
 
 def _unreadable(path: Path, error: Exception) -> Problem:
     if isinstance(error, UnicodeDecodeError):
-        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
+        found = (
+            f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
+        )
         return Problem(str(path), found, "Save the file in UTF-8.")
     said = "".join(c if c.isprintable() else " " for c in str(error))[:100]
     is_parquet = path.name.endswith(".parquet")
     remedy = "" if is_parquet else "Columns are separated by commas, numbers have a decimal point."
-    return Problem(str(path), f"cannot be read as {'Parquet' if is_parquet else 'CSV'}: {said.rstrip('.')}.", remedy)
+    return Problem(
+        str(path),
+        f"cannot be read as {'Parquet' if is_parquet else 'CSV'}: {said.rstrip('.')}.",
+        remedy,
+    )
 
 
 def _read_rows(path: Path) -> xarray.Dataset:
     columns = _read_columns(path)
     names = [name for name, _, _ in columns]
     problems = [
-        Problem(f"{path}, column '{name}'", f"holds texts, not numbers, as '{_first_text(values)}'.")
+        Problem(
+            f"{path}, column '{name}'", f"holds texts, not numbers, as '{_first_text(values)}'."
+        )
         for name, _, values in columns
         if values.dtype == object
     ]
@@ -429,14 +501,21 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
     said = {cell.lower() for cell, is_known in zip(cells, known, strict=True) if is_known}
     numbers = np.full(len(cells), np.nan)
     if said <= {"true", "false"}:
-        numbers[known] = [cell.lower() == "true" for cell, is_known in zip(cells, known, strict=True) if is_known]
+        numbers[known] = [
+            cell.lower() == "true" for cell, is_known in zip(cells, known, strict=True) if is_known
+        ]
         return numbers, False
     try:
-        numbers[known] = [float(cell) for cell, is_known in zip(cells, known, strict=True) if is_known]
+        numbers[known] = [
+            float(cell) for cell, is_known in zip(cells, known, strict=True) if is_known
+        ]
         return numbers, False
     except ValueError:
         stamps = _stamps(cells, known)
-        texts = np.array([cell if is_known else None for cell, is_known in zip(cells, known, strict=True)], object)
+        texts = np.array(
+            [cell if is_known else None for cell, is_known in zip(cells, known, strict=True)],
+            object,
+        )
         return (texts, False) if stamps is None else (_seconds_of(stamps), True)
 
 
@@ -461,8 +540,16 @@ def _seconds_of(stamps: np.ndarray) -> np.ndarray:
 
 def _repeated(path: Path, names: list[str]) -> list[Problem]:
     counts = Counter(names)
-    return [Problem(f"{path}, column '{name}'", "is there twice.") for name in sorted(counts) if counts[name] > 1]
+    return [
+        Problem(f"{path}, column '{name}'", "is there twice.")
+        for name in sorted(counts)
+        if counts[name] > 1
+    ]
 
 
 def _no_time(path: Path, names: list[str]) -> Problem:
-    return Problem(str(path), f"has no column 'time', only {', '.join(names[:8])}.", "It should have 'time [s]'.")
+    return Problem(
+        str(path),
+        f"has no column 'time', only {', '.join(names[:8])}.",
+        "It should have 'time [s]'.",
+    )

@@ -75,7 +75,9 @@ def write_snapshot(snapshot: Snapshot, path: str | os.PathLike) -> None:
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
         facts = {"schema": SCHEMA, **facts, "components": list(states)}
-        archive.writestr(zipfile.ZipInfo("snapshot.json"), json.dumps(facts, indent=1, ensure_ascii=False))
+        archive.writestr(
+            zipfile.ZipInfo("snapshot.json"), json.dumps(facts, indent=1, ensure_ascii=False)
+        )
         for number, state in enumerate(states.values()):
             archive.writestr(zipfile.ZipInfo(f"{number}.state"), state)
     write_file(path, content.getvalue())
@@ -97,15 +99,22 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
             facts = json.loads(archive.read("snapshot.json"))
             if facts.pop("schema") != SCHEMA:
                 raise ValueError(f"its schema is not {SCHEMA}")
-            states = {name: archive.read(f"{number}.state") for number, name in enumerate(facts.pop("components"))}
+            states = {
+                name: archive.read(f"{number}.state")
+                for number, name in enumerate(facts.pop("components"))
+            }
         if set(states) != set(facts.get("fmus", ())):
             raise ValueError("its components are others than those whose FMUs it names")
         return Snapshot(**_typed(facts), states=states)
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror or error}.")) from error
+        raise ShipcosimError(
+            Problem(str(path), f"cannot be read: {error.strerror or error}.")
+        ) from error
     except (KeyError, TypeError, AttributeError, RecursionError, MemoryError, *BROKEN) as error:
         remedy = "Snapshots come from --store or simulate(..., store=...)."
-        raise ShipcosimError(Problem(str(path), f"is no snapshot of a run: {error}.", remedy)) from error
+        raise ShipcosimError(
+            Problem(str(path), f"is no snapshot of a run: {error}.", remedy)
+        ) from error
 
 
 def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | None:
@@ -116,7 +125,9 @@ def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | Non
     ShipcosimError
         If the file cannot be read or is no snapshot.
     """
-    return snapshot if snapshot is None or isinstance(snapshot, Snapshot) else read_snapshot(snapshot)
+    return (
+        snapshot if snapshot is None or isinstance(snapshot, Snapshot) else read_snapshot(snapshot)
+    )
 
 
 def writer(
@@ -139,13 +150,19 @@ def writer(
 
 def _typed(facts):
     """The facts, each of the type that the snapshot declares."""
-    kinds: dict[str, Any] = {field.name: field.type for field in fields(Snapshot) if field.name != "states"}
+    kinds: dict[str, Any] = {
+        field.name: field.type for field in fields(Snapshot) if field.name != "states"
+    }
     if set(facts) != set(kinds):
         raise ValueError(f"it lacks or adds {', '.join(sorted(set(facts) ^ set(kinds)))}")
     for name, kind in kinds.items():
-        if not isinstance(facts[name], (int, float) if kind is float else kind) or isinstance(facts[name], bool):
+        if not isinstance(facts[name], (int, float) if kind is float else kind) or isinstance(
+            facts[name], bool
+        ):
             raise ValueError(f"{name} is {str(facts[name])[:100]}")
-    if not (isfinite(facts["start_time"]) and 0.0 < facts["step_size"] < inf and facts["step"] >= 0):
+    if not (
+        isfinite(facts["start_time"]) and 0.0 < facts["step_size"] < inf and facts["step"] >= 0
+    ):
         raise ValueError("its times are none of a run")
     held = [
         *facts["outputs"].values(),
@@ -154,4 +171,6 @@ def _typed(facts):
     ]
     if not all(isinstance(value, (int, float)) and abs(value) < LARGEST_VALUE for value in held):
         raise ValueError("it holds values that no signal has")
-    return facts | {"changes": {signal: (scale, shift) for signal, (scale, shift) in facts["changes"].items()}}
+    return facts | {
+        "changes": {signal: (scale, shift) for signal, (scale, shift) in facts["changes"].items()}
+    }

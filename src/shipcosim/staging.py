@@ -38,19 +38,30 @@ def check_targets(folder: Path | None, file: Path | None = None) -> None:
     found = [] if folder is None else _complaints(folder)
     problems = [Problem(str(folder), text, "Choose another folder (--out).") for text in found]
     if file is not None:
-        found = ["This is a folder."] if file.is_dir() else _complaints(file.parent, must_exist=True)
-        problems += [Problem(str(file), text, "Choose another file for the state (--store).") for text in found]
+        found = (
+            ["This is a folder."] if file.is_dir() else _complaints(file.parent, must_exist=True)
+        )
+        problems += [
+            Problem(str(file), text, "Choose another file for the state (--store).")
+            for text in found
+        ]
     if problems:
         raise ShipcosimError(problems)
 
 
 def _complaints(folder: Path, must_exist: bool = False) -> list[str]:
-    there = next(parent for parent in (Path(folder), *Path(folder).absolute().parents) if parent.exists())
+    there = next(
+        parent for parent in (Path(folder), *Path(folder).absolute().parents) if parent.exists()
+    )
     if not there.is_dir():
         return [f"{there} is a file, not a folder."]
     if must_exist and there != Path(folder):
         return ["There is no such folder to store the state in."]
-    return [] if os.access(there, os.W_OK | os.X_OK) else [f"There is no permission to write in {there}."]
+    return (
+        []
+        if os.access(there, os.W_OK | os.X_OK)
+        else [f"There is no permission to write in {there}."]
+    )
 
 
 @contextmanager
@@ -74,7 +85,9 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
             try:
                 yield stage
             except ShipcosimError as error:
-                raise ShipcosimError([_at_home(problem, stage, folder) for problem in error.problems]) from error
+                raise ShipcosimError(
+                    [_at_home(problem, stage, folder) for problem in error.problems]
+                ) from error
             written = [file.name for file in stage.iterdir()]
             set_aside(folder, {*written, *replaced}, force=force)
             for name in written:
@@ -88,7 +101,11 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
         if not isinstance(error, OSError):
             raise
         raise ShipcosimError(
-            Problem(str(folder), f"Results cannot be written here: {error.strerror}.", "Choose another folder (--out).")
+            Problem(
+                str(folder),
+                f"Results cannot be written here: {error.strerror}.",
+                "Choose another folder (--out).",
+            )
         ) from error
 
 
@@ -126,7 +143,10 @@ def _numbered(path: Path) -> Path:
     """The path with the number after the highest that is taken."""
     suffix = path.suffix if path.is_file() else ""
     stem = path.name.removesuffix(suffix)
-    others = (re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name) for one in path.parent.glob("*"))
+    others = (
+        re.fullmatch(rf"{re.escape(stem)}-(\d+){re.escape(suffix)}", one.name)
+        for one in path.parent.glob("*")
+    )
     taken = [int(match[1]) for match in others if match]
     return path.with_name(f"{stem}-{max(taken, default=0) + 1}{suffix}")
 
@@ -134,7 +154,9 @@ def _numbered(path: Path) -> Path:
 def _say(aside: Path) -> None:
     here = Path.cwd()
     shown = aside.relative_to(here) if aside.is_relative_to(here) else aside
-    print(f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr)
+    print(
+        f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr
+    )
 
 
 def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:

@@ -71,7 +71,8 @@ class UnitError(ValueError):
 
     def __init__(self, found: str, remedy: str = ""):
         super().__init__(f"{found} {remedy}".rstrip())
-        self.found, self.remedy = found, remedy
+        self.found = found
+        self.remedy = remedy
 
 
 def _unit(name: str, factor: float = 1.0, offset: float = 0.0, **exponents: int) -> Unit:
@@ -118,8 +119,36 @@ SYMBOLS = {
 """Units by their symbol, for spellings that no file defines."""
 RADIAN = SYMBOLS["rad"]
 
-PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "h": 1e2, "d": 1e-1, "c": 1e-2, "m": 1e-3, "u": 1e-6, "n": 1e-9}
-WITH_PREFIX = {"g", "m", "s", "A", "K", "mol", "rad", "Hz", "N", "Pa", "bar", "J", "W", "C", "V", "Ohm", "l"}
+PREFIXES = {
+    "G": 1e9,
+    "M": 1e6,
+    "k": 1e3,
+    "h": 1e2,
+    "d": 1e-1,
+    "c": 1e-2,
+    "m": 1e-3,
+    "u": 1e-6,
+    "n": 1e-9,
+}
+WITH_PREFIX = {
+    "g",
+    "m",
+    "s",
+    "A",
+    "K",
+    "mol",
+    "rad",
+    "Hz",
+    "N",
+    "Pa",
+    "bar",
+    "J",
+    "W",
+    "C",
+    "V",
+    "Ohm",
+    "l",
+}
 """Symbols that a prefix of the SI can stand before."""
 
 _FACTOR = re.compile(r"(?P<symbol>[A-Za-z%]+|1|-)(?:\^?(?P<exponent>[+-]?\d+))?")
@@ -150,9 +179,13 @@ def fmi_unit(spelling: str) -> Unit:
     {'s': -1, 'rad': 1}
     """
     if re.search(r"\d\.\d", spelling):
-        raise UnitError(f"unit {spelling!r}: FMI knows whole exponents only; give the square of the value instead")
+        raise UnitError(
+            f"unit {spelling!r}: FMI knows whole exponents only; give the square of the value instead"
+        )
     if re.search(r"[*^]|/.*/", spelling):
-        raise UnitError(f"unit {spelling!r}: FMI writes 'N.m', 'm2' and at most one '/', as in 'J/(kg.K)'")
+        raise UnitError(
+            f"unit {spelling!r}: FMI writes 'N.m', 'm2' and at most one '/', as in 'J/(kg.K)'"
+        )
     return _read(spelling)
 
 
@@ -180,16 +213,25 @@ def _read(spelling: str) -> Unit:
         bracketed = re.fullmatch(r"\((.*)\)", denominator)
         if "." in denominator and not bracketed:
             below = f"'{numerator}/({denominator})'"
-            raise UnitError(f"unit {spelling!r}: put what stands below the line in brackets: {below}")
+            raise UnitError(
+                f"unit {spelling!r}: put what stands below the line in brackets: {below}"
+            )
         parts += [(part, -1) for part in (bracketed[1] if bracketed else denominator).split(".")]
-    exponents, factor, offset = [0] * len(BASE_UNITS), 1.0, 0.0
+    exponents = [0] * len(BASE_UNITS)
+    factor = 1.0
+    offset = 0.0
     for text, sign in parts:
         unit, power = _part(text, spelling)
         power *= sign
         if unit.offset and (len(parts), power) != (1, 1):
-            raise UnitError(f"unit {spelling!r}: {unit.name} is a scale of temperature; write K in a product")
-        exponents = [have + power * more for have, more in zip(exponents, unit.exponents or (), strict=True)]
-        factor, offset = factor * unit.factor**power, unit.offset
+            raise UnitError(
+                f"unit {spelling!r}: {unit.name} is a scale of temperature; write K in a product"
+            )
+        exponents = [
+            have + power * more for have, more in zip(exponents, unit.exponents or (), strict=True)
+        ]
+        factor = factor * unit.factor**power
+        offset = unit.offset
     return Unit(spelling, tuple(exponents), factor, offset)
 
 
@@ -197,14 +239,20 @@ def _part(text: str, spelling: str) -> tuple[Unit, int]:
     """Unit and exponent of one part of a product, such as "mm2"."""
     match = _FACTOR.fullmatch(text)
     if match is None:
-        raise UnitError(f"unit {spelling!r}: cannot read {text!r}; a unit looks like 'kg.m2' or 'N.s2/m2'")
-    symbol, power = match["symbol"], int(match["exponent"] or 1)
+        raise UnitError(
+            f"unit {spelling!r}: cannot read {text!r}; a unit looks like 'kg.m2' or 'N.s2/m2'"
+        )
+    symbol = match["symbol"]
+    power = int(match["exponent"] or 1)
     if symbol in SYMBOLS:
         return SYMBOLS[symbol], power
-    prefix, rest = symbol[:1], symbol[1:]
+    prefix = symbol[:1]
+    rest = symbol[1:]
     if prefix in PREFIXES and rest in WITH_PREFIX:
         return Unit(symbol, SYMBOLS[rest].exponents, PREFIXES[prefix] * SYMBOLS[rest].factor), power
-    raise UnitError(f"unit {spelling!r}: {symbol!r} is not known; known are {', '.join(sorted(SYMBOLS))}, SI prefixes")
+    raise UnitError(
+        f"unit {spelling!r}: {symbol!r} is not known; known are {', '.join(sorted(SYMBOLS))}, SI prefixes"
+    )
 
 
 def find_unit(name: str | None, *definitions: Mapping[str, Unit]) -> Unit | None:
@@ -242,7 +290,11 @@ def relation(source: Unit, target: Unit) -> str:
     if source.exponents is None or target.exponents is None:
         return "same" if source.name == target.name else "unknown"
     if source.exponents == target.exponents:
-        return "same" if (source.factor, source.offset) == (target.factor, target.offset) else "convertible"
+        return (
+            "same"
+            if (source.factor, source.offset) == (target.factor, target.offset)
+            else "convertible"
+        )
     return "angle" if source.exponents[:_ANGLE] == target.exponents[:_ANGLE] else "incompatible"
 
 
@@ -264,7 +316,11 @@ def conversion(source: Unit | None, target: Unit | None) -> tuple[float, float]:
     >>> conversion(spelled_unit("degC"), spelled_unit("K"))
     (1.0, 273.15)
     """
-    if source is None or target is None or relation(source, target) in ("same", "unknown", "incompatible"):
+    if (
+        source is None
+        or target is None
+        or relation(source, target) in ("same", "unknown", "incompatible")
+    ):
         return 1.0, 0.0
     return source.factor / target.factor, (source.offset - target.offset) / target.factor
 
@@ -292,11 +348,14 @@ def spelled_conversion(source: str, target: str) -> tuple[float, float]:
     >>> spelled_conversion("kn", "m/s")
     (0.5144444444444445, 0.0)
     """
-    given, wanted = spelled_unit(source), spelled_unit(target)
+    given = spelled_unit(source)
+    wanted = spelled_unit(target)
     if given is None or wanted is None:
         return _pint_conversion(source, target)
     if relation(given, wanted) == "incompatible":
-        raise UnitError(f"cannot convert '{source}' into '{target}': they measure different things.")
+        raise UnitError(
+            f"cannot convert '{source}' into '{target}': they measure different things."
+        )
     return conversion(given, wanted)
 
 
@@ -344,13 +403,20 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
     >>> number_in("2 kn", spelled_unit("km/h"))
     3.704
     """
-    found, name = amount(text), target.name if target else "1"
+    found = amount(text)
+    name = target.name if target else "1"
     if found is None:
-        raise UnitError(f"{text!r} is no number with a unit.", f"Write a number in {name}, or such as '2.5 {name}'.")
+        raise UnitError(
+            f"{text!r} is no number with a unit.",
+            f"Write a number in {name}, or such as '2.5 {name}'.",
+        )
     number, spelling = found
     source = spelled_unit(spelling) or _pint_unit(spelling)
     if source is None:
-        raise UnitError(f"{text!r}: the unit {spelling!r} is not known.", "Units are written like deg, kn or N.m.")
+        raise UnitError(
+            f"{text!r}: the unit {spelling!r} is not known.",
+            "Units are written like deg, kn or N.m.",
+        )
     if target is None or not _same_kind(source, target):
         wanted = f"{name} is wanted" if target else "no unit is wanted"
         raise UnitError(
@@ -361,7 +427,8 @@ def number_in(text: str, target: Unit | None, *, difference: bool = False) -> fl
                 else "Write a number."
             ),
         )
-    factor, offset = source.factor / target.factor, (source.offset - target.offset) / target.factor
+    factor = source.factor / target.factor
+    offset = (source.offset - target.offset) / target.factor
     return number * factor + (0.0 if difference else offset)
 
 
@@ -424,14 +491,21 @@ def _pint_unit(spelling: str) -> Unit | None:
     try:
         registry = _registry()
         unit = registry(_pint_spelling(spelling)).units
-        offset, one = (float(registry.Quantity(value, unit).to_base_units().magnitude) for value in (0.0, 1.0))
+        offset, one = (
+            float(registry.Quantity(value, unit).to_base_units().magnitude) for value in (0.0, 1.0)
+        )
         in_base = registry.Quantity(1.0, unit).to_base_units()
         powers = {str(name): float(str(power)) for name, power in in_base.unit_items()}
     except (pint.PintError, UnitError, AttributeError, TypeError, ValueError):
         return None
     if any(name not in _IN_PINT or not power.is_integer() for name, power in powers.items()):
         return None
-    return _unit(spelling, one - offset, offset, **{_IN_PINT[name]: int(power) for name, power in powers.items()})
+    return _unit(
+        spelling,
+        one - offset,
+        offset,
+        **{_IN_PINT[name]: int(power) for name, power in powers.items()},
+    )
 
 
 def _pint_conversion(source: str, target: str) -> tuple[float, float]:
@@ -440,13 +514,17 @@ def _pint_conversion(source: str, target: str) -> tuple[float, float]:
     try:
         registry = _registry()
         units = [registry(_pint_spelling(spelling)).units for spelling in (source, target)]
-        offset, one = (float(registry.Quantity(value, units[0]).to(units[1]).magnitude) for value in (0.0, 1.0))
+        offset, one = (
+            float(registry.Quantity(value, units[0]).to(units[1]).magnitude) for value in (0.0, 1.0)
+        )
     except pint.UndefinedUnitError as error:
         why = str(error).replace("is not defined in the unit registry", "is not known")
         found = f"cannot convert '{source}' into '{target}': {why}."
         raise UnitError(found, "Units are written like N.m, kn or deg.") from error
     except pint.DimensionalityError as error:
-        raise UnitError(f"cannot convert '{source}' into '{target}': they measure different things.") from error
+        raise UnitError(
+            f"cannot convert '{source}' into '{target}': they measure different things."
+        ) from error
     return one - offset, offset
 
 
@@ -457,12 +535,15 @@ def _registry() -> pint.UnitRegistry:
     return pint.UnitRegistry()
 
 
-_TOKEN = re.compile(r"(?P<name>[A-Za-z_%°µΩ]+)(?:\^|\*\*)?(?P<power>-?\d)?|(?P<sign>[.*/()]|1(?!\d))|\s+")
+_TOKEN = re.compile(
+    r"(?P<name>[A-Za-z_%°µΩ]+)(?:\^|\*\*)?(?P<power>-?\d)?|(?P<sign>[.*/()]|1(?!\d))|\s+"
+)
 
 
 def _pint_spelling(unit: str) -> str:
     """FMI's "kg.m2/s" as pint wants it. Only names, powers and signs get through: pint evaluates what it reads."""
-    spelling, position = "", 0
+    spelling = ""
+    position = 0
     while position < len(unit):
         token = _TOKEN.match(unit, position)
         if token is None:

@@ -19,7 +19,9 @@ USED = ("build", "docs", "fmus", "scenarios", "ssp", "studies")
 
 
 def blocks(page, language):
-    return re.findall(rf"^```{language}\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    return re.findall(
+        rf"^```{language}\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+    )
 
 
 def name_of(page):
@@ -49,11 +51,14 @@ def test_python_of_a_page_runs_from_top_to_bottom(page, like_the_root):
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "toml")], ids=name_of)
 def test_scenarios_of_a_page_fit_their_system(page, tmp_path, fmus):
-    scenarios = [text for text in blocks(page, "toml") if "stop_time" in text and "[[quantity]]" not in text]
+    scenarios = [
+        text for text in blocks(page, "toml") if "stop_time" in text and "[[quantity]]" not in text
+    ]
     for number, text in enumerate(scenarios):
         path = tmp_path / f"scenario{number}.toml"
         path.write_text(
-            text.replace('"gunnerus_dp"', f'"{(ROOT / "ssp" / "gunnerus_dp").as_posix()}"'), encoding="utf-8"
+            text.replace('"gunnerus_dp"', f'"{(ROOT / "ssp" / "gunnerus_dp").as_posix()}"'),
+            encoding="utf-8",
         )
         scenario = read_scenario(path)
         system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[fmus])
@@ -61,7 +66,9 @@ def test_scenarios_of_a_page_fit_their_system(page, tmp_path, fmus):
 
 
 @pytest.mark.parametrize(
-    "page", [page for page in PAGES if any("[[quantity]]" in text for text in blocks(page, "toml"))], ids=name_of
+    "page",
+    [page for page in PAGES if any("[[quantity]]" in text for text in blocks(page, "toml"))],
+    ids=name_of,
 )
 def test_studies_of_a_page_can_be_laid_out(page, like_the_root):
     for number, text in enumerate(text for text in blocks(page, "toml") if "[[quantity]]" in text):
@@ -73,7 +80,11 @@ def test_studies_of_a_page_can_be_laid_out(page, like_the_root):
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_links_of_a_page_lead_to_files(page):
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
-    targets = [target.partition("#")[0] for target in re.findall(r"\]\(([^)\s]+)\)", text) if "://" not in target]
+    targets = [
+        target.partition("#")[0]
+        for target in re.findall(r"\]\(([^)\s]+)\)", text)
+        if "://" not in target
+    ]
     missing = [target for target in targets if target and not (page.parent / target).exists()]
     assert missing == []
 
@@ -82,11 +93,21 @@ def test_links_of_a_page_lead_to_files(page):
 def tracked():
     """Paths of all files of the project, from its root."""
     folders = ("docs", "fmus", "scenarios", "src", "ssp", "studies", "tests")
-    return [path.relative_to(ROOT).as_posix() for folder in folders for path in (ROOT / folder).rglob("*.*")]
+    return [
+        path.relative_to(ROOT).as_posix()
+        for folder in folders
+        for path in (ROOT / folder).rglob("*.*")
+    ]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_source_files_that_a_page_names_exist(page, tracked):
-    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
-    named = set(re.findall(r"`([a-z_0-9/]+/[a-z_0-9]+\.py)`", text)) - {"fmus/lag/lag.py"}  # the reader writes it
-    assert {name for name in named if not any(f"/{path}".endswith(f"/{name}") for path in tracked)} == set()
+    text = re.sub(
+        r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
+    named = set(re.findall(r"`([a-z_0-9/]+/[a-z_0-9]+\.py)`", text)) - {
+        "fmus/lag/lag.py"
+    }  # the reader writes it
+    assert {
+        name for name in named if not any(f"/{path}".endswith(f"/{name}") for path in tracked)
+    } == set()

@@ -18,7 +18,9 @@ def fmus(root):
         spec = importlib.util.spec_from_file_location(f"fmu_{name}", path)
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        return next(c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name)
+        return next(
+            c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name
+        )
 
     return load
 
@@ -50,7 +52,10 @@ CONNECTIONS = [
     *(("allocator", f"{unit}_thrust_cmd", unit, "thrust_cmd") for unit in UNITS),
     *(("allocator", f"{unit}_azimuth_cmd", unit, "azimuth_cmd") for unit in ("port", "starboard")),
     *((unit, "available", "allocator", f"{unit}_available") for unit in UNITS),
-    *(("vessel", name, "sensors", name) for name in (*SHIP, *(f"{name}_wave" for name in SHIP), *APPARENT)),
+    *(
+        ("vessel", name, "sensors", name)
+        for name in (*SHIP, *(f"{name}_wave" for name in SHIP), *APPARENT)
+    ),
     *(("sensors", name, "controller", name) for name in MEASURED),
     *(("reference", name, "controller", name) for name in DESIRED),
     *(("allocator", load, "controller", f"{load}_allocated") for load in LOADS),
@@ -80,7 +85,10 @@ def stepped_one_by_one(fmus, inputs, parameters, seconds, h=0.05):
 
 
 def test_runs_follow_the_fmus_stepped_one_by_one(fmus):
-    components = {name: fmus(name)() for name in ("environment", "vessel", "sensors", "reference", "allocator")}
+    components = {
+        name: fmus(name)()
+        for name in ("environment", "vessel", "sensors", "reference", "allocator")
+    }
     components |= {name: fmus("azimuth_thruster")() for name in ("port", "starboard")}
     components |= {"tunnel": fmus("tunnel_thruster")(), "controller": fmus("dp_controller")()}
     for name in set(components) - {"environment"}:
@@ -90,12 +98,20 @@ def test_runs_follow_the_fmus_stepped_one_by_one(fmus):
     seeds = [("environment", "seed", 3), ("sensors", "seed", 103)]
     run = simulate([3, 8], values, record=SHOWN, stop_time=60.0)
     rows = [
-        [float(getattr(components[name.split(".")[0]], name.split(".")[1])) for name in run if name != "time"]
+        [
+            float(getattr(components[name.split(".")[0]], name.split(".")[1]))
+            for name in run
+            if name != "time"
+        ]
         for components in stepped_one_by_one(components, inputs, seeds, 60.0)
     ]
-    for name, expected in zip([name for name in run if name != "time"], np.array(rows).T, strict=True):
+    for name, expected in zip(
+        [name for name in run if name != "time"], np.array(rows).T, strict=True
+    ):
         span = np.ptp(expected) or 1.0
-        np.testing.assert_allclose(run[name][1:, 0] / span, expected / span, atol=1e-9, err_msg=name)
+        np.testing.assert_allclose(
+            run[name][1:, 0] / span, expected / span, atol=1e-9, err_msg=name
+        )
 
 
 SHOWN = (
@@ -106,7 +122,11 @@ SHOWN = (
     *("reference.x_d", "reference.y_d", "reference.psi_d"),
     *(f"controller.{name}_hat" for name in (*SHIP, "wave_frequency")),
     *(f"controller.{load}_cmd" for load in LOADS),
-    *("controller.positions_used", "controller.compass_1_rejected", "controller.dead_reckoning_time"),
+    *(
+        "controller.positions_used",
+        "controller.compass_1_rejected",
+        "controller.dead_reckoning_time",
+    ),
     *(f"allocator.{unit}_thrust_cmd" for unit in UNITS),
     *("allocator.port_azimuth_cmd", "allocator.starboard_azimuth_cmd", "allocator.saturated"),
 )
@@ -124,4 +144,7 @@ def test_half_the_step_changes_the_track_by_less_than_5_cm():
     values = MODERATE | {"reference.x_set": 20.0}
     coarse = simulate([1, 2], values, stop_time=100.0, every=20)
     fine = simulate([1, 2], values, stop_time=100.0, h=0.025, every=40)
-    assert np.hypot(coarse["vessel.x"] - fine["vessel.x"], coarse["vessel.y"] - fine["vessel.y"]).max() < 0.05
+    assert (
+        np.hypot(coarse["vessel.x"] - fine["vessel.x"], coarse["vessel.y"] - fine["vessel.y"]).max()
+        < 0.05
+    )

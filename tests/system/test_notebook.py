@@ -11,7 +11,9 @@ FIRST = 4
 
 @pytest.fixture(scope="module")
 def generator(root):
-    specification = importlib.util.spec_from_file_location("write_notebook", root / "docs/generators/write_notebook.py")
+    specification = importlib.util.spec_from_file_location(
+        "write_notebook", root / "docs/generators/write_notebook.py"
+    )
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
     return module
@@ -29,7 +31,9 @@ def code_cells(notebook):
 def said(cell):
     """What a cell prints, gives back and complains of, as plain text: the last digits of pictures may differ."""
     return [
-        "".join(one.get("text", "")) + "".join(one.get("data", {}).get("text/plain", "")) + one.get("evalue", "")
+        "".join(one.get("text", ""))
+        + "".join(one.get("data", {}).get("text/plain", ""))
+        + one.get("evalue", "")
         for one in cell["outputs"]
     ]
 
@@ -38,8 +42,15 @@ def test_the_notebook_is_small_whole_and_of_no_machine(generator, stored, root):
     text = generator.NOTEBOOK.read_text(encoding="utf-8")
     assert len(text) < 400_000 and not any(path in text for path in (str(root), "/tmp/", "/home/"))
     for number, cell in enumerate(code_cells(stored), start=1):
-        assert cell["execution_count"] == number and all(isinstance(line, str) for line in cell["source"])
-    kinds = {kind for cell in code_cells(stored) for one in cell["outputs"] for kind in one.get("data", ())}
+        assert cell["execution_count"] == number and all(
+            isinstance(line, str) for line in cell["source"]
+        )
+    kinds = {
+        kind
+        for cell in code_cells(stored)
+        for one in cell["outputs"]
+        for kind in one.get("data", ())
+    }
     assert kinds == {"text/plain", "text/html", "image/svg+xml"}
 
 

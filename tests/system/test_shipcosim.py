@@ -93,7 +93,9 @@ def test_a_scenario_runs_alone_and_with_what_is_added(system, tmp_path):
     system.write(tmp_path / "ssp" / "climb")
     (tmp_path / "scenarios").mkdir()
     scenario = tmp_path / "scenarios" / "fast.toml"
-    scenario.write_text('system = "climb"\nstop_time = 1.0\nstep_size = 0.25\n[set]\n"ramp.rate" = 8.0\n')
+    scenario.write_text(
+        'system = "climb"\nstop_time = 1.0\nstep_size = 0.25\n[set]\n"ramp.rate" = 8.0\n'
+    )
     assert sc.simulate(scenario=scenario)["ramp.height"].values[-1] == pytest.approx(8.0)
     table = sc.simulate(scenario=sc.read_scenario(scenario), stop_time=2.0, set={"ramp.more": 1.0})
     assert table["ramp.height"].values[-1] == pytest.approx(18.0)
@@ -115,16 +117,25 @@ def test_what_makes_no_sense_is_refused(system):
     assert "step_size is missing." in refused(system, stop_time=1.0)
     assert "stop_time = 'long'." in refused(system, stop_time="long", step_size=0.1)
     assert "is no multiple of the step size 0.1 s" in refused(system, stop_time=1.05, step_size=0.1)
-    assert "The event does nothing." in refused(system, stop_time=1.0, step_size=0.1, events=[{"time": 0.0}])
-    assert "ramp has no variable 'rat'." in refused(system, stop_time=1.0, step_size=0.1, set={"ramp.rat": 1.0})
+    assert "The event does nothing." in refused(
+        system, stop_time=1.0, step_size=0.1, events=[{"time": 0.0}]
+    )
+    assert "ramp has no variable 'rat'." in refused(
+        system, stop_time=1.0, step_size=0.1, set={"ramp.rat": 1.0}
+    )
 
 
 def test_keywords_of_a_run_are_its_options():
     """But for `start_time`, whose default is the system's; times may be texts with a unit."""
     keywords, options = as_written(RunKeywords), as_written(RunOptions)
-    options |= {name: options[name].replace("float", "float | str") for name in ("until", "timeout")}
+    options |= {
+        name: options[name].replace("float", "float | str") for name in ("until", "timeout")
+    }
     assert keywords == {name: hint for name, hint in options.items() if name != "start_time"}
 
 
 def as_written(record):
-    return {name: getattr(hint, "__forward_arg__", hint) for name, hint in record.__annotations__.items()}
+    return {
+        name: getattr(hint, "__forward_arg__", hint)
+        for name, hint in record.__annotations__.items()
+    }

@@ -8,7 +8,12 @@ import pytest
 pytest.importorskip("matplotlib", reason="draws the pictures of the validation")
 
 NUMBER = re.compile(r"(?<![\w/.])[+-]?\d+(?:\.\d+)?(?:e[+-]\d+)?")
-TITLES = {"turn": "1 The recorded", "trials": "2 The trials", "units": "3 Propeller", "loads": "4 Wind"}
+TITLES = {
+    "turn": "1 The recorded",
+    "trials": "2 The trials",
+    "units": "3 Propeller",
+    "loads": "4 Wind",
+}
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +40,10 @@ def found(validate, shared, tmp_path_factory):
 
 def sections(text):
     """Sections by title."""
-    return {part.splitlines()[0].removeprefix("## "): part for part in re.split(r"(?m)^(?=## )", text)[1:]}
+    return {
+        part.splitlines()[0].removeprefix("## "): part
+        for part in re.split(r"(?m)^(?=## )", text)[1:]
+    }
 
 
 @pytest.mark.parametrize("name", TITLES)
@@ -45,11 +53,16 @@ def test_committed_page_holds_what_the_code_gives(validate, found, root, name):
     made = sections(validate.template())
     title = next(title for title in made if title.startswith(TITLES[name]))
     now = made[title].format_map(found)
-    assert NUMBER.sub("#", page[title]) == NUMBER.sub("#", now), "run docs/generators/validation/validate.py"
+    assert NUMBER.sub("#", page[title]) == NUMBER.sub("#", now), (
+        "run docs/generators/validation/validate.py"
+    )
     for old, new in zip(NUMBER.findall(page[title]), NUMBER.findall(now), strict=True):
         digit = 10.0 ** -len(old.partition("e")[0].partition(".")[2])
         exponent = 10.0 ** float(old.partition("e")[2] or 0)
-        assert isclose(float(old), float(new), rel_tol=0.01, abs_tol=1.01 * digit * exponent), (old, new)
+        assert isclose(float(old), float(new), rel_tol=0.01, abs_tol=1.01 * digit * exponent), (
+            old,
+            new,
+        )
 
 
 def test_short_ship_ends_the_recorded_turn_where_the_parameter_sheet_found_it(found):

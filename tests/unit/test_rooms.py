@@ -22,7 +22,18 @@ MAY_IMPORT = {
     "scenario": {"library", "series", "ssp", "errors", "units", "angles"},
     "learn": {"library", "angles", "models", "series", "ssp", "scenario", "cosim"},
     "native": {"library", "fmi", "errors"},
-    "cosim": {"library", "series", "ssp", "scenario", "fmi", "errors", "options", "snapshot", "units", "native"},
+    "cosim": {
+        "library",
+        "series",
+        "ssp",
+        "scenario",
+        "fmi",
+        "errors",
+        "options",
+        "snapshot",
+        "units",
+        "native",
+    },
     "diagnose": {
         "library",
         "dialects",
@@ -51,7 +62,17 @@ MAY_IMPORT = {
         "cosim",
         "capability",
     },
-    "checks": {"library", "errors", "series", "ssp", "ships", "scenario", "cosim", "diagnose", "sweep"},
+    "checks": {
+        "library",
+        "errors",
+        "series",
+        "ssp",
+        "ships",
+        "scenario",
+        "cosim",
+        "diagnose",
+        "sweep",
+    },
     "report": {
         "errors",
         "angles",
@@ -199,7 +220,9 @@ def circles(graph):
                     waiting.append(node)
         reached[start] = seen
     return {
-        frozenset(n for n in reached[node] if node in reached.get(n, ())) for node in graph if node in reached[node]
+        frozenset(n for n in reached[node] if node in reached.get(n, ()))
+        for node in graph
+        if node in reached[node]
     }
 
 
@@ -234,29 +257,43 @@ def test_each_foreign_package_enters_through_one_door(root):
         here = name_of(file, root)
         for module, _ in imported(file):
             doors = ONLY_DOOR.get(module.split(".")[0], {""})
-            assert any(here.startswith(door) for door in doors), f"{here} imports {module}, which only {doors} may"
+            assert any(here.startswith(door) for door in doors), (
+                f"{here} imports {module}, which only {doors} may"
+            )
 
 
 def test_no_import_hides_behind_a_call(root):
     """The builder imports the FMU that it packs, which is no module of ours."""
     for file in sources(root):
-        calls = [node for node in ast.walk(ast.parse(file.read_text("utf-8"))) if isinstance(node, ast.Call)]
+        calls = [
+            node
+            for node in ast.walk(ast.parse(file.read_text("utf-8")))
+            if isinstance(node, ast.Call)
+        ]
         hidden = [c for c in calls if ast.unparse(c.func).endswith(("import_module", "__import__"))]
         assert not hidden or name_of(file, root) == "fmi.export.builder", file.relative_to(root)
 
 
 def test_fmus_import_the_shell_interfaces_the_models_and_angles_only(root):
     for file in (root / "fmus").rglob("*.py"):
-        rooms = {module.split(".")[1] for module, _ in imported(file) if module.split(".")[0] == "shipcosim"}
+        rooms = {
+            module.split(".")[1]
+            for module, _ in imported(file)
+            if module.split(".")[0] == "shipcosim"
+        }
         assert rooms <= {"fmi", "interfaces", "models", "angles"}, file.name
 
 
 def test_the_page_states_the_same_table(root):
     page = (root / "docs" / "dataflow.md").read_text(encoding="utf-8")
     rows = [
-        [cell.strip() for cell in line.strip("|").split("|")] for line in page.splitlines() if line.startswith("| `")
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in page.splitlines()
+        if line.startswith("| `")
     ]
-    stated = {name.strip("` "): row[2] for row in rows if len(row) == 4 for name in row[0].split(", ")}
+    stated = {
+        name.strip("` "): row[2] for row in rows if len(row) == 4 for name in row[0].split(", ")
+    }
     assert set(stated) - {"fmus/*"} == set(MAY_IMPORT)
     for name, imports in MAY_IMPORT.items():
         if stated[name] != "all of these":

@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.series import conversion, make_table, read_columns, read_table, write_file, write_table
+from shipcosim.series import (
+    conversion,
+    make_table,
+    read_columns,
+    read_table,
+    write_file,
+    write_table,
+)
 
 
 @pytest.fixture
@@ -122,7 +129,9 @@ except ShipcosimError as error:
 @pytest.mark.parametrize("suffix", [".nc", ".csv"])
 def test_full_disk_leaves_no_file(tmp_path, suffix):
     path = tmp_path / f"t{suffix}"
-    run = subprocess.run([sys.executable, "-c", FULL_DISK, str(path)], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", FULL_DISK, str(path)], capture_output=True, text=True, check=True
+    )
     assert "cannot be written: File too large" in run.stdout and path.name in run.stdout
     assert list(tmp_path.iterdir()) == []
 
@@ -163,7 +172,11 @@ def test_temperatures_convert_with_an_offset():
 
 @pytest.mark.parametrize(
     ("unit_from", "unit_to", "said"),
-    [("m", "s", "different things"), ("furlongz", "m", "furlongz"), ("m", "9**9**9**9", "is no unit")],
+    [
+        ("m", "s", "different things"),
+        ("furlongz", "m", "furlongz"),
+        ("m", "9**9**9**9", "is no unit"),
+    ],
 )
 def test_units_that_do_not_convert_are_an_error(unit_from, unit_to, said):
     with pytest.raises(ShipcosimError, match=said):
@@ -172,9 +185,17 @@ def test_units_that_do_not_convert_are_an_error(unit_from, unit_to, said):
 
 def test_columns_stand_as_in_the_file_whatever_they_are_called(tmp_path):
     path = tmp_path / "t.csv"
-    path.write_text("when,x [kn],,note,on\n2022-10-27 08:00:00,1,7,a,true\n2022-10-27 08:00:01.5,,8,,false\n")
+    path.write_text(
+        "when,x [kn],,note,on\n2022-10-27 08:00:00,1,7,a,true\n2022-10-27 08:00:01.5,,8,,false\n"
+    )
     columns = read_columns(path)
-    assert {name: unit for name, (_, unit) in columns.items()} == {"when": "s", "x": "kn", "": "", "note": "", "on": ""}
+    assert {name: unit for name, (_, unit) in columns.items()} == {
+        "when": "s",
+        "x": "kn",
+        "": "",
+        "note": "",
+        "on": "",
+    }
     assert columns["when"][0].tolist() == [0.0, 1.5] and columns["on"][0].tolist() == [1.0, 0.0]
     assert columns["x"][0][0] == 1.0 and math.isnan(columns["x"][0][1])
     assert columns["note"][0].dtype == object and columns["note"][0][0] == "a"

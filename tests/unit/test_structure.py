@@ -6,7 +6,9 @@ from statistics import median
 
 import pytest
 
-MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 45, 250  # lines, docstring not counted
+# Lines without the docstring. A line is 100 characters wide and holds one statement: the package has 1.24 times the
+# lines that it had at 120 characters and with packed assignments, where the limits were 45 and 250.
+MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 56, 310
 MOST_FILES = 20  # in a folder, of Python
 NAMES_A_SHIP = {
     "calls/arguments.py",
@@ -36,7 +38,10 @@ def package(root):
 def trees(package):
     """Syntax of every file of the package, by its path in it."""
     files = sorted(package.rglob("*.py"))
-    return {file.relative_to(package).as_posix(): ast.parse(file.read_text(encoding="utf-8")) for file in files}
+    return {
+        file.relative_to(package).as_posix(): ast.parse(file.read_text(encoding="utf-8"))
+        for file in files
+    }
 
 
 def lines_of(node):
@@ -49,7 +54,11 @@ def lines_of(node):
 
 def nodes_of(trees, kinds):
     for file, tree in trees.items():
-        yield from ((f"{file}:{node.lineno} {node.name}", node) for node in ast.walk(tree) if isinstance(node, kinds))
+        yield from (
+            (f"{file}:{node.lineno} {node.name}", node)
+            for node in ast.walk(tree)
+            if isinstance(node, kinds)
+        )
 
 
 def public(body):
@@ -57,7 +66,9 @@ def public(body):
     for node in body:
         if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
             yield from public(node.body)
-        elif isinstance(node, FUNCTIONS) and (not node.name.startswith("_") or node.name == "__init__"):
+        elif isinstance(node, FUNCTIONS) and (
+            not node.name.startswith("_") or node.name == "__init__"
+        ):
             yield node
 
 
@@ -88,11 +99,17 @@ def test_no_folder_holds_more_files_than_one_sees_at_a_glance(root, base):
 
 
 def test_every_argument_of_a_public_function_has_a_type(trees):
-    missing = {file: [f.name for f in public(tree.body) if untyped(f)] for file, tree in trees.items()}
+    missing = {
+        file: [f.name for f in public(tree.body) if untyped(f)] for file, tree in trees.items()
+    }
     assert not {file: names for file, names in missing.items() if names}
 
 
 def test_no_ship_is_named_but_where_a_default_is_chosen(package):
-    texts = [file for file in package.rglob("*.*") if file.suffix in {".py", ".toml", ".jinja", ".js", ".css"}]
+    texts = [
+        file
+        for file in package.rglob("*.*")
+        if file.suffix in {".py", ".toml", ".jinja", ".js", ".css"}
+    ]
     named = [file for file in texts if "gunnerus" in file.read_text(encoding="utf-8").lower()]
     assert {file.relative_to(package).as_posix() for file in named} == NAMES_A_SHIP

@@ -76,10 +76,14 @@ def test_celsius_has_the_offset_of_kelvin():
 
 
 def test_exponents_come_in_the_order_of_fmi():
-    assert list(fmi_unit("N.m/rad").powers) == [name for name in BASE_UNITS if name in ("kg", "m", "s", "rad")]
+    assert list(fmi_unit("N.m/rad").powers) == [
+        name for name in BASE_UNITS if name in ("kg", "m", "s", "rad")
+    ]
 
 
-@pytest.mark.parametrize("unit", ["", "N*m", "furlong", "N/m/s", "N.m/s.K", "m2.5", "m^2", "kdeg", " m", "degC/s"])
+@pytest.mark.parametrize(
+    "unit", ["", "N*m", "furlong", "N/m/s", "N.m/s.K", "m2.5", "m^2", "kdeg", " m", "degC/s"]
+)
 def test_what_fmi_does_not_write_is_refused_by_name(unit):
     with pytest.raises(ValueError, match="unit"):
         fmi_unit(unit)
@@ -133,7 +137,9 @@ def test_units_relate_by_their_dimensions(source, target, expected):
     assert relation(spelled_unit(source), spelled_unit(target)) == expected
 
 
-@pytest.mark.parametrize("name", ["", "parsnip", "m//s", "m/s.kg", "N/(m/s)", "(m", "degC/s", "xm", "m^", "µm", "."])
+@pytest.mark.parametrize(
+    "name", ["", "parsnip", "m//s", "m/s.kg", "N/(m/s)", "(m", "degC/s", "xm", "m^", "µm", "."]
+)
 def test_what_makes_no_sense_is_no_unit(name):
     assert spelled_unit(name) is None
 
@@ -151,12 +157,17 @@ def test_every_two_symbols_convert_as_in_pint(source):
     for target in SYMBOLS:
         units = [REGISTRY.Unit(PINT_CALLS_IT.get(name, name)) for name in (source, target)]
         try:
-            offset, one = (float(REGISTRY.Quantity(value, units[0]).to(units[1]).magnitude) for value in (0.0, 1.0))
+            offset, one = (
+                float(REGISTRY.Quantity(value, units[0]).to(units[1]).magnitude)
+                for value in (0.0, 1.0)
+            )
         except pint.DimensionalityError:
             with pytest.raises(UnitError, match="different things"):
                 spelled_conversion(source, target)
         else:
-            assert spelled_conversion(source, target) == pytest.approx((one - offset, offset), rel=1e-15)
+            assert spelled_conversion(source, target) == pytest.approx(
+                (one - offset, offset), rel=1e-15
+            )
 
 
 def test_what_the_table_does_not_hold_is_left_to_pint():
@@ -164,7 +175,9 @@ def test_what_the_table_does_not_hold_is_left_to_pint():
     assert spelled_conversion("degF", "K") == (pytest.approx(5 / 9), pytest.approx(459.67 * 5 / 9))
 
 
-@pytest.mark.parametrize(("spelling", "said"), [("furlonk", "not known"), ("__import__('os')", "no unit")])
+@pytest.mark.parametrize(
+    ("spelling", "said"), [("furlonk", "not known"), ("__import__('os')", "no unit")]
+)
 def test_what_nobody_knows_is_refused(spelling, said):
     with pytest.raises(UnitError, match=said):
         spelled_conversion(spelling, "m")
@@ -172,7 +185,10 @@ def test_what_nobody_knows_is_refused(spelling, said):
 
 def test_units_of_the_table_are_converted_without_importing_pint():
     code = "import sys; from shipcosim.series import conversion; conversion('kn', 'm/s'); print('pint' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "False\n"
+    assert (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+        == "False\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -197,7 +213,9 @@ def test_an_amount_is_the_number_that_its_unit_says(text, unit, expected):
     assert number_in(text, spelled_unit(unit)) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("text", ["45", "kaimal", "", "deg", "4,5 m", "1_0 m", "nan m", "inf m", "1e5", "--1 m"])
+@pytest.mark.parametrize(
+    "text", ["45", "kaimal", "", "deg", "4,5 m", "1_0 m", "nan m", "inf m", "1e5", "--1 m"]
+)
 def test_other_texts_are_no_amounts(text):
     assert amount(text) is None
 
@@ -205,7 +223,11 @@ def test_other_texts_are_no_amounts(text):
 @pytest.mark.parametrize(
     ("text", "unit", "said"),
     [
-        ("45 deg", "m", "'45 deg' is in deg, where m is wanted: they measure different things. Write a number in m"),
+        (
+            "45 deg",
+            "m",
+            "'45 deg' is in deg, where m is wanted: they measure different things. Write a number in m",
+        ),
         ("10 %", "rad", "in %, where rad is wanted"),
         ("3 rad", "1", "in rad, where 1 is wanted"),
         ("5 rpm", "1/s", "in rpm, where 1/s is wanted"),

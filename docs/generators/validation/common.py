@@ -71,7 +71,10 @@ def thrust_loads(state, n, azimuth, azimuths):
         X, Y, N. [N, N, N.m]
     """
     flow = state.u, state.v, state.r
-    loads = [azimuth_loads(azimuth_replay(n, azimuth, *flow, unit=unit), *flow, unit=unit)[2:] for unit in azimuths]
+    loads = [
+        azimuth_loads(azimuth_replay(n, azimuth, *flow, unit=unit), *flow, unit=unit)[2:]
+        for unit in azimuths
+    ]
     return [port + starboard for port, starboard in zip(*loads, strict=True)]
 
 
@@ -115,7 +118,10 @@ def table(header, rows):
     | x | 1 |
     """
     lines = [header, [":--"] + ["--:"] * (len(header) - 1), *rows]
-    return "\n".join("|" + "|".join(str(c) if i == 1 else f" {c} " for c in line) + "|" for i, line in enumerate(lines))
+    return "\n".join(
+        "|" + "|".join(str(c) if i == 1 else f" {c} " for c in line) + "|"
+        for i, line in enumerate(lines)
+    )
 
 
 def save(figure, name):

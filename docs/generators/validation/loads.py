@@ -12,7 +12,12 @@ from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.vessel import DriftParameters
 
 DRIFT_33M9 = parameters(DriftParameters, "gunnerus-33m9", "vessel").drift_table
-FRONTAL, LATERAL, LENGTH, DENSITY = 85.0, 210.0, 36.25, 1.224  # m2, m2, m, kg/m3: the lengthened ship
+FRONTAL, LATERAL, LENGTH, DENSITY = (
+    85.0,
+    210.0,
+    36.25,
+    1.224,
+)  # m2, m2, m, kg/m3: the lengthened ship
 SHORT_FRONTAL, SHORT_LATERAL, SHORT_LENGTH, SHORT_DENSITY = 81.0, 172.0, 31.25, 1.23
 ARM = 2.0  # m, centroid of the lateral area forward of midships
 LABELS = ("X", "Y", "N")
@@ -25,7 +30,9 @@ def validate(shared):
 
 def blendermann(shared, angle):
     """Loads of Blendermann's research vessel per squared wind speed, (3, n); angle from the bow, 0 to pi."""
-    data = json.loads((shared / "reference/data/blendermann94.json").read_text())["data"]["Research vessel"]
+    data = json.loads((shared / "reference/data/blendermann94.json").read_text())["data"][
+        "Research vessel"
+    ]
     CDt, bow, stern, delta, _ = data
     CDlAF = np.where(angle <= 0.5 * np.pi, bow, stern)
     CDl = CDlAF * FRONTAL / LATERAL
@@ -37,11 +44,21 @@ def blendermann(shared, angle):
 
 def _wind(shared):
     folder = shared / "reference/data"
-    long, short = (parameters(WindParameters, ship, "vessel") for ship in ("gunnerus-33m9", "gunnerus-28m9"))
-    to, *source = np.genfromtxt(folder / "gunnerus_33p9_wind_load_coefficients.csv", delimiter=",", skip_header=2).T
+    long, short = (
+        parameters(WindParameters, ship, "vessel") for ship in ("gunnerus-33m9", "gunnerus-28m9")
+    )
+    to, *source = np.genfromtxt(
+        folder / "gunnerus_33p9_wind_load_coefficients.csv", delimiter=",", skip_header=2
+    ).T
     from_table = wind_loads(1.0, np.radians(to) - np.pi, wind=long)
-    angle, *coefficients = np.genfromtxt(folder / "gunnerus_28p9_wind_coefficients.csv", delimiter=",", skip_header=2).T
-    sizes = 0.5 * SHORT_DENSITY * np.array([[SHORT_FRONTAL], [SHORT_LATERAL], [SHORT_LATERAL * SHORT_LENGTH]])
+    angle, *coefficients = np.genfromtxt(
+        folder / "gunnerus_28p9_wind_coefficients.csv", delimiter=",", skip_header=2
+    ).T
+    sizes = (
+        0.5
+        * SHORT_DENSITY
+        * np.array([[SHORT_FRONTAL], [SHORT_LATERAL], [SHORT_LATERAL * SHORT_LENGTH]])
+    )
     short_table = wind_loads(1.0, -np.radians(angle), wind=short)
     fine = np.radians(np.linspace(0.0, 180.0, 721))
     model, formula = np.array(wind_loads(1.0, fine, wind=long)), blendermann(shared, fine)
@@ -51,13 +68,20 @@ def _wind(shared):
     _draw_wind(fine, own, _coefficients(formula, short=False), other)
     difference = np.max(np.abs(own - other), axis=1) / np.max(np.abs(own), axis=1)
     numbers = {
-        "wind_table": float(np.max(np.abs(np.array(from_table) - source) / np.max(np.abs(source), axis=1)[:, None])),
+        "wind_table": float(
+            np.max(np.abs(np.array(from_table) - source) / np.max(np.abs(source), axis=1)[:, None])
+        ),
         "wind_table_short": float(
-            np.max(np.abs(short_table - sizes * coefficients) / np.max(np.abs(sizes * coefficients), axis=1)[:, None])
+            np.max(
+                np.abs(short_table - sizes * coefficients)
+                / np.max(np.abs(sizes * coefficients), axis=1)[:, None]
+            )
         ),
     }
     for k, name in enumerate(LABELS):
-        numbers[f"blendermann_{name}"] = 100.0 * float(np.max(np.abs(model - formula)[k]) / largest[k])
+        numbers[f"blendermann_{name}"] = 100.0 * float(
+            np.max(np.abs(model - formula)[k]) / largest[k]
+        )
         numbers[f"ships_{name}"] = 100.0 * float(difference[k])
     return numbers
 
@@ -65,7 +89,12 @@ def _wind(shared):
 def _coefficients(loads, *, short):
     """Loads over pressure, area and length, (3, n). [1]"""
     if short:
-        density, frontal, lateral, length = SHORT_DENSITY, SHORT_FRONTAL, SHORT_LATERAL, SHORT_LENGTH
+        density, frontal, lateral, length = (
+            SHORT_DENSITY,
+            SHORT_FRONTAL,
+            SHORT_LATERAL,
+            SHORT_LENGTH,
+        )
     else:
         density, frontal, lateral, length = DENSITY, FRONTAL, LATERAL, LENGTH
     return loads / (0.5 * density * np.array([[frontal], [lateral], [lateral * length]]))
@@ -79,13 +108,17 @@ def _drift(shared):
     full = rows[np.lexsort((rows[:, 0], rows[:, 1])), 2:].reshape(len(headings), len(omegas), 3)
     kept = drift_table(DRIFT_33M9)
     half = np.array(kept.loads)[-len(headings) :]  # 0 to 180 deg
-    interpolated = np.array([[np.interp(omegas, kept.omega, load) for load in heading] for heading in half])
+    interpolated = np.array(
+        [[np.interp(omegas, kept.omega, load) for load in heading] for heading in half]
+    )
     off = np.max(np.abs(interpolated.transpose(0, 2, 1) - full), axis=(0, 1))
     size = np.max(np.abs(full), axis=(0, 1))
     _draw_drift(omegas, full[list(headings).index(90.0), :, 1], kept)
     numbers = {f"drift_{name}": float(off[k]) for k, name in enumerate(LABELS)}
     numbers |= {f"drift_size_{name}": float(size[k]) / 1e3 for k, name in enumerate(LABELS)}
-    seas = [_sea_row(omegas, full, headings, kept, *sea) for sea in ((0.3, 5.0), (0.5, 6.0), (1.0, 7.0))]
+    seas = [
+        _sea_row(omegas, full, headings, kept, *sea) for sea in ((0.3, 5.0), (0.5, 6.0), (1.0, 7.0))
+    ]
     header = [
         "Hs, Tp, beam sea",
         "2 ∫ S D dω [kN]",
@@ -112,7 +145,10 @@ def _sea_row(omegas, full, headings, kept, height, period):
         means.append(mean_drift(0.0, sea, kept)[1])
     still = 0.0 * times
     slow = np.std(drift(times, still, still, still, sea, kept)[1])
-    row = [f"{height} m, {period:.0f} s", *(f"{x / 1e3:.2f}" for x in (integral, np.mean(means), np.std(means), slow))]
+    row = [
+        f"{height} m, {period:.0f} s",
+        *(f"{x / 1e3:.2f}" for x in (integral, np.mean(means), np.std(means), slow)),
+    ]
     return row, 100.0 * (np.mean(means) / integral - 1.0)
 
 
@@ -123,7 +159,10 @@ def _added_mass(shared):
     low, high = still[0], still[-1]
     hull, short = hull_of("gunnerus-33m9"), hull_of("gunnerus-28m9")
     _draw_added_mass(still, hull)
-    rows, numbers = [], {"omega_low": float(low["omega_rad_s"]), "omega_high": float(high["omega_rad_s"])}
+    rows, numbers = (
+        [],
+        {"omega_low": float(low["omega_rad_s"]), "omega_high": float(high["omega_rad_s"])},
+    )
     masses = {"A11": hull.mass, "A22": hull.mass, "A26": None, "A66": hull.inertia_yaw}
     for name, own in masses.items():
         value = getattr(hull, name)
@@ -155,7 +194,9 @@ def _draw_wind(angle, own, formula, other):
     figure, axes = plt.subplots(1, 3, figsize=(7.6, 2.8))
     degrees = np.degrees(angle)[::12]
     for axis, k, name in zip(axes, range(3), ("CX", "CY", "CN"), strict=True):
-        axis.plot(degrees, formula[k, ::12], color=REFERENCE, lw=2.4, alpha=0.5, label="Blendermann")
+        axis.plot(
+            degrees, formula[k, ::12], color=REFERENCE, lw=2.4, alpha=0.5, label="Blendermann"
+        )
         axis.plot(degrees, own[k, ::12], color=MODEL, label="33.9 m, model")
         axis.plot(degrees, other[k, ::12], color=THIRD, ls="--", label="28.9 m, model")
         axis.set(title=name, xlabel="wind from [deg]", xticks=range(0, 181, 60))
@@ -176,7 +217,11 @@ def _draw_drift(omegas, beam, kept):
 def _draw_added_mass(still, hull):
     figure, axes = plt.subplots(1, 4, figsize=(7.8, 2.6))
     for axis, name, size, unit in zip(
-        axes, ("A11", "A22", "A26", "A66"), (1e3, 1e3, 1e3, 1e6), ("t", "t", "t·m", "1000 t·m²"), strict=True
+        axes,
+        ("A11", "A22", "A26", "A66"),
+        (1e3, 1e3, 1e3, 1e6),
+        ("t", "t", "t·m", "1000 t·m²"),
+        strict=True,
     ):
         axis.plot(still["omega_rad_s"], still[name] / size, color=REFERENCE, label="VERES")
         axis.axhline(getattr(hull, name) / size, color=MODEL, label="model")

@@ -92,7 +92,9 @@ def doubts() -> list[Doubt]:
     return list(found.values())
 
 
-def run(scenario: str, settings: dict[str, Any], stop_time: float | None = None) -> dict[str, float]:
+def run(
+    scenario: str, settings: dict[str, Any], stop_time: float | None = None
+) -> dict[str, float]:
     """What a scenario shows with other start values.
 
     Parameters
@@ -139,7 +141,9 @@ def figures(result: Any, drifts: bool) -> dict[str, float]:
 
 
 def numbers(
-    scenarios: tuple[str, ...] = SCENARIOS, stop_time: float | None = None, doubtful: list | None = None
+    scenarios: tuple[str, ...] = SCENARIOS,
+    stop_time: float | None = None,
+    doubtful: list | None = None,
 ) -> dict:
     """All runs: by (name of the change, its value) and scenario what `run` gives.
 
@@ -174,9 +178,9 @@ def page(found: dict) -> str:
     plain, low = found["as it is", 0.0], found["cross_flow_drag", 0.6]
     text = (HERE / "sensitivity.md").read_text(encoding="utf-8")
     return text.format(
-        doubts=table(["number", "model", "sources", "unit", "where from"], rows_of_doubts()).replace(
-            "--:|\n", ":--|\n", 1
-        ),
+        doubts=table(
+            ["number", "model", "sources", "unit", "where from"], rows_of_doubts()
+        ).replace("--:|\n", ":--|\n", 1),
         scenarios="\n\n".join(_table_of(name, found) for name in SCENARIOS),
         load=load,
         load_low=load * 0.6 / 1.5,
@@ -185,7 +189,8 @@ def page(found: dict) -> str:
         drift_change=100.0 * (low["drift"]["drift"] / plain["drift"]["drift"] - 1.0),
         power_change=100.0 * (low["current_turn"]["power"] / plain["current_turn"]["power"] - 1.0),
         step_time=SETTLED,
-        footprint_change=100.0 * (low["current_turn"]["footprint"] / plain["current_turn"]["footprint"] - 1.0),
+        footprint_change=100.0
+        * (low["current_turn"]["footprint"] / plain["current_turn"]["footprint"] - 1.0),
         **{f"other_{key}": _largest_change(found, key) for key in ("footprint", "power", "drift")},
     )
 
@@ -193,8 +198,14 @@ def page(found: dict) -> str:
 def _largest_change(found, key):
     """Largest change of a figure in any scenario by a number other than the cross flow's coefficient. [%]"""
     plain = found["as it is", 0.0]
-    others = [results for (name, _), results in found.items() if name not in ("cross_flow_drag", "another seed")]
-    pairs = [(results[s][key], plain[s][key]) for results in others for s in SCENARIOS if key in plain[s]]
+    others = [
+        results
+        for (name, _), results in found.items()
+        if name not in ("cross_flow_drag", "another seed")
+    ]
+    pairs = [
+        (results[s][key], plain[s][key]) for results in others for s in SCENARIOS if key in plain[s]
+    ]
     return max(100.0 * abs(value / before - 1.0) for value, before in pairs)
 
 
@@ -203,17 +214,37 @@ def rows_of_doubts() -> Iterator[list[str]]:
     for doubt in doubts():
         low, high = min(doubt.value, *doubt.ends), max(doubt.value, *doubt.ends)
         unit = "-" if doubt.unit == "1" else doubt.unit
-        yield [f"{doubt}: {doubt.description}", f"{doubt.value:g}", f"{low:g} to {high:g}", unit, doubt.origin]
+        yield [
+            f"{doubt}: {doubt.description}",
+            f"{doubt.value:g}",
+            f"{low:g} to {high:g}",
+            unit,
+            doubt.origin,
+        ]
 
 
 def _table_of(scenario, found):
     """Table of one scenario, a row for each change."""
-    keys = {"footprint": "footprint [m]", "error": "largest error [m]", "heading": "largest heading error [deg]"}
-    keys |= {"power": "mean power [kW]"} | ({"drift": "drift in 600 s [m]"} if scenario == "drift" else {})
+    keys = {
+        "footprint": "footprint [m]",
+        "error": "largest error [m]",
+        "heading": "largest heading error [deg]",
+    }
+    keys |= {"power": "mean power [kW]"} | (
+        {"drift": "drift in 600 s [m]"} if scenario == "drift" else {}
+    )
     rows = []
     for (name, value), results in found.items():
         label = name if name in ("as it is", "another seed") else f"`{name}` {value:g}"
-        rows.append([label, *(f"{results[scenario][key]:.{1 if key in ('power', 'drift') else 2}f}" for key in keys)])
+        rows.append(
+            [
+                label,
+                *(
+                    f"{results[scenario][key]:.{1 if key in ('power', 'drift') else 2}f}"
+                    for key in keys
+                ),
+            ]
+        )
     return f"**{scenario}**\n\n{table(['', *keys.values()], rows)}"
 
 
@@ -224,15 +255,31 @@ def draw(found: dict) -> None:
 
 
 def _draw_cross_flow(found):
-    panels = {"footprint": "footprint [m]", "error": "largest error [m]", "power": "mean power [kW]"}
+    panels = {
+        "footprint": "footprint [m]",
+        "error": "largest error [m]",
+        "power": "mean power [kW]",
+    }
     figure, axes = plt.subplots(1, 4, figsize=(8.4, 2.8))
     for scenario, colour in COLOURS.items():
-        results = [found[("cross_flow_drag", c) if c != 1.5 else ("as it is", 0.0)][scenario] for c in CROSS_FLOW]
+        results = [
+            found[("cross_flow_drag", c) if c != 1.5 else ("as it is", 0.0)][scenario]
+            for c in CROSS_FLOW
+        ]
         for axis, (key, name) in zip(axes[:3], panels.items(), strict=True):
-            axis.plot(CROSS_FLOW, [result[key] for result in results], "o-", ms=3, color=colour, label=scenario)
+            axis.plot(
+                CROSS_FLOW,
+                [result[key] for result in results],
+                "o-",
+                ms=3,
+                color=colour,
+                label=scenario,
+            )
             axis.set(title=name)
         if scenario == "drift":
-            axes[3].plot(CROSS_FLOW, [result["drift"] for result in results], "o-", ms=3, color=colour)
+            axes[3].plot(
+                CROSS_FLOW, [result["drift"] for result in results], "o-", ms=3, color=colour
+            )
     axes[3].set(title="drift in 600 s [m]")
     for axis in axes:
         axis.margins(y=0.1)
@@ -251,14 +298,19 @@ def _draw_all(found):
     height = 0.8 / len(SCENARIOS)
     for axis, (key, name) in zip(axes, panels.items(), strict=True):
         for place, (scenario, colour) in enumerate(COLOURS.items()):
-            changes = [100.0 * (found[c][scenario][key] / found["as it is", 0.0][scenario][key] - 1.0) for c in kept]
+            changes = [
+                100.0 * (found[c][scenario][key] / found["as it is", 0.0][scenario][key] - 1.0)
+                for c in kept
+            ]
             at = np.arange(len(kept)) + (place - 1.0) * height
             axis.barh(at, changes, height, color=colour, label=scenario)
         axis.axvline(0.0, color="#444444", lw=0.8)
         axis.set_axisbelow(True)
         axis.set(title=f"{name}, change [%]", yticks=range(len(kept)))
         axis.title.set_fontsize(9)
-    axes[0].set_yticklabels([name if name == "another seed" else f"{name} {value:g}" for name, value in kept])
+    axes[0].set_yticklabels(
+        [name if name == "another seed" else f"{name} {value:g}" for name, value in kept]
+    )
     axes[0].invert_yaxis()
     axes[2].legend(fontsize=7)
     save(figure, "sensitivity")

@@ -75,7 +75,9 @@ def sailed_again(record, load):
     states = [state]
     for k in range(record.eta.shape[1] - 1):
         for share in (np.arange(PARTS) + 0.5) / PARTS:
-            state = step(state, *map(float, load(k, share, state)), 0.0, 0.0, 1.0 / PARTS, hull=hull)
+            state = step(
+                state, *map(float, load(k, share, state)), 0.0, 0.0, 1.0 / PARTS, hull=hull
+            )
         states.append(state)
     return np.array(states)
 
@@ -95,9 +97,13 @@ def validate(shared):
     """Numbers of this section by name; draws its picture."""
     record = read(shared)
     missing = np.max(np.abs(missing_loads(record)), axis=1)
-    given = sailed_again(record, lambda k, share, _: (1.0 - share) * record.tau[:, k] + share * record.tau[:, k + 1])
+    given = sailed_again(
+        record, lambda k, share, _: (1.0 - share) * record.tau[:, k] + share * record.tau[:, k + 1]
+    )
     azimuths = units(SHIP)
-    free = sailed_again(record, lambda k, share, state: thrust_loads(state, RPM / 60.0, AZIMUTH, azimuths))
+    free = sailed_again(
+        record, lambda k, share, state: thrust_loads(state, RPM / 60.0, AZIMUTH, azimuths)
+    )
     errors = unit_force_errors(record)
     largest = np.max(np.hypot(*record.forces.transpose(1, 0, 2)))
     _draw(record, given, free)

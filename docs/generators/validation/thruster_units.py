@@ -23,7 +23,9 @@ DISC = 0.5 * 1025.0 * 0.25 * pi * 1.9**2  # N over a squared speed
 
 def read_points(shared):
     """Points of the unit's FMU: u, v in m/s, angle in rad, rpm, and force along and across the axis in N, (n,) each."""
-    data = np.genfromtxt(shared / "reference/data/gunnerus_azimuth_fmu_dataset.csv", delimiter=",", skip_header=2)
+    data = np.genfromtxt(
+        shared / "reference/data/gunnerus_azimuth_fmu_dataset.csv", delimiter=",", skip_header=2
+    )
     u, v, _, degrees, rpm, X, Y = data.T
     angle = np.radians(degrees)
     c, s = np.cos(angle), np.sin(angle)
@@ -33,7 +35,9 @@ def read_points(shared):
 def model_points(u, v, angle, rpm):
     """Thrust and side force of our unit at those points. [N]"""
     still = 0.0 * u
-    loads = azimuth_loads(azimuth_replay(rpm / 60.0, angle, u, v, still, unit=UNIT), u, v, still, unit=UNIT)
+    loads = azimuth_loads(
+        azimuth_replay(rpm / 60.0, angle, u, v, still, unit=UNIT), u, v, still, unit=UNIT
+    )
     return loads.thrust, loads.side_force
 
 
@@ -56,7 +60,9 @@ def validate(shared):
     return (
         {
             "points": len(u),
-            "forces": table(["", "points", "rms [kN]", "mean [kN]", "worst [kN]", "largest value [kN]"], rows),
+            "forces": table(
+                ["", "points", "rms [kN]", "mean [kN]", "worst [kN]", "largest value [kN]"], rows
+            ),
             "thrust_rms": _rms(off_thrust),
             "thrust_mean": float(np.mean(off_thrust)) / 1e3,
             "axis_rms": _rms(off_thrust[on_axis]),
@@ -81,7 +87,12 @@ def _rms(off):
 
 
 def _row(name, off, values):
-    numbers = (_rms(off), np.mean(off) / 1e3, np.max(np.abs(off)) / 1e3, np.max(np.abs(values)) / 1e3)
+    numbers = (
+        _rms(off),
+        np.mean(off) / 1e3,
+        np.max(np.abs(off)) / 1e3,
+        np.max(np.abs(values)) / 1e3,
+    )
     return [name, len(off), *(f"{number:.2f}" for number in numbers)]
 
 
@@ -89,7 +100,9 @@ def _coefficients(beta):
     """CT and CQ of our propeller over the hydrodynamic pitch angle."""
     speed = 5.0
     D = PROPELLER.diameter
-    thrust, torque = propeller_loads(speed * np.sin(beta), speed * np.cos(beta) / (0.7 * pi * D), propeller=PROPELLER)
+    thrust, torque = propeller_loads(
+        speed * np.sin(beta), speed * np.cos(beta) / (0.7 * pi * D), propeller=PROPELLER
+    )
     return thrust / (DISC * speed**2), torque / (DISC * D * speed**2)
 
 
@@ -113,21 +126,34 @@ def _quadrants():
 
 def _torque(shared):
     """Power at speed, ours against Ka4-70 in nozzle 19A as the parameter sheet reads it, and T V / P of both."""
-    polynomials = json.loads((shared / "reference/data/propeller_ka_19a_polynomials.json").read_text())["Ka4-70_19A"]
+    polynomials = json.loads(
+        (shared / "reference/data/propeller_ka_19a_polynomials.json").read_text()
+    )["Ka4-70_19A"]
     rows, offs, shares = [], [], []
     for rpm, knots in ((110.0, 7.25), (170.0, 10.57), (195.0, 11.87)):
         n, speed = rpm / 60.0, knots * 1852.0 / 3600.0
         thrust, torque = propeller_loads(speed, n, propeller=PROPELLER)
         J = (1.0 - WAKE) * speed / (n * PROPELLER.diameter)
-        KT, KQ = (sum(c * PITCH**x * J**y for c, x, y in polynomials[name]) for name in ("KT", "KQ"))
+        KT, KQ = (
+            sum(c * PITCH**x * J**y for c, x, y in polynomials[name]) for name in ("KT", "KQ")
+        )
         square = PROPELLER.water_density * n**2 * PROPELLER.diameter**4
         power, other = 2.0 * pi * n * torque, 2.0 * pi * n * KQ * square * PROPELLER.diameter
         offs.append(100.0 * (power / other - 1.0))
         shares.append(thrust * speed / power)
         values = (thrust / 1e3, KT * square / 1e3, power / 1e3, other / 1e3)
         last = [f"{offs[-1]:+.0f} %", f"{shares[-1]:.2f}", f"{KT * square * speed / other:.2f}"]
-        rows.append([f"{rpm:.0f} rpm, {knots:.2f} kn", *(f"{value:.1f}" for value in values), *last])
-    header = ["", "thrust [kN]", "Ka series [kN]", "power [kW]", "Ka series [kW]", "difference in power"]
+        rows.append(
+            [f"{rpm:.0f} rpm, {knots:.2f} kn", *(f"{value:.1f}" for value in values), *last]
+        )
+    header = [
+        "",
+        "thrust [kN]",
+        "Ka series [kN]",
+        "power [kW]",
+        "Ka series [kW]",
+        "difference in power",
+    ]
     table_of_power = table([*header, "T V / P", "Ka series"], rows)
     return {"torque": table_of_power, "power_low": min(offs), "power_high": max(offs)} | {
         "share_low": min(shares),
@@ -149,13 +175,19 @@ def _running_free():
 def _curves(shared):
     """Bollard curves of the thesis: its parameter set, and the tunnel."""
     folder = shared / "reference/data"
-    rpm, thrust, power = np.genfromtxt(folder / "gunnerus_azimuth_nominal_curve.csv", delimiter=",", skip_header=2).T
+    rpm, thrust, power = np.genfromtxt(
+        folder / "gunnerus_azimuth_nominal_curve.csv", delimiter=",", skip_header=2
+    ).T
     thesis = parameters(AzimuthParameters, "thesis", "port")
     n = rpm / 60.0
     found, torque = propeller_loads(0.0 * n, n, propeller=thesis)
-    motor, nominal = np.genfromtxt(folder / "gunnerus_tunnel_nominal_curve.csv", delimiter=",", skip_header=2).T
+    motor, nominal = np.genfromtxt(
+        folder / "gunnerus_tunnel_nominal_curve.csv", delimiter=",", skip_header=2
+    ).T
     tunnel = parameters(TunnelParameters, "gunnerus-33m9", "tunnel")
-    pushed = tunnel_loads(tunnel_replay(motor / 60.0, tunnel=tunnel), 0.0 * motor, tunnel=tunnel).thrust
+    pushed = tunnel_loads(
+        tunnel_replay(motor / 60.0, tunnel=tunnel), 0.0 * motor, tunnel=tunnel
+    ).thrust
     return {
         "thesis_thrust": float(np.max(np.abs(found - thrust))) / 1e3,
         "thesis_power": float(np.max(np.abs(2.0 * pi * n * torque - power))) / 1e3,
@@ -172,8 +204,17 @@ def _draw_points(thrust, side, found_thrust, found_side, on_axis):
     for axis, (value, found, name) in zip(axes, pairs, strict=True):
         ends = [min(value.min(), found.min()) / 1e3, max(value.max(), found.max()) / 1e3]
         axis.plot(ends, ends, color="#888888", lw=0.8)
-        axis.plot(value / 1e3, found / 1e3, ".", ms=2.0, color=MODEL, label="all points", rasterized=True)
-        axis.plot(value[on_axis] / 1e3, found[on_axis] / 1e3, ".", ms=3.0, color=REFERENCE, label="straight inflow")
+        axis.plot(
+            value / 1e3, found / 1e3, ".", ms=2.0, color=MODEL, label="all points", rasterized=True
+        )
+        axis.plot(
+            value[on_axis] / 1e3,
+            found[on_axis] / 1e3,
+            ".",
+            ms=3.0,
+            color=REFERENCE,
+            label="straight inflow",
+        )
         axis.set(xlabel=f"{name}, unit's FMU [kN]", ylabel="model [kN]", aspect="equal")
     axes[0].legend()
     save(figure, "unit_forces")
@@ -190,6 +231,8 @@ def _draw_quadrants():
     axis.plot(degrees, 10.0 * cq, color=THIRD, label="10 CQ, model")
     axis.plot(degrees, 10.0 * open_cq, color=THIRD, ls=":", label="10 CQ, open B4-70")
     axis.axvspan(0.0, 31.9, color="#eeeeee", zorder=0)
-    axis.set(xlabel="hydrodynamic pitch angle [deg]; grey: polynomials", xticks=range(-180, 181, 45))
+    axis.set(
+        xlabel="hydrodynamic pitch angle [deg]; grey: polynomials", xticks=range(-180, 181, 45)
+    )
     axis.legend(ncols=2)
     save(figure, "four_quadrants")

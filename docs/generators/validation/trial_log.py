@@ -82,7 +82,9 @@ def speed_ratio(log):
 def clock_ratio(log):
     """Heading turned, to and fro, over the integral of the logged yaw rate: 1 where rows are 0.5 s apart. [1]"""
     turning = np.abs(log.r) > np.radians(0.3)
-    return float(np.sum(np.abs(np.diff(log.psi))[turning[1:]]) / (STEP * np.sum(np.abs(log.r)[turning])))
+    return float(
+        np.sum(np.abs(np.diff(log.psi))[turning[1:]]) / (STEP * np.sum(np.abs(log.r)[turning]))
+    )
 
 
 def circles(log):

@@ -6,7 +6,18 @@ from math import copysign, degrees, exp, radians
 import matplotlib.pyplot as plt
 import numpy as np
 import trial_log
-from common import KNOT, MODEL, REFERENCE, hull_of, save, settle, speed_of, table, thrust_loads, units
+from common import (
+    KNOT,
+    MODEL,
+    REFERENCE,
+    hull_of,
+    save,
+    settle,
+    speed_of,
+    table,
+    thrust_loads,
+    units,
+)
 from trial_log import STEP
 from turning import swings, turn_numbers
 
@@ -42,7 +53,9 @@ def replay(part, state, hull, azimuths):
 
     def order(k, share):
         rpm = (1.0 - share) * part.rpm[k] + share * part.rpm[k + 1]
-        return (1.0 - share) * part.azimuth[k] + share * part.azimuth[k + 1], min(rpm, RPM_MAX) / 60.0
+        return (1.0 - share) * part.azimuth[k] + share * part.azimuth[k + 1], min(
+            rpm, RPM_MAX
+        ) / 60.0
 
     helm = part.azimuth[0], min(part.rpm[0], RPM_MAX) / 60.0
     states = [state]
@@ -77,7 +90,14 @@ def _sailed(state, helm, order, h, hull, azimuths):
 
 def start_of(part, scale):
     """The ship at the first row of a window: speed through the water taken as that over ground, along the heading."""
-    return Motion(0.0, 0.0, float(part.psi[0]), float(scale * np.hypot(part.u[0], part.v[0])), 0.0, float(part.r[0]))
+    return Motion(
+        0.0,
+        0.0,
+        float(part.psi[0]),
+        float(scale * np.hypot(part.u[0], part.v[0])),
+        0.0,
+        float(part.r[0]),
+    )
 
 
 def veres_hull(shared, *names):
@@ -106,7 +126,9 @@ def validate(shared):
     return (
         {
             "velocity_scale": scale,
-            "lost": " and ".join(f"{start:.0f} to {end:.1f} s" for start, end in trial_log.lost(log)),
+            "lost": " and ".join(
+                f"{start:.0f} to {end:.1f} s" for start, end in trial_log.lost(log)
+            ),
         }
         | _speeds(log, scale, hull, azimuths)
         | _circle_numbers(turns, what_ifs)
@@ -121,16 +143,39 @@ def _speeds(log, scale, hull, azimuths):
         parts = [log.part(*leg) for leg in legs]
         speeds = [scale * float(np.mean(np.hypot(part.u, part.v))) / KNOT for part in parts]
         logged = min(float(np.mean([part.rpm.mean() for part in parts])), RPM_MAX)
-        state = settle(Motion(0.0, 0.0, 0.0, 0.5 * sum(speeds) * KNOT, 0.0, 0.0), logged, 0.0, hull, azimuths)
+        state = settle(
+            Motion(0.0, 0.0, 0.0, 0.5 * sum(speeds) * KNOT, 0.0, 0.0), logged, 0.0, hull, azimuths
+        )
         trial, model = 0.5 * sum(speeds), speed_of(state) / KNOT
-        numbers |= {f"trial_{rpm}": trial, f"model_{rpm}": model, f"off_{rpm}": 100.0 * (model / trial - 1.0)}
+        numbers |= {
+            f"trial_{rpm}": trial,
+            f"model_{rpm}": model,
+            f"off_{rpm}": 100.0 * (model / trial - 1.0),
+        }
         order = f"{logged:.0f}" if rpm < RPM_MAX else f"{rpm} (model: {RPM_MAX:.0f})"
         numbers[f"apart_{rpm}"] = KNOT * abs(speeds[0] - speeds[1])
-        rows.append([order, *(f"{s:.2f}" for s in speeds), f"{trial:.2f}", f"{model:.2f}", f"{model / trial - 1:+.1%}"])
+        rows.append(
+            [
+                order,
+                *(f"{s:.2f}" for s in speeds),
+                f"{trial:.2f}",
+                f"{model:.2f}",
+                f"{model / trial - 1:+.1%}",
+            ]
+        )
     state = settle(Motion(0.0, 0.0, 0.0, 6.0, 0.0, 0.0), 195.0, 0.0, hull, azimuths)
     numbers["model_195"] = speed_of(state) / KNOT
-    header = ["order [rpm]", "one way [kn]", "other way [kn]", "trial, mean [kn]", "model [kn]", "difference"]
-    sides = [float(np.mean(log.part(*leg).v)) for legs in trial_log.STRAIGHT.values() for leg in legs]
+    header = [
+        "order [rpm]",
+        "one way [kn]",
+        "other way [kn]",
+        "trial, mean [kn]",
+        "model [kn]",
+        "difference",
+    ]
+    sides = [
+        float(np.mean(log.part(*leg).v)) for legs in trial_log.STRAIGHT.values() for leg in legs
+    ]
     numbers |= {"sway_low": min(sides), "sway_high": max(sides)}
     return numbers | {"speeds": table(header, rows)}
 
@@ -138,7 +183,9 @@ def _speeds(log, scale, hull, azimuths):
 def _turn(part, scale, hull, azimuths):
     """Trial and model of one turning circle."""
     time = part.time - part.time[0]
-    trial = turn_numbers(time, part.psi, scale * part.u, scale * part.v, part.r, part.north, part.east)
+    trial = turn_numbers(
+        time, part.psi, scale * part.u, scale * part.v, part.r, part.north, part.east
+    )
     turned_by_rate = np.concatenate(([0.0], np.cumsum(0.5 * STEP * (part.r[1:] + part.r[:-1]))))
     by_rate = turn_numbers(time, turned_by_rate, part.u, part.v, part.r, part.north, part.east)
     trial |= {"t90_rate": by_rate["t90"], "t180_rate": by_rate["t180"]}
@@ -168,17 +215,33 @@ def _circle_numbers(turns, what_ifs):
         return f"{turn['trial'][name]:.{digits}f} / {turn['model'][name]:.{digits}f}"
 
     def off(name, reference=None):
-        values = [100.0 * (turn["model"][name] / turn["trial"][reference or name] - 1.0) for turn in turns]
+        values = [
+            100.0 * (turn["model"][name] / turn["trial"][reference or name] - 1.0) for turn in turns
+        ]
         key = reference or name
-        return {f"{key}_low": min(values), f"{key}_high": max(values), f"{key}_mean": float(np.mean(values))}
+        return {
+            f"{key}_low": min(values),
+            f"{key}_high": max(values),
+            f"{key}_mean": float(np.mean(values)),
+        }
 
     steady = [
-        [_name(t), pair(t, "approach", 2), pair(t, "speed", 2), pair(t, "rate", 2), pair(t, "diameter")] for t in turns
+        [
+            _name(t),
+            pair(t, "approach", 2),
+            pair(t, "speed", 2),
+            pair(t, "rate", 2),
+            pair(t, "diameter"),
+        ]
+        for t in turns
     ]
     transient = [
         [
             _name(t),
-            *(f"{t['trial'][k]:.1f} ({t['trial'][k + '_rate']:.1f}) / {t['model'][k]:.1f}" for k in ("t90", "t180")),
+            *(
+                f"{t['trial'][k]:.1f} ({t['trial'][k + '_rate']:.1f}) / {t['model'][k]:.1f}"
+                for k in ("t90", "t180")
+            ),
             pair(t, "advance"),
             pair(t, "tactical"),
         ]
@@ -186,8 +249,12 @@ def _circle_numbers(turns, what_ifs):
     ]
     clocks = [_clock_to_quarter(turn) for turn in turns]
     numbers = {
-        "circles": table(["turn", "approach [m/s]", "steady speed [m/s]", "rate [deg/s]", "diameter [m]"], steady),
-        "transients": table(["turn", "t90 [s]", "t180 [s]", "advance [m]", "tactical diameter [m]"], transient),
+        "circles": table(
+            ["turn", "approach [m/s]", "steady speed [m/s]", "rate [deg/s]", "diameter [m]"], steady
+        ),
+        "transients": table(
+            ["turn", "t90 [s]", "t180 [s]", "advance [m]", "tactical diameter [m]"], transient
+        ),
         "number": len(turns),
         "clock_low": min(heading for heading, _ in clocks),
         "clock_high": max(heading for heading, _ in clocks),
@@ -198,7 +265,10 @@ def _circle_numbers(turns, what_ifs):
     numbers |= off("t90", "t90_rate") | off("t180", "t180_rate")
     for what_if, models in what_ifs.items():
         for name in ("t90", "rate", "diameter"):
-            values = [100.0 * (m[name] / t["model"][name] - 1.0) for t, m in zip(turns, models, strict=True)]
+            values = [
+                100.0 * (m[name] / t["model"][name] - 1.0)
+                for t, m in zip(turns, models, strict=True)
+            ]
             numbers[f"{what_if}_{name}"] = float(np.mean(values))
     return numbers
 
@@ -251,7 +321,9 @@ def _zig_zag_numbers(zig_zags):
         (times, peaks), (own_times, own_peaks) = z["trial"], z["own"]
         over, own_over = np.abs(peaks) - z["change"], np.abs(own_peaks) - z["change"]
         key = _key(name)
-        half, own_half = (float(np.mean(np.diff(t))) if len(t) > 1 else float("nan") for t in (times, own_times))
+        half, own_half = (
+            float(np.mean(np.diff(t))) if len(t) > 1 else float("nan") for t in (times, own_times)
+        )
         numbers |= {
             f"over_{key}": float(np.mean(over)),
             f"own_over_{key}": float(np.mean(own_over)),
@@ -281,7 +353,9 @@ def _zig_zag_numbers(zig_zags):
         "yaw rate, trial / replay [deg/s]",
     ]
     for name in ("half", "half_true"):
-        numbers[f"{name}_off_10_20"] = 100.0 * (numbers["own_half_10_20_170"] / numbers[f"{name}_10_20_170"] - 1.0)
+        numbers[f"{name}_off_10_20"] = 100.0 * (
+            numbers["own_half_10_20_170"] / numbers[f"{name}_10_20_170"] - 1.0
+        )
     true, rates = [], []
     for name, z in zig_zags.items():
         key = _key(name)
@@ -299,7 +373,10 @@ def _key(name):
 
 
 def _draw_turns(turns):
-    chosen = [next(t for t in turns if round(abs(t["order"]) / 10.0) == k and _sharp(t)) for k in (1, 2, 3)]
+    chosen = [
+        next(t for t in turns if round(abs(t["order"]) / 10.0) == k and _sharp(t))
+        for k in (1, 2, 3)
+    ]
     figure, axes = plt.subplots(2, 3, figsize=(7.6, 5.0))
     for (track, rate), turn in zip(axes.T, chosen, strict=True):
         part, states = turn["part"], turn["states"]
@@ -335,8 +412,16 @@ def _draw_zig_zags(zig_zags):
         part = z["part"]
         time = part.time - part.time[0]
         axis.plot(time, np.degrees(part.psi - z["base"]), color=REFERENCE, label="trial")
-        axis.plot(time, np.degrees(z["states"][:, 2] - z["base"]), color=MODEL, label="model, same orders")
-        axis.plot(time, -np.degrees(part.azimuth), color="#888888", lw=0.7, label="azimuth order, sign turned")
+        axis.plot(
+            time, np.degrees(z["states"][:, 2] - z["base"]), color=MODEL, label="model, same orders"
+        )
+        axis.plot(
+            time,
+            -np.degrees(part.azimuth),
+            color="#888888",
+            lw=0.7,
+            label="azimuth order, sign turned",
+        )
         axis.set(title=name, ylabel="[deg]")
     axes[-1].set(xlabel="time [s]")
     axes[0].legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.15))

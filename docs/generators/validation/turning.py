@@ -57,7 +57,9 @@ def swings(time, psi, base, least):
     far = np.sign(off) * (np.abs(off) > least)
     times, peaks = [], []
     for side in (1.0, -1.0):
-        for run in np.split(np.arange(len(off)), np.flatnonzero(np.diff((far == side).astype(int))) + 1):
+        for run in np.split(
+            np.arange(len(off)), np.flatnonzero(np.diff((far == side).astype(int))) + 1
+        ):
             if far[run[0]] == side and 0 < run[0] and run[-1] < len(off) - 1:
                 top = run[np.argmax(side * off[run])]
                 times.append(time[top])

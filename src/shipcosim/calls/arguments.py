@@ -49,7 +49,9 @@ def named(argument: str) -> str:
 def find(kind: str, given: Any, argument: str = "") -> Path:
     """Path of a file or name, as `library.find`; errors name the argument."""
     if not isinstance(given, (str, os.PathLike)):
-        raise ShipcosimError(Problem(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them."))
+        raise ShipcosimError(
+            Problem(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them.")
+        )
     return library.find(kind, given, named(argument) if argument else "")
 
 
@@ -63,7 +65,9 @@ def listed(given: AnyPath | Iterable[AnyPath] | None) -> list[AnyPath]:
 def mapping(argument: str, given: Any) -> dict[str, Any]:
     """An argument that is a mapping, as a dict."""
     if given is not None and not isinstance(given, Mapping):
-        raise ShipcosimError(Problem("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.'))
+        raise ShipcosimError(
+            Problem("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.')
+        )
     return dict(given or {})
 
 
@@ -74,7 +78,8 @@ def without_none(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """Arguments with the times of these names as numbers, where they are amounts such as ``"10 min"``. [s]"""
-    found, problems = dict(arguments), []
+    found = dict(arguments)
+    problems = []
     for name in names:
         if isinstance(found.get(name), str):
             try:
@@ -88,7 +93,8 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
 
 def fmus_of(components: Mapping[str, AnyPath] | None) -> dict[str, Path]:
     """FMUs in place of components' own, by path or name."""
-    found, problems = {}, []
+    found = {}
+    problems = []
     for name, fmu in mapping("components", components).items():
         try:
             found[name] = find("fmu", fmu, "component").resolve()
@@ -135,7 +141,9 @@ class Reading:
         if isinstance(given, System):
             if swapped:
                 found = "A system that is read keeps its FMUs."
-                raise ShipcosimError(Problem("components", found, "Give its path, its name or a SystemStructure."))
+                raise ShipcosimError(
+                    Problem("components", found, "Give its path, its name or a SystemStructure.")
+                )
             return given
         if isinstance(given, SystemStructure):
             return given.checked(parameters, swapped)
@@ -157,7 +165,11 @@ class Reading:
 
 
 def _path_of_system(given: AnyPath, argument: str) -> Path:
-    if isinstance(given, str) and not Path(given).exists() and library.named("system", given) is None:
+    if (
+        isinstance(given, str)
+        and not Path(given).exists()
+        and library.named("system", given) is None
+    ):
         if library.named("fmu", given) is not None:
             return find("fmu", given, argument)
     return find("system", given, argument)
@@ -174,7 +186,8 @@ def is_scenario(given: AnyPath) -> bool:
     text = os.fspath(given)
     if text.endswith(".toml") or Path(text.partition("#")[0]).exists():
         return text.endswith(".toml")
-    scenarios, systems = library.names("scenario"), library.names("system")
+    scenarios = library.names("scenario")
+    systems = library.names("system")
     if text not in scenarios and text not in systems:
         remedy = suggestion(text, {*scenarios, *systems})
         raise ShipcosimError(Problem(text, "There is no such scenario or system.", remedy))
@@ -200,7 +213,11 @@ def read_scenario(scenario: AnyScenario) -> Scenario:
     >>> shipcosim.read_scenario("gust").system
     'gunnerus_dp'
     """
-    return scenario if isinstance(scenario, Scenario) else read_scenario_file(find("scenario", scenario))
+    return (
+        scenario
+        if isinstance(scenario, Scenario)
+        else read_scenario_file(find("scenario", scenario))
+    )
 
 
 def system_and_scenario(
@@ -247,12 +264,18 @@ def system_and_scenario(
 def scenario_of(given: Scenario | None, system: System, keys: Mapping[str, Any]) -> Scenario:
     """Scenario of entries over those of another one, or over the system's default experiment; its times checked."""
     if given is None:
-        experiment = {"stop_time": system.experiment.stop_time, "step_size": system.experiment.step_size}
+        experiment = {
+            "stop_time": system.experiment.stop_time,
+            "step_size": system.experiment.step_size,
+        }
         entries = without_none(experiment) | dict(keys)
         entries.setdefault("description", f"Simulation of {system.name}")
         if missing := [name for name in ("stop_time", "step_size") if name not in entries]:
             raise ShipcosimError(
-                [Problem(named(name), f"{name} is missing.", "Give it; times are in s.") for name in missing]
+                [
+                    Problem(named(name), f"{name} is missing.", "Give it; times are in s.")
+                    for name in missing
+                ]
             )
     else:
         own = given.model_dump(exclude_defaults=True)
@@ -270,7 +293,11 @@ def scenario_of(given: Scenario | None, system: System, keys: Mapping[str, Any])
         raise ShipcosimError(problems) from None
     if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
         raise ShipcosimError(problems)
-    return scenario if given is None else given.model_copy(update={name: getattr(scenario, name) for name in entries})
+    return (
+        scenario
+        if given is None
+        else given.model_copy(update={name: getattr(scenario, name) for name in entries})
+    )
 
 
 def with_osp_events(
@@ -295,7 +322,9 @@ def with_osp_events(
     return scenario.model_copy(update=update), list(read.remarks)
 
 
-def values_of_sets(parameters: Iterable[AnyPath], system: System) -> tuple[dict[str, Any], list[Problem]]:
+def values_of_sets(
+    parameters: Iterable[AnyPath], system: System
+) -> tuple[dict[str, Any], list[Problem]]:
     """Start values of parameter sets as far as the system has what they are for, and remarks on the rest."""
     values: dict[str, Any] = {}
     remarks: list[Problem] = []
@@ -312,7 +341,9 @@ def path_of_log(given: AnyPath) -> Path:
     return path if path.exists() else library.named("example", str(given)) or path
 
 
-def source_of(log: Any, channels: AnyPath | None) -> tuple[AnyPath | xarray.Dataset, AnyPath | None]:
+def source_of(
+    log: Any, channels: AnyPath | None
+) -> tuple[AnyPath | xarray.Dataset, AnyPath | None]:
     """A log as the rooms below take it, with its channel file."""
     if isinstance(log, Log):
         return log.source, log.channels if channels is None else channels
@@ -321,7 +352,9 @@ def source_of(log: Any, channels: AnyPath | None) -> tuple[AnyPath | xarray.Data
     if hasattr(log, "data_vars"):
         return log, channels
     if not isinstance(log, (str, os.PathLike)):
-        raise ShipcosimError(Problem("log", f"{log!r:.60} is neither a path nor a name.", "Give one of them."))
+        raise ShipcosimError(
+            Problem("log", f"{log!r:.60} is neither a path nor a name.", "Give one of them.")
+        )
     return path_of_log(log), channels
 
 
@@ -334,16 +367,23 @@ def sources_of(logs: Any, channels: AnyPath | None) -> tuple[list[Any], AnyPath 
     return found, channels
 
 
-def check_inputs(logs: Iterable[Any], channels: AnyPath | None, causes: AnyPath | None = None) -> None:
+def check_inputs(
+    logs: Iterable[Any], channels: AnyPath | None, causes: AnyPath | None = None
+) -> None:
     """Raise ShipcosimError where a file or folder that was given is not there."""
     problems = []
-    for path, what in (*((log, "file of measured data") for log in logs), (channels, "channel file")):
+    for path, what in (
+        *((log, "file of measured data") for log in logs),
+        (channels, "channel file"),
+    ):
         if isinstance(path, (str, os.PathLike)) and not Path(path).is_file():
             names = library.names("example") if what == "file of measured data" else ()
             remedy = suggestion(str(path), names) if names else "Give the path of one."
             problems.append(Problem(str(path), f"There is no such {what}.", remedy))
     if causes is not None and not Path(causes).is_dir():
-        problems.append(Problem(str(causes), "There is no such folder of causes.", "Give the path of one."))
+        problems.append(
+            Problem(str(causes), "There is no such folder of causes.", "Give the path of one.")
+        )
     if problems:
         raise ShipcosimError(problems)
 

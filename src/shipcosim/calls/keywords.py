@@ -30,7 +30,9 @@ def with_known_keywords(function: Function) -> Function:
     """
     signature = inspect.signature(function)
     parameters = signature.parameters.values()
-    known = [one.name for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)]
+    known = [
+        one.name for one in parameters if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
+    ]
     if any(one.kind is one.VAR_KEYWORD for one in parameters):
         known += RunKeywords.__annotations__
 
@@ -38,7 +40,9 @@ def with_known_keywords(function: Function) -> Function:
     def call(*arguments, **keywords):
         where = f"{function.__name__}()"
         unknown = [
-            Problem(where, f"There is no keyword '{k}'.", suggestion(k, known)) for k in keywords if k not in known
+            Problem(where, f"There is no keyword '{k}'.", suggestion(k, known))
+            for k in keywords
+            if k not in known
         ]
         if unknown:
             raise ShipcosimError(unknown)

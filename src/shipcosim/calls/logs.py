@@ -165,7 +165,9 @@ def diagnose(
         if several:
             joint = diagnose_jointly(sources, ship, channels, causes, progress, **options)
             return DiagnosisOfLogs(**parts_of(joint))
-        return DiagnosisOfLog(**parts_of(diagnose(sources[0], ship, channels, causes, progress, **options)))
+        return DiagnosisOfLog(
+            **parts_of(diagnose(sources[0], ship, channels, causes, progress, **options))
+        )
 
     return _written(result_in, out, force, progress)
 
@@ -222,7 +224,9 @@ def replay(
     check_inputs([source], channels)
     if out is not None:
         check_targets(Path(out))
-    systems, remarks = _replayed_systems(SYSTEM_OF_LOGS if system is None else system, before, parameters)
+    systems, remarks = _replayed_systems(
+        SYSTEM_OF_LOGS if system is None else system, before, parameters
+    )
     times = in_seconds({"horizon": horizon}, ["horizon"])
     found = replay_log(source, systems, channels, horizon=times["horizon"], progress=progress)
     parts = parts_of(found)
@@ -243,8 +247,15 @@ def _replayed_systems(
     if parameters:
         values, remarks = values_of_sets(parameters, system)
         after = with_values(system, values, named("parameters"))
-        return {"before": system if before is None else reading.system(before, "before"), "after": after}, remarks
-    if before is None and not isinstance(given, (System, SystemStructure)) and Path(given).name == EXTENDED[0]:
+        return {
+            "before": system if before is None else reading.system(before, "before"),
+            "after": after,
+        }, remarks
+    if (
+        before is None
+        and not isinstance(given, (System, SystemStructure))
+        and Path(given).name == EXTENDED[0]
+    ):
         before = _extended_from(system, str(given))
     if before is None:
         return {"simulated": system}, []
@@ -302,7 +313,9 @@ def calibrate(
         return Calibration(**parts_of(calibrate(sources, ship, channels, causes, progress)))
     check_targets(Path(out))
     with staged(Path(out), CALIBRATED, force=force) as stage:
-        result = Calibration(**parts_of(calibrate(sources, ship, channels, causes, progress, out=stage)))
+        result = Calibration(
+            **parts_of(calibrate(sources, ship, channels, causes, progress, out=stage))
+        )
         _say(progress, WRITING)
         result.write(stage)
     return result
@@ -359,7 +372,9 @@ def sea_trials(
         if stage is not None and found.findings:
             structure = given if isinstance(given, SystemStructure) else read(ship.file)
             extend(structure, found.findings, stage, catalogue=read_catalogue(causes))
-        return SeaTrials(**parts_of(found), name=name_of_log(source), system=ship.name, orders=orders)
+        return SeaTrials(
+            **parts_of(found), name=name_of_log(source), system=ship.name, orders=orders
+        )
 
     return _written(result_in, out, force, progress)
 
@@ -372,7 +387,10 @@ def ship_of(system: AnySystem | None) -> System | SystemStructure:
 
 
 def _written(
-    result_in: Callable[[Path | None], Saved], out: AnyPath | None, force: bool, progress: Progress | None
+    result_in: Callable[[Path | None], Saved],
+    out: AnyPath | None,
+    force: bool,
+    progress: Progress | None,
 ) -> Saved:
     """A result, and its files where a folder is given: all of them, or none.
 

@@ -31,7 +31,15 @@ from shipcosim.cosim import simulate as simulate_system
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
-from shipcosim.scenario import Scenario, check_scenario, check_times, judge, units_of, with_numbers, within_run
+from shipcosim.scenario import (
+    Scenario,
+    check_scenario,
+    check_times,
+    judge,
+    units_of,
+    with_numbers,
+    within_run,
+)
 from shipcosim.ssp import System, settings_of_one, with_values
 from shipcosim.staging import check_targets, set_file_aside
 
@@ -93,7 +101,9 @@ class PreparedRun:
 
         # The state is written after the results, so that earlier states are kept until there is a new one.
         snapshots: list[Snapshot] = []
-        options = self.options if state_file is None else replace(self.options, store=snapshots.append)
+        options = (
+            self.options if state_file is None else replace(self.options, store=snapshots.append)
+        )
         try:
             table = simulate_system(self.system, self.scenario, options)
         except (Interrupted, RunError) as stop:
@@ -120,16 +130,24 @@ class PreparedRun:
         # What a run was is kept in its table, and so in result.nc and on every page that is made of it.
         said = [str(remark) for remark in self.remarks]
         during = json.loads(table.attrs.get("remarks", "[]"))
-        table = table.assign_attrs(remarks=json.dumps([*said, *during]), changed=json.dumps(list(self.changed)))
+        table = table.assign_attrs(
+            remarks=json.dumps([*said, *during]), changed=json.dumps(list(self.changed))
+        )
         reached, late = within_run(self.scenario, table, self.planned)
-        in_numbers = with_numbers(self.scenario.model_copy(update={"expect": reached}), units_of(self.system))
+        in_numbers = with_numbers(
+            self.scenario.model_copy(update={"expect": reached}), units_of(self.system)
+        )
         verdicts = judge(table, in_numbers)
         result = Run(table, self.scenario, self.system, tuple(verdicts), tuple(late), self.remarks)
-        return replace(result, table=table.assign_attrs(not_reached=json.dumps(result.claims_not_reached())))
+        return replace(
+            result, table=table.assign_attrs(not_reached=json.dumps(result.claims_not_reached()))
+        )
 
     def part(self, table: xarray.Dataset) -> Run:
         """The part of a run that did not get to its end; nothing is judged."""
-        return Run(table.assign_attrs(changed=json.dumps(list(self.changed))), self.scenario, self.system)
+        return Run(
+            table.assign_attrs(changed=json.dumps(list(self.changed))), self.scenario, self.system
+        )
 
     def _save_part(self, stop: Interrupted | RunError, out: AnyPath, force: bool) -> None:
         """Save the rows so far, unless there are none."""
@@ -249,8 +267,12 @@ def prepare_run(
     # What runs in place of components' own FMUs is part of the scenario, so that the table repeats the run.
     swapped = {name: str(path) for name, path in fmus_of(components).items()}
     given = given.model_copy(update={"components": given.components | swapped})
-    times = without_none({"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval})
-    happening = scenario_of(given, system, times | {"set": fitting | start_values, "events": list(events)})
+    times = without_none(
+        {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
+    )
+    happening = scenario_of(
+        given, system, times | {"set": fitting | start_values, "events": list(events)}
+    )
     how = options_of(options)
     texts = [
         *changed,
@@ -375,7 +397,8 @@ def prepare_simulation(
     if isinstance(scenario, (str, os.PathLike)) and not is_osp(scenario):
         scenario = read_scenario(scenario)
     elif not isinstance(scenario, Scenario):
-        osp_events, scenario = scenario, None
+        osp_events = scenario
+        scenario = None
     ship = system_for(system, scenario, parameters, components, strict)
 
     # A run that continues has the start time of the run before; a scenario's times are on a clock that starts at 0.
@@ -386,13 +409,17 @@ def prepare_simulation(
     how = options_of({"start_time": start_time, **options, "inputs": inputs})
     start_values = settings_of_one(ship, mapping("set", set))
     with_values(ship, start_values, named("set"))
-    times = without_none({"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval})
+    times = without_none(
+        {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
+    )
     happening = scenario_of(scenario, ship, times | {"set": start_values, "events": list(events)})
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
     texts = changes(start_values, parameters, components, (), how)
     if scenario is not None:
         texts += times_changed(times, happening)
-    return _prepared(ship, happening, how, texts, remarks, 0.0 if scenario is None else scenario.stop_time)
+    return _prepared(
+        ship, happening, how, texts, remarks, 0.0 if scenario is None else scenario.stop_time
+    )
 
 
 def system_for(
@@ -404,7 +431,9 @@ def system_for(
 ) -> System:
     """The checked system that is given, or the scenario's, with the scenario's parameter sets and FMUs."""
     if system is None and scenario is None:
-        raise ShipcosimError(Problem("simulate", "system is missing.", "Give a system or a scenario."))
+        raise ShipcosimError(
+            Problem("simulate", "system is missing.", "Give a system or a scenario.")
+        )
     if scenario is None or isinstance(system, System):
         assert system is not None
         return Reading(parameters=parameters, components=components, strict=strict).system(system)
@@ -415,14 +444,21 @@ def system_for(
 
 
 def fed_by(
-    table: xarray.Dataset | None, system: System, interpolate: Sequence[str], max_gap: float | str | None
+    table: xarray.Dataset | None,
+    system: System,
+    interpolate: Sequence[str],
+    max_gap: float | str | None,
 ) -> xarray.Dataset | None:
     """The table that feeds a system's inputs, with what its columns do between their rows; arguments of `simulate`."""
     if table is None:
         if interpolate or max_gap is not None:
             found = "There is no table that this could be about."
             raise ShipcosimError(
-                Problem(f"{named('interpolate')}, {named('max_gap')}", found, f"Give one as {named('inputs')}.")
+                Problem(
+                    f"{named('interpolate')}, {named('max_gap')}",
+                    found,
+                    f"Give one as {named('inputs')}.",
+                )
             )
         return None
     longest = in_seconds({"max_gap": max_gap}, ["max_gap"])["max_gap"]
@@ -444,7 +480,9 @@ def options_of(given: Mapping[str, Any]) -> RunOptions:
         If a time is none, or a timeout is given for components that are not isolated.
     """
     if given.get("timeout") is not None and not given.get("isolate"):
-        raise ShipcosimError(Problem(named("timeout"), "Without isolate there is no limit to a component's time."))
+        raise ShipcosimError(
+            Problem(named("timeout"), "Without isolate there is no limit to a component's time.")
+        )
     return RunOptions(**in_seconds(given, ("start_time", "until", "timeout")))
 
 

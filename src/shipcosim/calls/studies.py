@@ -51,7 +51,9 @@ class PlannedStudy:
     def run(self, **options: Any) -> StudyResult:
         """Run what is not done, and write tables and page; options as of `shipcosim.sweep.run_study`."""
         swept = run_study(self.plan, self.folder, engine=self.engine, **options)
-        result = StudyResult(**parts_of(swept), command=self.command, simulate=lambda n: self.prepare(n).run())
+        result = StudyResult(
+            **parts_of(swept), command=self.command, simulate=lambda n: self.prepare(n).run()
+        )
         result.page().save(self.folder / "report.html")
         return result
 
@@ -65,7 +67,9 @@ class PlannedStudy:
         """
         if not 0 <= number < len(self.plan):
             remedy = f"Runs are numbered from 0 to {len(self.plan) - 1}."
-            raise ShipcosimError(Problem(self.plan.study.name, f"There is no run {number}.", remedy))
+            raise ShipcosimError(
+                Problem(self.plan.study.name, f"There is no run {number}.", remedy)
+            )
         values = [f"{name} {value}" for name, value in self.plan.run(number).columns.items()]
         changed = [f"run {number} of the study {self.plan.study.name}", *values]
         return prepare_run(self.plan.alone(number), changed=changed, engine=self.engine)
@@ -81,7 +85,9 @@ class PlannedStudy:
             Gets the prepared run and the folder ``run-N``, which it replaces.
         """
         if self.plan.study.tune and self._is_there():
-            run_study(self.plan, self.folder, engine=self.engine, at_most=0)  # later trials depend on those done
+            run_study(
+                self.plan, self.folder, engine=self.engine, at_most=0
+            )  # later trials depend on those done
         result = simulate(self.prepare(number), self.folder / f"run-{number}")
         if self._is_there():
             self.run(at_most=0)
@@ -91,7 +97,10 @@ class PlannedStudy:
         """Whether the results in the folder are those of this plan, and not of another one."""
         try:
             about = json.loads((self.folder / "study.json").read_text(encoding="utf-8"))
-            return about["plan"] == self.plan.digest(self.engine) and (self.folder / "runs.parquet").is_file()
+            return (
+                about["plan"] == self.plan.digest(self.engine)
+                and (self.folder / "runs.parquet").is_file()
+            )
         except (OSError, ValueError, KeyError, TypeError):
             return False
 
@@ -144,10 +153,14 @@ def sweep(
         If something does not fit together, or results cannot be written.
     """
     planned = PlannedStudy(study, out=out, engine=engine, set=set)
-    return planned.run(scheduler=scheduler, workers=workers, at_most=at_most, progress=progress, force=force)
+    return planned.run(
+        scheduler=scheduler, workers=workers, at_most=at_most, progress=progress, force=force
+    )
 
 
-def command_of(study: str, out: AnyPath | None, engine: str, start_values: Mapping[str, object] | None) -> str:
+def command_of(
+    study: str, out: AnyPath | None, engine: str, start_values: Mapping[str, object] | None
+) -> str:
     """The command that makes a study, as one types it.
 
     Examples

@@ -117,7 +117,10 @@ def check(
     paths = {os.fspath(one): library.find_any(os.fspath(one)) for one in listed(files)}
     table = None if channels is None else Path(channels)
     found = {name: check_any(path, table, tools) for name, path in paths.items()}
-    held = {name: tuple(held_strictly(problems) if strict else problems) for name, problems in found.items()}
+    held = {
+        name: tuple(held_strictly(problems) if strict else problems)
+        for name, problems in found.items()
+    }
     variables = {name: tuple(rows) for name, path in paths.items() if (rows := variables_in(path))}
     estimates = {name: tuple(rows) for name, path in paths.items() if (rows := estimates_in(path))}
     return CheckedFiles(held, variables, estimates)
@@ -183,14 +186,19 @@ def compare(
     system, scenario, remarks = system_and_scenario(what, reading, keys, events)
     flaws = [problem for problem in system.remarks if problem.flaw]
     with _as_read(what, system, scenario, parameters) if as_read else nullcontext({}) as tools:
-        found = compare(system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools)
+        found = compare(
+            system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools
+        )
     name = scenario.name or system.name
     return EngineComparison(**parts_of(found), name=name, flaws=(*flaws, *remarks))
 
 
 @contextmanager
 def _as_read(
-    given: AnyScenario | AnySystem, system: System, scenario: Scenario, parameters: Sequence[AnyPath]
+    given: AnyScenario | AnySystem,
+    system: System,
+    scenario: Scenario,
+    parameters: Sequence[AnyPath],
 ) -> Iterator[dict[str, Any]]:
     """Arguments with which the tools of a comparison read a system's file themselves.
 
@@ -214,14 +222,21 @@ def _as_read(
     from shipcosim.ssp.portability.as_interpreted import taken_by, told_set
 
     if not isinstance(given, (str, os.PathLike)):
-        raise ShipcosimError(Problem("as_read", "There is no file that a tool could read.", "Give the path of one."))
+        raise ShipcosimError(
+            Problem("as_read", "There is no file that a tool could read.", "Give the path of one.")
+        )
     name = library.find_any(os.fspath(given))
-    path, fmus = Path(name), library.fmus(name)
+    path = Path(name)
+    fmus = library.fmus(name)
     if parameters:
-        raise ShipcosimError(Problem(named("parameters"), "A tool that reads the file itself does not know them."))
+        raise ShipcosimError(
+            Problem(named("parameters"), "A tool that reads the file itself does not know them.")
+        )
     if system.swapped:
         found = f"A tool that reads the file itself runs the FMU that it names for {', '.join(system.swapped)}."
-        raise ShipcosimError(Problem(name, found, f"Compare FMUs in place of others without {named('as_read')}."))
+        raise ShipcosimError(
+            Problem(name, found, f"Compare FMUs in place of others without {named('as_read')}.")
+        )
     if system.experiment.start_time:
         found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
         raise ShipcosimError(Problem(name, found, "Let it start at 0."))
@@ -235,7 +250,9 @@ def _as_read(
         elif path.suffix.lower() == ".ssp":
             packed = path.resolve()
         else:
-            remedy = "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml."
+            remedy = (
+                "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml."
+            )
             raise ShipcosimError(Problem(name, "The tools cannot read this themselves.", remedy))
         yield {
             "readers": readers(packed, scenario, set_name=told_set(name, fmus=fmus)),

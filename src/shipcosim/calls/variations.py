@@ -96,13 +96,19 @@ def simulate_many(
     """
     if engine not in ("native", "fmpy"):
         found = f"engine = {engine!r}."
-        raise ShipcosimError(Problem("simulate_many()", found, "Variations are run by 'native' or 'fmpy'."))
+        raise ShipcosimError(
+            Problem("simulate_many()", found, "Variations are run by 'native' or 'fmpy'.")
+        )
     if scenario is not None:
         scenario = read_scenario(scenario)
     ship = system_for(system, scenario, components=components)
     start_time = ship.experiment.start_time if scenario is None else 0.0
-    times = without_none({"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval})
-    happening = scenario_of(scenario, ship, times | {"set": mapping("set", set), "events": list(events)})
+    times = without_none(
+        {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
+    )
+    happening = scenario_of(
+        scenario, ship, times | {"set": mapping("set", set), "events": list(events)}
+    )
     varied = [_variation(ship, happening, dict(entries)) for entries in _records(variations)]
     wanted = [record] if isinstance(record, str) else record
     return run_variations(
@@ -129,7 +135,11 @@ def _records(variations: Any) -> list[Mapping[str, Any]]:
 def _variation(system: System, scenario: Scenario, given: dict[str, Any]) -> Variation:
     """A variation as the engine takes it: parameter sets as values, its own events and end in its scenario."""
     fitting, _ = values_of_sets(given.pop("parameters", ()), system)
-    own = without_none({"stop_time": given.pop("stop_time", None)}) | {"events": list(given.pop("events", ()))}
-    values = {name: value.item() if hasattr(value, "item") else value for name, value in given.items()}
+    own = without_none({"stop_time": given.pop("stop_time", None)}) | {
+        "events": list(given.pop("events", ()))
+    }
+    values = {
+        name: value.item() if hasattr(value, "item") else value for name, value in given.items()
+    }
     is_plain = not own["events"] and "stop_time" not in own
     return Variation(fitting | values, scenario if is_plain else scenario_of(scenario, system, own))

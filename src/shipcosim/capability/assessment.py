@@ -16,7 +16,9 @@ __all__ = ["ship_folder", "vessel_of"]
 
 
 def vessel_of(
-    system: str | os.PathLike[str], parameters: Sequence[str | os.PathLike[str]] = (), ship: str | None = None
+    system: str | os.PathLike[str],
+    parameters: Sequence[str | os.PathLike[str]] = (),
+    ship: str | None = None,
 ) -> Vessel:
     """The vessel of a system whose capability is asked for.
 
@@ -63,17 +65,24 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     else:
         bound = [] if osp_file(system) is not None else read(system).parameter_sets
         names = [Path(one).stem for one in reversed([*bound, *map(str, sets)])]
-    for folder in (Path(ship), *(ships / name for name in names)) if ship else (ships / name for name in names):
+    for folder in (
+        (Path(ship), *(ships / name for name in names))
+        if ship
+        else (ships / name for name in names)
+    ):
         if (folder / "ship.toml").is_file():
             return folder
     known = [file.parent.name for file in sorted(ships.glob("*/ship.toml"))]
     found = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
-    raise ShipcosimError(Problem("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip()))
+    raise ShipcosimError(
+        Problem("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
+    )
 
 
 def _ships(system: Path) -> Path:
     """Nearest folder of ships above a system, else above the working folder."""
     above = [*system.resolve().parents, Path.cwd(), *Path.cwd().parents]
     return next(
-        (folder / "ssp" / "ships" for folder in above if (folder / "ssp" / "ships").is_dir()), Path("ssp/ships")
+        (folder / "ssp" / "ships" for folder in above if (folder / "ssp" / "ships").is_dir()),
+        Path("ssp/ships"),
     )

@@ -64,7 +64,10 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
 
 def _scale(actuators: Sequence[Actuator]) -> NDArray | None:
     """Sizes of force and moment that make them of one size; None where there is no thrust."""
-    force = sum(max((float(np.abs(piece).max(initial=0.0)) for piece in a.pieces), default=0.0) for a in actuators)
+    force = sum(
+        max((float(np.abs(piece).max(initial=0.0)) for piece in a.pieces), default=0.0)
+        for a in actuators
+    )
     lever = max((float(np.hypot(a.x, a.y)) for a in actuators), default=0.0)
     return np.array([force, force, force * max(lever, 1.0)]) if force > 0.0 else None
 

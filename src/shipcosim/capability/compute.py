@@ -40,12 +40,20 @@ def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case
     given = [tuple(dict.fromkeys(group)) for group in groups]
     unknown = dict.fromkeys(name for group in given for name in group if name not in known)
     if unknown:
-        raise ShipcosimError([Problem("--failure", f"'{n}' is no thruster.", suggestion(n, known)) for n in unknown])
-    lost = {frozenset(group): f"without {' and '.join(group)}" for group in [*((name,) for name in known), *given]}
+        raise ShipcosimError(
+            [Problem("--failure", f"'{n}' is no thruster.", suggestion(n, known)) for n in unknown]
+        )
+    lost = {
+        frozenset(group): f"without {' and '.join(group)}"
+        for group in [*((name,) for name in known), *given]
+    }
     for bus, fed in vessel.buses.items():
         if len(fed) > 1:
             lost[frozenset(fed)] = f"without bus {bus} ({' and '.join(fed)})"
-    return (Case("intact", ()), *(Case(name, tuple(n for n in known if n in group)) for group, name in lost.items()))
+    return (
+        Case("intact", ()),
+        *(Case(name, tuple(n for n in known if n in group)) for group, name in lost.items()),
+    )
 
 
 def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capability:
@@ -66,12 +74,18 @@ def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capab
     for case in cases:
         working, failed = case.split(vessel.thrusters)
         shares[LEVEL_1].append([level_1_share(vessel.hull, working, failed, c) for c in CONDITIONS])
-        shares[SIMULATOR].append([simulated_share(vessel.simulated, working, c) for c in CONDITIONS])
+        shares[SIMULATOR].append(
+            [simulated_share(vessel.simulated, working, c) for c in CONDITIONS]
+        )
     with np.errstate(divide="ignore"):
-        return Capability(vessel, cases, {method: 1.0 / np.array(found) for method, found in shares.items()})
+        return Capability(
+            vessel, cases, {method: 1.0 / np.array(found) for method, found in shares.items()}
+        )
 
 
-def level_1_share(hull: Hull, working: Sequence[Thruster], failed: Sequence[Thruster], condition: Condition) -> NDArray:
+def level_1_share(
+    hull: Hull, working: Sequence[Thruster], failed: Sequence[Thruster], condition: Condition
+) -> NDArray:
     """Share of the load of a condition that is balanced at most, by the formulae of Level 1.
 
     Parameters
@@ -86,7 +100,9 @@ def level_1_share(hull: Hull, working: Sequence[Thruster], failed: Sequence[Thru
         Weather from each of `DIRECTIONS`. [1]
     """
     actuators = [
-        _actuator(t, BETA_MISC * ventilation(t, hull, condition, DIRECTIONS), sectors(t, working, failed))
+        _actuator(
+            t, BETA_MISC * ventilation(t, hull, condition, DIRECTIONS), sectors(t, working, failed)
+        )
         for t in working
     ]
     return largest_share(actuators, _load(level_1_parts(hull, condition, DIRECTIONS)))

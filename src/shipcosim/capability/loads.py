@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from shipcosim.capability.conditions import Condition
 from shipcosim.capability.particulars import Hull
 
-AIR_DENSITY, WATER_DENSITY, GRAVITY = 1.226, 1026.0, 9.81  # kg/m3, kg/m3, m/s2; the standard does not say its g
+AIR_DENSITY = 1.226  # kg/m3, kg/m3, m/s2; the standard does not say its g
+WATER_DENSITY = 1026.0
+GRAVITY = 9.81
 
 
 def level_1_loads(hull: Hull, condition: Condition, weather_from: NDArray) -> NDArray:
@@ -68,7 +70,9 @@ def current(hull: Hull, speed: float, current_from: NDArray) -> NDArray:
     q = 0.5 * WATER_DENSITY * speed**2
     lever = hull.current_centre_x + np.clip(0.4 * _ahead(current_from), -0.2, 0.25) * hull.length
     across = q * hull.current_area_side * 0.6 * np.sin(current_from)
-    return _load(hull, -0.07 * q * hull.breadth * hull.draught * np.cos(current_from), across, lever)
+    return _load(
+        hull, -0.07 * q * hull.breadth * hull.draught * np.cos(current_from), across, lever
+    )
 
 
 def waves(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
@@ -88,12 +92,19 @@ def waves(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
         X, Y, N. [N, N, N.m]
     """
     q = 0.5 * WATER_DENSITY * GRAVITY * condition.wave_height**2 * 0.09
-    turned, period = _turned(waves_from), condition.zero_crossing_period
-    bow, stern = 0.8 * hull.bow_angle**0.45, 0.7 * np.clip(hull.waterplane_aft, 0.85, 1.15) ** 2
+    turned = _turned(waves_from)
+    period = condition.zero_crossing_period
+    bow = 0.8 * hull.bow_angle**0.45
+    stern = 0.7 * np.clip(hull.waterplane_aft, 0.85, 1.15) ** 2
     shape = bow + turned / np.pi * (stern - bow)
     course = 0.05 + 0.95 * np.arctan(1.45 * (turned - 1.75))
     along = q * hull.breadth * shape * course * _short(period / (0.9 * hull.length**0.33))
-    across = q * hull.submerged_length * np.sin(waves_from) * _short(period / (0.75 * np.sqrt(hull.breadth)))
+    across = (
+        q
+        * hull.submerged_length
+        * np.sin(waves_from)
+        * _short(period / (0.75 * np.sqrt(hull.breadth)))
+    )
     lever = hull.submerged_centre_x + (0.05 - 0.14 * turned / np.pi) * hull.submerged_length
     return _load(hull, along, across, lever)
 

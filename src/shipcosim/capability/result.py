@@ -18,7 +18,8 @@ from shipcosim.capability.vessel import Vessel
 if TYPE_CHECKING:
     import xarray
 
-LEVEL_1, SIMULATOR = "level 1", "simulator"
+LEVEL_1 = "level 1"
+SIMULATOR = "simulator"
 """The two ways in which loads and thrust are computed."""
 
 BALANCED = 1.0 + 1e-6
@@ -37,7 +38,9 @@ class Case:
     def split(self, thrusters: Iterable[Thruster]) -> tuple[list[Thruster], list[Thruster]]:
         """Those that work, and those that do not."""
         listed = list(thrusters)
-        return [t for t in listed if t.name not in self.failed], [t for t in listed if t.name in self.failed]
+        return [t for t in listed if t.name not in self.failed], [
+            t for t in listed if t.name in self.failed
+        ]
 
 
 @dataclass(frozen=True)
@@ -69,15 +72,23 @@ class Capability:
         counts = [0 < number <= (most_lost or number) for number in lost]
         return self.numbers(method)[counts].min(axis=0)
 
-    def elements(self, method: str = LEVEL_1, *, most_lost: int | None = None) -> tuple[int, int, int, int]:
+    def elements(
+        self, method: str = LEVEL_1, *, most_lost: int | None = None
+    ) -> tuple[int, int, int, int]:
         """A, B, C, D of the notation.
 
         A: the lowest number of the intact ship with the weather within 30 deg of the bow; B: from anywhere; C and D:
         the same after the worst single failure, with `most_lost` of so many thrusters at most.
         """
         near_bow = np.minimum(DIRECTIONS, 2.0 * np.pi - DIRECTIONS) <= BOW_SECTOR + 1e-9
-        intact, worst = self.numbers(method)[0], self.worst(method, most_lost=most_lost)
-        return int(intact[near_bow].min()), int(intact.min()), int(worst[near_bow].min()), int(worst.min())
+        intact = self.numbers(method)[0]
+        worst = self.worst(method, most_lost=most_lost)
+        return (
+            int(intact[near_bow].min()),
+            int(intact.min()),
+            int(worst[near_bow].min()),
+            int(worst.min()),
+        )
 
 
 def notation(capability: Capability) -> str:
@@ -90,18 +101,25 @@ def numbers_table(capability: Capability) -> str:
     written = io.StringIO()
     rows = csv.writer(written, lineterminator="\n")
     columns = {
-        f"{method}, {name} [1]": values for method in capability.used for name, values in _named(capability, method)
+        f"{method}, {name} [1]": values
+        for method in capability.used
+        for name, values in _named(capability, method)
     }
     rows.writerow(["weather_from [deg]", *columns])
     for k, angle in enumerate(DIRECTIONS):
-        rows.writerow([round(float(np.degrees(angle)), 9), *(int(values[k]) for values in columns.values())])
+        rows.writerow(
+            [round(float(np.degrees(angle)), 9), *(int(values[k]) for values in columns.values())]
+        )
     return written.getvalue()
 
 
 def _named(capability: Capability, method: str) -> list[tuple[str, NDArray]]:
     """Numbers of each case, and of the worst failure, by name."""
     names = [case.name for case in capability.cases]
-    return [*zip(names, capability.numbers(method), strict=True), ("worst failure", capability.worst(method))]
+    return [
+        *zip(names, capability.numbers(method), strict=True),
+        ("worst failure", capability.worst(method)),
+    ]
 
 
 def dataset(capability: Capability) -> xarray.Dataset:
@@ -121,23 +139,42 @@ def dataset(capability: Capability) -> xarray.Dataset:
             {"units": "deg", "long_name": "clockwise from the bow"},
         ),
     }
-    for name, unit in {"wind_speed": "m/s", "wave_height": "m", "wave_period": "s", "current_speed": "m/s"}.items():
+    for name, unit in {
+        "wind_speed": "m/s",
+        "wave_height": "m",
+        "wave_period": "s",
+        "current_speed": "m/s",
+    }.items():
         coordinates[name] = ("condition", [getattr(c, name) for c in CONDITIONS], {"units": unit})
-    about = {"units": "1", "long_name": "share of the thrust that the balance uses; above 1 there is none"}
+    about = {
+        "units": "1",
+        "long_name": "share of the thrust that the balance uses; above 1 there is none",
+    }
     return xarray.Dataset(
         {
             "thrust_used": (("basis", "case", "condition", "weather_from"), used, about),
-            "number": (("basis", "case", "weather_from"), numbers, {"units": "1", "long_name": "DP capability number"}),
+            "number": (
+                ("basis", "case", "weather_from"),
+                numbers,
+                {"units": "1", "long_name": "DP capability number"},
+            ),
         },
         coordinates,
-        {"ship": capability.vessel.name, "system": capability.vessel.system, "notation": notation(capability)}
+        {
+            "ship": capability.vessel.name,
+            "system": capability.vessel.system,
+            "notation": notation(capability),
+        }
         | {"dynamic_factor": DYNAMIC_FACTOR},
     )
 
 
 def as_json(capability: Capability) -> dict[str, Any]:
     """The numbers for programs."""
-    lists = {m: {name: values.tolist() for name, values in _named(capability, m)} for m in capability.used}
+    lists = {
+        m: {name: values.tolist() for name, values in _named(capability, m)}
+        for m in capability.used
+    }
     return {
         "schema": SCHEMA,
         "ship": capability.vessel.name,

@@ -18,7 +18,10 @@ CORNERS = np.radians(5.0)
 
 _TURN = 2.0 * np.pi
 _LIVE_DISTANCE = 15.0  # diameters within which a working thruster must not be blown at
-_DEAD_DISTANCE = {False: 8.0, True: 4.0}  # diameters within which one that stands still costs thrust: open, ducted
+_DEAD_DISTANCE = {
+    False: 8.0,
+    True: 4.0,
+}  # diameters within which one that stands still costs thrust: open, ducted
 _DEAD_WIDTH = {False: 0.6, True: 0.35}
 
 
@@ -39,7 +42,9 @@ class Sector:
     share: float = 0.0
 
 
-def sectors(thruster: Thruster, working: Iterable[Thruster], failed: Iterable[Thruster]) -> list[Sector]:
+def sectors(
+    thruster: Thruster, working: Iterable[Thruster], failed: Iterable[Thruster]
+) -> list[Sector]:
     """Sectors in which a thruster must not push, or loses.
 
     Parameters
@@ -65,13 +70,18 @@ def sectors(thruster: Thruster, working: Iterable[Thruster], failed: Iterable[Th
 def _flushing(thruster: Thruster, other: Thruster, is_live: bool) -> Sector | None:
     if other is thruster or other.kind == "tunnel":
         return None
-    x, y = thruster.x - other.x, thruster.y - other.y
+    x = thruster.x - other.x
+    y = thruster.y - other.y
     distance = float(np.hypot(x, y)) / thruster.diameter
     if distance == 0.0:
         raise ValueError(f"{thruster.name} and {other.name} are in the same place")
     middle = float(np.arctan2(y, x))
     if is_live:
-        return Sector(middle, float(np.arctan(0.1 + 1.0 / distance))) if distance < _LIVE_DISTANCE else None
+        return (
+            Sector(middle, float(np.arctan(0.1 + 1.0 / distance)))
+            if distance < _LIVE_DISTANCE
+            else None
+        )
     if distance >= _DEAD_DISTANCE[thruster.ducted]:
         return None
     left = 1.0 - 1.0 / (0.02 * distance**2 + 0.25 * distance + 1.2)
@@ -103,7 +113,9 @@ def _of_azimuth(thrust: float, narrowed: Sequence[Sector]) -> list[NDArray]:
     """Sectors of the disc: cut at every edge and middle of a narrowed one, none wider than half a turn."""
     if not narrowed:
         return [thrust * _directions(np.arange(0.0, _TURN - 1e-9, CORNERS))]
-    cuts = {edge % _TURN for s in narrowed for edge in (s.middle - s.half, s.middle, s.middle + s.half)}
+    cuts = {
+        edge % _TURN for s in narrowed for edge in (s.middle - s.half, s.middle, s.middle + s.half)
+    }
     ordered = sorted(cuts)
     found = []
     for start, end in zip(ordered, [*ordered[1:], ordered[0] + _TURN], strict=True):

@@ -18,7 +18,9 @@ SEED = 1
 """Of the frequencies of the waves' components. Others change a load by a few percent."""
 
 
-def simulated_parts(ship: Simulated, condition: Condition, weather_from: NDArray) -> dict[str, NDArray]:
+def simulated_parts(
+    ship: Simulated, condition: Condition, weather_from: NDArray
+) -> dict[str, NDArray]:
     """Mean loads of wind, current and waves on the ship at rest, by their sources.
 
     Parameters
@@ -33,9 +35,11 @@ def simulated_parts(ship: Simulated, condition: Condition, weather_from: NDArray
     dict of (n, 3) array
         X, Y, N of ``"wind"``, ``"current"``, ``"waves"``. [N, N, N.m]
     """
-    speed, flow = condition.wind_speed, condition.current_speed
+    speed = condition.wind_speed
+    flow = condition.current_speed
     sea = components(condition.wave_height, condition.wave_period, 0.0, PEAK_ENHANCEMENT, SEED)
-    ahead, across = flow * np.cos(weather_from), flow * np.sin(weather_from)
+    ahead = flow * np.cos(weather_from)
+    across = flow * np.sin(weather_from)
     loads = {
         "wind": wind_loads(np.full_like(weather_from, speed), wrap(weather_from), wind=ship.wind),
         "current": hull_loads(ahead, across, np.zeros_like(ahead), hull=ship.hull),

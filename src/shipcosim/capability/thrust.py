@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 from shipcosim.capability.conditions import Condition
 from shipcosim.capability.particulars import Hull
 
-ETA_1 = {"open": 800.0, "cycloidal": 900.0, "tunnel": 900.0, "contra-rotating": 950.0, "ducted": 1200.0}
+ETA_1 = {
+    "open": 800.0,
+    "cycloidal": 900.0,
+    "tunnel": 900.0,
+    "contra-rotating": 950.0,
+    "ducted": 1200.0,
+}
 ETA_2_INLET = {"broken": 1.0, "rounded": 1.07, "other": 0.93}
 ETA_2_ASTERN = {
     ("fixed", False): 0.9,
@@ -59,7 +65,9 @@ class Thruster:
     angle: float = 0.0
 
 
-def nominal_thrust(diameter: float, power: float, eta_1: float, eta_2: float, eta_m: float) -> float:
+def nominal_thrust(
+    diameter: float, power: float, eta_1: float, eta_2: float, eta_m: float
+) -> float:
     """Thrust at the bollard, eta1 eta2 (D P eta_M)^(2/3) with D in m and P in kW.
 
     Parameters
@@ -84,7 +92,9 @@ def nominal_thrust(diameter: float, power: float, eta_1: float, eta_2: float, et
     return eta_1 * eta_2 * (diameter * power / 1000.0 * eta_m) ** (2.0 / 3.0)
 
 
-def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_from: NDArray) -> NDArray:
+def ventilation(
+    thruster: Thruster, hull: Hull, condition: Condition, weather_from: NDArray
+) -> NDArray:
     """Share of the thrust that a propeller near a moving surface keeps.
 
     Phi(2 (2 xi / D) - 1.5 sigma), Phi the normal distribution, xi the submergence of the shaft, and sigma a measure of
@@ -105,7 +115,8 @@ def ventilation(thruster: Thruster, hull: Hull, condition: Condition, weather_fr
     """
     # In [-π, π).
     wrapped = (weather_from + np.pi) % (2.0 * np.pi) - np.pi
-    x, turned = thruster.x - hull.midship_x, np.abs(wrapped) / np.pi
+    x = thruster.x - hull.midship_x
+    turned = np.abs(wrapped) / np.pi
     period = 0.64 * np.sqrt(hull.length) / condition.zero_crossing_period
     heave = 0.85 * np.where(turned <= 0.5, 1.0 + 0.38 * turned, 1.38 - 0.38 * turned)
     place = 1.0 + 0.4 * min(x, 0.0) / hull.length

@@ -10,7 +10,14 @@ from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
 from shipcosim.capability.particulars import CHOICES, Hull, HullParticulars, ThrusterParticulars
-from shipcosim.capability.thrust import ETA_1, ETA_2_ASTERN, ETA_2_INLET, ETA_M, Thruster, nominal_thrust
+from shipcosim.capability.thrust import (
+    ETA_1,
+    ETA_2_ASTERN,
+    ETA_2_INLET,
+    ETA_M,
+    Thruster,
+    nominal_thrust,
+)
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
@@ -102,22 +109,42 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     """
     body = _vessel_of(system)
     units = _thrusters_of(system, body.name)
-    asked = {HULL_FILE: (HullParticulars,)} | {_file(name): (ThrusterParticulars,) for name in units}
-    if left_out := [f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out]:
+    asked = {HULL_FILE: (HullParticulars,)} | {
+        _file(name): (ThrusterParticulars,) for name in units
+    }
+    if left_out := [
+        f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out
+    ]:
         raise ShipcosimError(
-            Problem(system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters.")
+            Problem(
+                system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
+            )
         )
     said = ship.parameter_set(asked)
-    values = {file: {name: q.value for name, q in entries.items()} for file, entries in said.items()}
-    problems = [p for name in units for p in _problems(ship, name, units[name], values[_file(name)])]
+    values = {
+        file: {name: q.value for name, q in entries.items()} for file, entries in said.items()
+    }
+    problems = [
+        p for name in units for p in _problems(ship, name, units[name], values[_file(name)])
+    ]
     if problems:
         raise ShipcosimError(problems)
     known = {name: _real(body, name) for name in ("length", "breadth", "draught")}
     hull = Hull(**values[HULL_FILE], **known)
-    made = [_thruster(unit, ThrusterParticulars(**values[_file(name)]), hull) for name, unit in units.items()]
-    listed = [Particular(f, q.description, q.value, q.unit, q.origin) for f, e in said.items() for q in e.values()]
-    simulated, buses = _simulated(body, units), _buses(system, list(units))
-    return Vessel(ship.name, ship.description, system.name, hull, tuple(made), simulated, tuple(listed), buses)
+    made = [
+        _thruster(unit, ThrusterParticulars(**values[_file(name)]), hull)
+        for name, unit in units.items()
+    ]
+    listed = [
+        Particular(f, q.description, q.value, q.unit, q.origin)
+        for f, e in said.items()
+        for q in e.values()
+    ]
+    simulated = _simulated(body, units)
+    buses = _buses(system, list(units))
+    return Vessel(
+        ship.name, ship.description, system.name, hull, tuple(made), simulated, tuple(listed), buses
+    )
 
 
 def _file(thruster: str) -> str:
@@ -127,18 +154,24 @@ def _file(thruster: str) -> str:
 
 def _vessel_of(system: System) -> Component:
     driven = {target for _, target in _forces(system)}
-    found = [c for n, c in system.components.items() if n in driven and c.fmu.variables.keys() >= _VESSEL]
+    found = [
+        c for n, c in system.components.items() if n in driven and c.fmu.variables.keys() >= _VESSEL
+    ]
     if len(found) != 1:
-        what = "no vessel" if not found else f"{len(found)} vessels, {', '.join(c.name for c in found)},"
-        remedy = (
-            "It needs one whose FMU has the parameters of fmus/vessel, with the forces of thrusters connected to it."
+        what = (
+            "no vessel"
+            if not found
+            else f"{len(found)} vessels, {', '.join(c.name for c in found)},"
         )
+        remedy = "It needs one whose FMU has the parameters of fmus/vessel, with the forces of thrusters connected to it."
         raise ShipcosimError(Problem(system.file, f"{what} found.", remedy))
     return found[0]
 
 
 def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
-    parts = {source: system.components[source] for source, target in _forces(system) if target == vessel}
+    parts = {
+        source: system.components[source] for source, target in _forces(system) if target == vessel
+    }
     found = {name: part for name, part in parts.items() if part.fmu.variables.keys() >= _THRUSTER}
     if not found:
         remedy = "It needs components with the parameters of fmus/azimuth_thruster or fmus/tunnel_thruster."
@@ -149,7 +182,11 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
 def _forces(system: System) -> list[tuple[str, str]]:
     """Names of the components (from, to) that a force `tau_Y` goes between."""
     ends = [(c.source, c.target[0]) for c in system.connections]
-    return [(source[0], target) for source, target in ends if source[0] and target and source[1] == "tau_Y"]
+    return [
+        (source[0], target)
+        for source, target in ends
+        if source[0] and target and source[1] == "tau_Y"
+    ]
 
 
 def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
@@ -168,11 +205,15 @@ def _real(part: Component, name: str) -> float:
     return float(part.start_value(name) or 0.0)
 
 
-def _problems(ship: Ship, name: str, unit: Component, values: Mapping[str, Any]) -> Iterable[Problem]:
+def _problems(
+    ship: Ship, name: str, unit: Component, values: Mapping[str, Any]
+) -> Iterable[Problem]:
     where = str(ship.folder / f"{_file(name)}.toml")
     for key, allowed in CHOICES.items():
         if values[key] not in allowed:
-            yield Problem(f"{where}: {key}", f"found {values[key]!r}.", suggestion(str(values[key]), allowed))
+            yield Problem(
+                f"{where}: {key}", f"found {values[key]!r}.", suggestion(str(values[key]), allowed)
+            )
     if not values["diameter"] and "diameter" not in unit.fmu.variables:
         yield Problem(where, "nothing says diameter [m].", f"The parameter set has none of {name}.")
 
@@ -180,12 +221,25 @@ def _problems(ship: Ship, name: str, unit: Component, values: Mapping[str, Any])
 def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster:
     """A thruster with its nominal thrust."""
     has = unit.fmu.variables
-    kind = "tunnel" if "azimuth" not in has else "azimuth" if unit.start_value("azimuth_rate") else "fixed"
+    kind = (
+        "tunnel"
+        if "azimuth" not in has
+        else "azimuth"
+        if unit.start_value("azimuth_rate")
+        else "fixed"
+    )
     diameter = own.diameter or _real(unit, "diameter")
-    power, ducted = _real(unit, "power_max"), own.propeller == "ducted" and kind != "tunnel"
+    power = _real(unit, "power_max")
+    ducted = own.propeller == "ducted" and kind != "tunnel"
     eta_1 = ETA_1["tunnel" if kind == "tunnel" else own.propeller]
-    eta_2 = (ETA_2_INLET[own.inlet],) * 2 if kind == "tunnel" else (1.0, ETA_2_ASTERN[own.pitch, ducted])
-    ahead, astern = (nominal_thrust(diameter, power, eta_1, eta, ETA_M[own.transmission]) for eta in eta_2)
+    eta_2 = (
+        (ETA_2_INLET[own.inlet],) * 2
+        if kind == "tunnel"
+        else (1.0, ETA_2_ASTERN[own.pitch, ducted])
+    )
+    ahead, astern = (
+        nominal_thrust(diameter, power, eta_1, eta, ETA_M[own.transmission]) for eta in eta_2
+    )
     angles = {"tunnel": 0.5 * math.pi, "azimuth": 0.0}
     return Thruster(
         name=unit.name,
@@ -205,7 +259,10 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
 def _simulated(body: Component, units: Mapping[str, Component]) -> Simulated:
     limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
     return Simulated(
-        _filled(HullParameters, body), _filled(WindParameters, body), _filled(DriftParameters, body), limits
+        _filled(HullParameters, body),
+        _filled(WindParameters, body),
+        _filled(DriftParameters, body),
+        limits,
     )
 
 

@@ -34,13 +34,19 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 exporting = typer.Typer(
-    help="Write a system in a form that other tools run.", rich_markup_mode=None, no_args_is_help=True
+    help="Write a system in a form that other tools run.",
+    rich_markup_mode=None,
+    no_args_is_help=True,
 )
 making = typer.Typer(
-    help="Make a new file that runs, in the project around.", rich_markup_mode=None, no_args_is_help=True
+    help="Make a new file that runs, in the project around.",
+    rich_markup_mode=None,
+    no_args_is_help=True,
 )
 training = typer.Typer(
-    help="Train a learned component from scratch, with a fixed seed.", rich_markup_mode=None, no_args_is_help=True
+    help="Train a learned component from scratch, with a fixed seed.",
+    rich_markup_mode=None,
+    no_args_is_help=True,
 )
 app.command("list", epilog=EXIT_CODES)(guarded(list.list_))
 for _function in (

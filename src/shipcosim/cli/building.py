@@ -14,7 +14,10 @@ from shipcosim.ssp import pack, read_system
 
 
 def build_named(
-    project: Path, names: Collection[str], out: Path, progress: Callable[[int, int], None] | None = None
+    project: Path,
+    names: Collection[str],
+    out: Path,
+    progress: Callable[[int, int], None] | None = None,
 ) -> list[Path]:
     """Build FMUs and pack systems of a project.
 
@@ -39,9 +42,14 @@ def build_named(
     ShipcosimError
         With all problems; what has none is built nevertheless.
     """
-    sources, systems = library.fmu_sources(project), _systems(project)
+    sources = library.fmu_sources(project)
+    systems = _systems(project)
     known = [*sources, *systems]
-    problems = [Problem(n, "There is no such FMU or system.", suggestion(n, known)) for n in names if n not in known]
+    problems = [
+        Problem(n, "There is no such FMU or system.", suggestion(n, known))
+        for n in names
+        if n not in known
+    ]
     jobs = [(_build, path, out) for name, path in sources.items() if not names or name in names]
     jobs += [(_pack, path, out) for name, path in systems.items() if not names or name in names]
     built = []
@@ -91,11 +99,17 @@ def build_native(
     ShipcosimError
         With all problems; what has none is built nevertheless.
     """
-    sources, platforms = library.fmu_sources(project), targets_of(targets)
-    problems = [Problem(n, "There is no such FMU.", suggestion(n, [*sources])) for n in names if n not in sources]
+    sources = library.fmu_sources(project)
+    platforms = targets_of(targets)
+    problems = [
+        Problem(n, "There is no such FMU.", suggestion(n, [*sources]))
+        for n in names
+        if n not in sources
+    ]
     jobs = {name: path for name, path in sources.items() if not names or name in names}
     examples = _parameters_in_systems(project) if jobs else {}
-    built, left = [], []
+    built = []
+    left = []
     for done, (name, path) in enumerate(jobs.items(), start=1):
         try:
             built.append(build_native_fmu(path, out, examples.get(name, ()), platforms))
@@ -127,14 +141,20 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
         together.append({})
         for component in system.components.values():
             kinds = component.fmu.variables
-            given = {name: value for name, value in component.start.items() if kinds[name].causality == "parameter"}
+            given = {
+                name: value
+                for name, value in component.start.items()
+                if kinds[name].causality == "parameter"
+            }
             found.setdefault(component.fmu.path.stem, []).append(given)
             together[-1] = given | together[-1]
     return {name: found.get(name, together) for name in library.fmu_sources(project)}
 
 
 def _systems(project: Path) -> dict[str, Path]:
-    return {f.parent.name: f.parent for f in sorted((project / "ssp").glob("*/SystemStructure.ssd"))}
+    return {
+        f.parent.name: f.parent for f in sorted((project / "ssp").glob("*/SystemStructure.ssd"))
+    }
 
 
 def _build(folder: Path, out: Path) -> Path:

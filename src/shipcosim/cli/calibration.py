@@ -22,7 +22,10 @@ def print_calibration(ship: CalibratedShip, folder: Path, as_json: bool) -> None
         return
     console = Console(highlight=False, soft_wrap=True)
     refused = bool(ship.refusals)
-    console.print(Text("refused" if refused else "calibrated", style="bold red" if refused else "bold green"), end=" ")
+    console.print(
+        Text("refused" if refused else "calibrated", style="bold red" if refused else "bold green"),
+        end=" ",
+    )
     console.print(Text(sentence(ship)))
     for heading, lines in (
         ("Why", ship.refusals),

@@ -19,7 +19,9 @@ def print_capability(capability: Capability, folder: Path, as_json_: bool) -> No
     from rich.text import Text
 
     console = Console(highlight=False, soft_wrap=True)
-    console.print(Text(notation(capability), style="bold"), f"of {capability.vessel.name}, by DNV's formulae")
+    console.print(
+        Text(notation(capability), style="bold"), f"of {capability.vessel.name}, by DNV's formulae"
+    )
     if any(len(case.failed) > 1 for case in capability.cases):
         *_, c, d = capability.elements(most_lost=1)
         console.print(f"Where only one thruster is lost, C and D are {c} and {d}")

@@ -32,7 +32,9 @@ class ProposedFile:
     text: str
 
 
-def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.PathLike | None = None) -> ProposedFile:
+def proposed(
+    log: str | os.PathLike, system: str | None = None, form: str | os.PathLike | None = None
+) -> ProposedFile:
     """What the columns of a log are.
 
     Parameters
@@ -72,9 +74,15 @@ def proposed(log: str | os.PathLike, system: str | None = None, form: str | os.P
     remarks = list(columns.remarks)
     try:
         mapping = ChannelFile(proposal.channels(guessed=True), given)
-        remarks += [said for said in read_log(log, mapping, thrusters).attrs["column_remarks"] if said not in remarks]
+        remarks += [
+            said
+            for said in read_log(log, mapping, thrusters).attrs["column_remarks"]
+            if said not in remarks
+        ]
     except ShipcosimError as error:
-        remarks += [f"The log cannot be read by this proposal yet: {problem}" for problem in error.problems]
+        remarks += [
+            f"The log cannot be read by this proposal yet: {problem}" for problem in error.problems
+        ]
     return ProposedFile(proposal, tuple(remarks), channel_file(str(log), proposal, remarks))
 
 
@@ -94,9 +102,16 @@ def print_channels(proposed: ProposedFile) -> None:
     for guess in proposed.proposal.used:
         sure = Text("guess", style="yellow") if guess.is_guess else Text("used", style="green")
         why = "; ".join(filter(None, (guess.why, *guess.said))) or "its name has one meaning"
-        listed.add_row(Text(" + ".join(guess.channel.columns)), Text(guess.role), sure, Text(f"{guess.in_unit}{why}"))
+        listed.add_row(
+            Text(" + ".join(guess.channel.columns)),
+            Text(guess.role),
+            sure,
+            Text(f"{guess.in_unit}{why}"),
+        )
     for guess in proposed.proposal.unused:
-        listed.add_row(Text(guess.column), Text("-"), Text("not used", style="dim"), Text(guess.why))
+        listed.add_row(
+            Text(guess.column), Text("-"), Text("not used", style="dim"), Text(guess.why)
+        )
     console.print(listed)
     for said in proposed.remarks:
         console.print(Text(said, style="yellow"))
@@ -114,6 +129,8 @@ def write_channels(proposed: ProposedFile, out: Path, force: bool = False) -> No
     from shipcosim.series import write_file
 
     if out.exists() and not force:
-        raise ShipcosimError(Problem(str(out), "There is such a file already.", "--force writes over it."))
+        raise ShipcosimError(
+            Problem(str(out), "There is such a file already.", "--force writes over it.")
+        )
     write_file(out, proposed.text.encode())
     print(f"Channel file: {shown_path(out)}")

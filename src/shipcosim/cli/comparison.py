@@ -19,7 +19,9 @@ def not_compared() -> list[str]:
     missing = engines_missing()
     said = [f"{name} is not compared: {problem}" for name, problem in missing.items()]
     if len(missing) == len(ENGINES) - len(OWN):
-        said.append("No other engine is installed: what follows is the step-size error of ours alone.")
+        said.append(
+            "No other engine is installed: what follows is the step-size error of ours alone."
+        )
     return said
 
 
@@ -34,7 +36,12 @@ def print_comparison(comparison: EngineComparison, as_json: bool) -> None:
     for name, seconds in comparison.seconds.items():
         console.print(f"{name} ran in {seconds:.1f} s.")
     for name, why in comparison.left_out.items():
-        console.print(Text(f"{name} {'failed' if name in comparison.failed else 'did not run'}: {why}", style="yellow"))
+        console.print(
+            Text(
+                f"{name} {'failed' if name in comparison.failed else 'did not run'}: {why}",
+                style="yellow",
+            )
+        )
     for name, remarks in comparison.remarks.items():
         for remark in remarks:
             console.print(Text(f"{name}: {remark}", style="yellow"))
@@ -45,30 +52,64 @@ def _table(comparison: Comparison) -> Table:
     others = [name for name in comparison.seconds if name != OURS]
     table = Table(box=None, pad_edge=False)
     table.add_column("signal", no_wrap=True)
-    headings = ["unit", "range", *others, "of range", "at t [s]", "half the step", "of range", "agree"]
+    headings = [
+        "unit",
+        "range",
+        *others,
+        "of range",
+        "at t [s]",
+        "half the step",
+        "of range",
+        "agree",
+    ]
     for heading in headings:
-        table.add_column(heading, justify="left" if heading in ("unit", "agree") else "right", no_wrap=True)
+        table.add_column(
+            heading, justify="left" if heading in ("unit", "agree") else "right", no_wrap=True
+        )
     for signal in comparison.signals:
-        table.add_row(*map(Text, _row(signal, others)), style="red" if signal.worst > comparison.tolerance else "")
+        table.add_row(
+            *map(Text, _row(signal, others)),
+            style="red" if signal.worst > comparison.tolerance else "",
+        )
     return table
 
 
 def _row(signal: Signal, others: Sequence[str]) -> list[str]:
     found = [signal.engines.get(name, Difference(math.nan, math.nan, math.nan)) for name in others]
-    worst = max(found, key=lambda d: math.inf if math.isnan(d.relative) else d.relative, default=None)
-    cells = [signal.name, signal.unit, f"{signal.range:.4g}", *(f"{difference.largest:.1e}" for difference in found)]
-    cells += ["", ""] if worst is None else [f"{worst.relative:.1e}", f"{worst.time:.6g}" if worst.largest else ""]
-    groups = "all" if len(signal.agreeing) == 1 else " | ".join(" = ".join(group) for group in signal.agreeing)
+    worst = max(
+        found, key=lambda d: math.inf if math.isnan(d.relative) else d.relative, default=None
+    )
+    cells = [
+        signal.name,
+        signal.unit,
+        f"{signal.range:.4g}",
+        *(f"{difference.largest:.1e}" for difference in found),
+    ]
+    cells += (
+        ["", ""]
+        if worst is None
+        else [f"{worst.relative:.1e}", f"{worst.time:.6g}" if worst.largest else ""]
+    )
+    groups = (
+        "all"
+        if len(signal.agreeing) == 1
+        else " | ".join(" = ".join(group) for group in signal.agreeing)
+    )
     return [*cells, f"{signal.step.largest:.1e}", f"{signal.step.relative:.1e}", groups]
 
 
 def _verdict(comparison: Comparison) -> tuple[Text, Text]:
     others = [name for name in comparison.seconds if name != OURS]
     if not others and not comparison.failed:
-        return Text("alone", style="bold yellow"), Text("No other engine ran: only the step-size error is known.")
+        return Text("alone", style="bold yellow"), Text(
+            "No other engine ran: only the step-size error is known."
+        )
     differing = sum(signal.worst > comparison.tolerance for signal in comparison.signals)
-    limit, n = f"{comparison.tolerance:g} of its range", len(comparison.signals)
+    limit = f"{comparison.tolerance:g} of its range"
+    n = len(comparison.signals)
     if comparison.agree:
         said = f"{', '.join([OURS, *others])} agree on each of the {n} signals to {limit}."
         return Text("agree", style="bold green"), Text(said)
-    return Text("differ", style="bold red"), Text(f"{differing} of {n} signals differ by more than {limit}.")
+    return Text("differ", style="bold red"), Text(
+        f"{differing} of {n} signals differ by more than {limit}."
+    )

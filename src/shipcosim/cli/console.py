@@ -23,7 +23,12 @@ if TYPE_CHECKING:
 WIDEST = 40  # columns that a cell makes its column; longer ones stand out of it
 WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
-VERDICTS = {"passed": "bold green", "consistent": "bold green", "named": "bold blue", "partial": "bold yellow"}
+VERDICTS = {
+    "passed": "bold green",
+    "consistent": "bold green",
+    "named": "bold blue",
+    "partial": "bold yellow",
+}
 
 
 def style_of(verdict: str) -> str:
@@ -42,7 +47,9 @@ def _block(problem: Problem) -> Text:
     block = Text(f"{problem.severity}: ", style=STYLES.get(problem.severity, ""))
     if problem.where:
         block.append(f"{_from_here(problem.where)}:\n", style="bold")
-    return block.append(_from_here(f"{problem.found} {problem.remedy}").rstrip(), style="not bold default")
+    return block.append(
+        _from_here(f"{problem.found} {problem.remedy}").rstrip(), style="not bold default"
+    )
 
 
 def _from_here(text: str) -> str:
@@ -54,17 +61,34 @@ def _from_here(text: str) -> str:
 @contextmanager
 def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[[int, int], None]]:
     """Progress bar on stderr; yields a function of (done, in all). `duration` adds how fast time passes. [s]"""
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TaskProgressColumn,
+        TextColumn,
+        TimeRemainingColumn,
+    )
 
-    columns = [TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[pace]}")]
+    columns = [
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[pace]}"),
+    ]
     console = Console(stderr=True)
     columns.append(TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
         task = bar.add_task(str(label), total=None, pace="")
 
         def report(done: int, total: int) -> None:
             elapsed = bar.tasks[0].elapsed or 0.0
-            pace = f"{duration * done / total / elapsed:.0f} x real time" if duration and total and elapsed else ""
+            pace = (
+                f"{duration * done / total / elapsed:.0f} x real time"
+                if duration and total and elapsed
+                else ""
+            )
             bar.update(task, completed=done, total=total, pace=pace)
 
         yield report
@@ -85,7 +109,9 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     for remark in remarks:
         if remark not in before:
             console.print(Text(remark, style="yellow"))
-    console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
+    console.print(
+        Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence)
+    )
     console.print(f"Page: {shown_path(page)}", markup=False)
 
 
@@ -96,15 +122,20 @@ def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: 
     for heading in ("", "scenario", ""):
         listed.add_column(heading, no_wrap=True)
     for name, one in rows:
-        listed.add_row(Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, Text(one.sentence))
+        listed.add_row(
+            Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, Text(one.sentence)
+        )
     console.print(listed)
-    console.print(Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence))
+    console.print(
+        Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence)
+    )
     console.print(f"Page: {shown_path(page)}", markup=False)
 
 
 def shown_path(path: str | os.PathLike[str]) -> Path:
     """A path relative to the working folder where it lies in it, else absolute."""
-    here, absolute = Path.cwd(), Path(path).absolute()
+    here = Path.cwd()
+    absolute = Path(path).absolute()
     return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
 
 
@@ -160,4 +191,8 @@ def print_report(checked: CheckedFiles, as_json: bool) -> None:
         for problem in worth_showing(problems):
             console.print(_block(problem))
         errors = sum(problem.severity == "error" for problem in problems)
-        console.print(Text(f"{file}: " + (f"{errors} error{'s' * (errors > 1)}" if errors else "nothing wrong")))
+        console.print(
+            Text(
+                f"{file}: " + (f"{errors} error{'s' * (errors > 1)}" if errors else "nothing wrong")
+            )
+        )

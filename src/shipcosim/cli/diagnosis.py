@@ -43,11 +43,16 @@ def _sections(diagnosis):
     from shipcosim.report.diagnosis.key_figures import key_figures
     from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, title
 
-    alike = [(title(c.cause, c.component), f"{100 * c.probability:.0f} %") for c in diagnosis.indistinguishable]
+    alike = [
+        (title(c.cause, c.component), f"{100 * c.probability:.0f} %")
+        for c in diagnosis.indistinguishable
+    ]
     silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
     columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     extension = diagnosis.extension
-    extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
+    extended = (
+        str(shown_path(extension.ssp)) if extension is not None and extension.values else None
+    )
     steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
     return [
         ("Wrong, largest first", table(discrepancy_rows(diagnosis))),

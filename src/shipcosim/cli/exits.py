@@ -8,7 +8,9 @@ import typer
 
 from shipcosim.errors import Problem, ShipcosimError
 
-FAILED, UNUSABLE, INTERRUPTED = 1, 2, 130
+FAILED = 1
+UNUSABLE = 2
+INTERRUPTED = 130
 EXIT_CODES = (
     "Exit codes: 0 done; 1 the work ran and what it checked does not hold; 2 unusable input or arguments; "
     "130 interrupted. --debug with any command shows the traceback of an error."

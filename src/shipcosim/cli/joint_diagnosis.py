@@ -51,7 +51,9 @@ def _sections(found):
     )
 
     extension = found.extension
-    extended = str(shown_path(extension.ssp)) if extension is not None and extension.values else None
+    extended = (
+        str(shown_path(extension.ssp)) if extension is not None and extension.values else None
+    )
     silent = ", ".join(title(name).lower() for name in found.not_testable)
     head = ("log", "after", "position", "with causes", "heading", "with causes", "")
     errors = error_rows(found)
@@ -60,7 +62,10 @@ def _sections(found):
         ("Faults of the data in common", table(fault_rows(found))),
         ("Causes in common", table(cause_rows(found))),
         ("Errors by log", table([head, *errors] if errors else [])),
-        ("Each log by itself: verdict, own faults, causes", table(row[:4] for row in log_rows(found))),
+        (
+            "Each log by itself: verdict, own faults, causes",
+            table(row[:4] for row in log_rows(found)),
+        ),
         ("All logs together could not have shown", Text(silent) if silent else None),
         ("Remarks", Text("\n".join(found.remarks), style="yellow") if found.remarks else None),
         ("What to do next", Text("\n".join(f"- {step}" for step in next_steps(found, extended)))),

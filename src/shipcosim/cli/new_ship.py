@@ -30,7 +30,9 @@ QUESTIONS = {
 }
 
 
-def answers_from(name: str, given: Mapping[str, str | None], thrusters: list[str], ask: bool) -> Answers:
+def answers_from(
+    name: str, given: Mapping[str, str | None], thrusters: list[str], ask: bool
+) -> Answers:
     """What the options say, and what the user answers to the rest.
 
     Parameters
@@ -127,7 +129,9 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
     from shipcosim.ships.described import file_from, file_of, read_file
 
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
-        raise ShipcosimError(Problem("NAME", f"found {name!r}.", "A letter, then letters, digits, - and _."))
+        raise ShipcosimError(
+            Problem("NAME", f"found {name!r}.", "A letter, then letters, digits, - and _.")
+        )
     project = library.project_of() or Path.cwd()
     target = project / "ships" / name / "ship.toml"
     source = file_of(library.find("ship", origin)) if origin else target
@@ -142,7 +146,9 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
         stage = Path(folder)
         systems = make_systems(ship if named is None else named, stage / "ssp", library.fmus())
         files = {f"ssp/{path.name}": path for path in systems}
-        (stage / "scenario.toml").write_text(_scenario(named or ship, len(systems) > 1), encoding="utf-8")
+        (stage / "scenario.toml").write_text(
+            _scenario(named or ship, len(systems) > 1), encoding="utf-8"
+        )
         files[f"scenarios/{name}.toml"] = stage / "scenario.toml"
         again = source.resolve() == target.resolve() and origin is not None
         if not again:
@@ -150,7 +156,12 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
             files[f"ships/{name}/ship.toml"] = stage / "ship.toml"
             files |= {f"ships/{name}/{table}": source.parent / table for table in _tables(ship)}
         written = _put(project, files, force or again)
-    _say(written, [problem for problem in found if problem.severity == "remark"], name, len(systems) > 1)
+    _say(
+        written,
+        [problem for problem in found if problem.severity == "remark"],
+        name,
+        len(systems) > 1,
+    )
 
 
 def _renamed(ship: Described, name: str, target: Path) -> Described | None:
@@ -161,7 +172,11 @@ def _renamed(ship: Described, name: str, target: Path) -> Described | None:
 
 def _tables(ship: Described) -> list[str]:
     """CSV files that the ship file names."""
-    said = [ship.file.wind.table, ship.file.waves.table, *(getattr(one, "table", None) for one in ship.file.thrusters)]
+    said = [
+        ship.file.wind.table,
+        ship.file.waves.table,
+        *(getattr(one, "table", None) for one in ship.file.thrusters),
+    ]
     return [table for table in said if isinstance(table, str) and table != "none"]
 
 

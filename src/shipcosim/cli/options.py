@@ -25,12 +25,15 @@ def time_option(name: str, meaning: str) -> Any:
 
 
 Parameters = Annotated[
-    list[Path] | None, typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins.")
+    list[Path] | None,
+    typer.Option("--parameters", metavar="X.SSV", help="Parameter set; repeatable, last wins."),
 ]
 Settings = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="COMPONENT.NAME=VALUE", help="Start value, over all others, such as 5 or '10 kn'; repeatable."
+        "--set",
+        metavar="COMPONENT.NAME=VALUE",
+        help="Start value, over all others, such as 5 or '10 kn'; repeatable.",
     ),
 ]
 Components = Annotated[
@@ -54,7 +57,11 @@ Fmus = Annotated[
 ]
 OspEvents = Annotated[
     Path | None,
-    typer.Option("--scenario", metavar="FILE", help="Scenario file of OSP (.json, .yaml): what happens in the run."),
+    typer.Option(
+        "--scenario",
+        metavar="FILE",
+        help="Scenario file of OSP (.json, .yaml): what happens in the run.",
+    ),
 ]
 SystemOrScenario = Annotated[
     str,
@@ -65,7 +72,8 @@ SystemOrScenario = Annotated[
     ),
 ]
 Channels = Annotated[
-    Path | None, typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit.")
+    Path | None,
+    typer.Option("--channels", metavar="X.TOML", help="Which column is what, in which unit."),
 ]
 Ship = Annotated[
     str | None,
@@ -77,15 +85,25 @@ Ship = Annotated[
     ),
 ]
 Effects = Annotated[
-    Path | None, typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each.")
+    Path | None,
+    typer.Option("--effects", metavar="FOLDER", help="Causes of your own, one .toml each."),
 ]
-SystemsStopTime = Annotated[float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the system's.")]
-SystemsStepSize = Annotated[float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the system's.")]
+SystemsStopTime = Annotated[
+    float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the system's.")
+]
+SystemsStepSize = Annotated[
+    float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the system's.")
+]
 ScenariosStopTime = Annotated[
     float | None, time_option("--stop-time", "In s, or as '10 min'. Default: the scenario's.")
 ]
-ScenariosStepSize = Annotated[float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the scenario's.")]
-Out = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False)]
+ScenariosStepSize = Annotated[
+    float | None, time_option("--step-size", "In s, or as '50 ms'. Default: the scenario's.")
+]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False),
+]
 Engine = Annotated[
     str,
     typer.Option(
@@ -98,20 +116,38 @@ Force = Annotated[
     bool,
     typer.Option("--force", help="Replace earlier results instead of keeping them in DIR-1, ..."),
 ]
-Until = Annotated[float | None, time_option("--until", "End here, before the stop time; in s, or such as '10 min'.")]
-Store = Annotated[
-    Path | None, typer.Option("--store", metavar="FILE", help="Store the whole system's state at the end, for --from.")
+Until = Annotated[
+    float | None,
+    time_option("--until", "End here, before the stop time; in s, or such as '10 min'."),
 ]
-From = Annotated[Path | None, typer.Option("--from", metavar="FILE", help="Continue from a state that --store left.")]
+Store = Annotated[
+    Path | None,
+    typer.Option(
+        "--store", metavar="FILE", help="Store the whole system's state at the end, for --from."
+    ),
+]
+From = Annotated[
+    Path | None,
+    typer.Option("--from", metavar="FILE", help="Continue from a state that --store left."),
+]
 Isolate = Annotated[
-    bool, typer.Option("--isolate", help="Run each component in a process of its own, which may crash or hang.")
+    bool,
+    typer.Option(
+        "--isolate", help="Run each component in a process of its own, which may crash or hang."
+    ),
 ]
 Timeout = Annotated[
     float | None,
-    time_option("--timeout", "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60."),
+    time_option(
+        "--timeout",
+        "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60.",
+    ),
 ]
 ReportAsJson = Annotated[bool, typer.Option("--json", help="Report as JSON.")]
 Strict = Annotated[
-    bool, typer.Option("--strict", help="Refuse what breaks a standard, even where it can mean one thing only.")
+    bool,
+    typer.Option(
+        "--strict", help="Refuse what breaks a standard, even where it can mean one thing only."
+    ),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]

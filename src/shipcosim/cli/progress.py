@@ -28,8 +28,11 @@ class Course:
         Gives the time. [s]
     """
 
-    def __init__(self, steps: Mapping[str, float], clock: Callable[[], float] = time.monotonic) -> None:
-        self._steps, self._clock = dict(steps), clock
+    def __init__(
+        self, steps: Mapping[str, float], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._steps = dict(steps)
+        self._clock = clock
         self._whole = sum(steps.values())
         self._start = self._at = clock()
         self.share = 0.0
@@ -48,7 +51,8 @@ class Course:
 
     def left(self) -> float:
         """Time until the end; 0 where it should have come already. [s]"""
-        passed, known = self._at - self._start, CONFIDENCE * self._whole
+        passed = self._at - self._start
+        known = CONFIDENCE * self._whole
         pace = (passed + known) / (self.share * self._whole + known)
         return max((1.0 - self.share) * self._whole * pace - (self._clock() - self._at), 0.0)
 
@@ -66,14 +70,32 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
         Steps in order but for the page, which is the last of all, with the time that each typically takes. [s]
     """
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        SpinnerColumn,
+        TaskProgressColumn,
+        TextColumn,
+        TimeElapsedColumn,
+    )
 
     steps = {**steps, LAST_STEP: LAST_TIME}
-    numbers = {step: f"{number} of {len(steps)}: {step}" for number, step in enumerate(steps, start=1)}
-    console, course, said = Console(stderr=True), Course(steps), {next(iter(steps))}
-    columns = [SpinnerColumn(), TextColumn("{task.description}"), BarColumn(bar_width=24), TaskProgressColumn()]
+    numbers = {
+        step: f"{number} of {len(steps)}: {step}" for number, step in enumerate(steps, start=1)
+    }
+    console = Console(stderr=True)
+    course = Course(steps)
+    said = {next(iter(steps))}
+    columns = [
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        TaskProgressColumn(),
+    ]
     columns += [TimeElapsedColumn(), _time_left(course)]
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
         task = bar.add_task("", total=1.0)
 
         def show(step, done=None, total=None):

@@ -20,7 +20,8 @@ def print_replay(replay: LogReplay, folder: Path) -> None:
     from shipcosim.report.diagnosis.replay_page import replay_outcome
     from shipcosim.report.diagnosis.track_figures import error_rows
 
-    console, errors = Console(highlight=False, soft_wrap=True), error_rows(errors_of(replay.tracks))
+    console = Console(highlight=False, soft_wrap=True)
+    errors = error_rows(errors_of(replay.tracks))
     table = Table(*errors.head, box=None, pad_edge=False)
     for row in errors.rows:
         table.add_row(*row)

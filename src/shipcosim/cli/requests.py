@@ -17,11 +17,16 @@ def parsed_settings(settings: Iterable[str]) -> dict[str, Any]:
     >>> parsed_settings(["vessel.mass=5e5", "port.failed=true", "environment.spectrum=kaimal"])
     {'vessel.mass': 500000.0, 'port.failed': True, 'environment.spectrum': 'kaimal'}
     """
-    values, problems = {}, []
+    values = {}
+    problems = []
     for setting in settings:
         name, sign, text = setting.partition("=")
         if not sign or not name.strip():
-            problems.append(Problem("--set", f"'{setting}' sets nothing.", "Right would be component.name=value."))
+            problems.append(
+                Problem(
+                    "--set", f"'{setting}' sets nothing.", "Right would be component.name=value."
+                )
+            )
         values[name.strip()] = _parsed(text.strip())
     if problems:
         raise ShipcosimError(problems)
@@ -43,7 +48,9 @@ def parsed_components(given: Iterable[str]) -> dict[str, str]:
         if sign and name and fmu:
             found[name] = fmu
         else:
-            problems.append(Problem("--component", f"'{pair}' swaps nothing.", "Right would be component=FMU."))
+            problems.append(
+                Problem("--component", f"'{pair}' swaps nothing.", "Right would be component=FMU.")
+            )
     if problems:
         raise ShipcosimError(problems)
     return found

@@ -32,10 +32,14 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     for row in _what_separates(found):
         console.print(row, markup=False)
     for side, one in found.held_out.items():
-        console.print(f"Fitted on circles to {side}: {one.best.label}. Errors on the others, before and after:")
+        console.print(
+            f"Fitted on circles to {side}: {one.best.label}. Errors on the others, before and after:"
+        )
         for name in one.before:
             unit = "deg" if name.endswith("drift") else "%"
-            console.print(f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False)
+            console.print(
+                f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False
+            )
     console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
     console.print(f"Numbers: {shown_path(folder / 'sea_trials.json')}", markup=False)
 
@@ -49,5 +53,9 @@ def _what_separates(found: SeaTrialStudy) -> list[str]:
         rows.append(f"Sail next: {one.manoeuvre}, to both sides, {one.minutes:.0f} minutes.")
         rows += [f"  tells {a} from {b}" for a, b in one.separates]
     told = {pair for one in found.prescriptions for pair in one.separates}
-    rows += [f"No manoeuvre of the catalogue tells {a} from {b}." for a, b in found.pairs if (a, b) not in told]
+    rows += [
+        f"No manoeuvre of the catalogue tells {a} from {b}."
+        for a, b in found.pairs
+        if (a, b) not in told
+    ]
     return rows

@@ -8,7 +8,14 @@ from time import perf_counter
 
 import numpy as np
 
-from shipcosim.cosim.differences import TOLERANCE, Difference, difference, differs, explained, listed
+from shipcosim.cosim.differences import (
+    TOLERANCE,
+    Difference,
+    difference,
+    differs,
+    explained,
+    listed,
+)
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.cosim.master.run import RunError
 from shipcosim.cosim.simulate import simulate
@@ -122,9 +129,11 @@ def compare(
     names = [name for name in readers or ENGINES if name not in left_out and name not in OWN]
     runs = _Runs(system, options or RunOptions(), len(names) + 3)
     scenario = scenario.model_copy(update={"output_interval": None})
-    ours, tables = runs.run(OURS, scenario), {}
+    ours = runs.run(OURS, scenario)
+    tables = {}
     half = runs.run(OURS, halved(scenario), weight=2)
-    seconds, failed = {OURS: runs.seconds[0]}, []
+    seconds = {OURS: runs.seconds[0]}
+    failed = []
     for name in names:
         try:
             tables[name] = runs.run(name, scenario, reader=(readers or {}).get(name))
@@ -132,13 +141,22 @@ def compare(
         except ShipcosimError as error:
             left_out[name] = str(error)
             failed += [name] if isinstance(error, RunError) else []
-    known = [name for name in ours.data_vars if not tables or any(name in table for table in tables.values())]
+    known = [
+        name
+        for name in ours.data_vars
+        if not tables or any(name in table for table in tables.values())
+    ]
     signals = [_signal(name, ours, tables, half, tolerance) for name in known]
-    remarks = {name: explained(ours, table, scenario.step_size, tolerance) for name, table in tables.items()}
+    remarks = {
+        name: explained(ours, table, scenario.step_size, tolerance)
+        for name, table in tables.items()
+    }
     for name in [name for name in tables if remarks[name]]:
         if taken is None:
             break
-        found, causes = _explained_by_reading(name, taken(name), ours, tables[name], scenario, tolerance)
+        found, causes = _explained_by_reading(
+            name, taken(name), ours, tables[name], scenario, tolerance
+        )
         remarks[name] = [remarks[name][0], *found] if found else remarks[name]
         signals = [_with_cause(signal, name, causes) for signal in signals]
     signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
@@ -153,7 +171,8 @@ def _with_cause(signal, engine, causes):
 def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
     """What a tool takes otherwise, each run here by itself and all of it together, as remarks and by signal."""
     respects, whole = taken
-    remarks, causes = [], {}
+    remarks = []
+    causes = {}
     names = [name for name in ours.data_vars if name in theirs]
     differing = [name for name in names if differs(name, ours, theirs, tolerance)]
     try:
@@ -184,8 +203,11 @@ class _Runs:
     """Runs one after the other, timed, with one progress over all of them."""
 
     def __init__(self, system, options, n_parts):
-        self.system, self.options, self.n_parts = system, options, n_parts
-        self.seconds, self._done = [], 0
+        self.system = system
+        self.options = options
+        self.n_parts = n_parts
+        self.seconds = []
+        self._done = 0
 
     def run(self, engine, scenario, weight=1, reader=None):
         def report(done, total):
@@ -196,7 +218,9 @@ class _Runs:
         try:
             if reader is not None:
                 return reader(self.system)
-            return simulate(self.system, scenario, replace(self.options, engine=engine, progress=report))
+            return simulate(
+                self.system, scenario, replace(self.options, engine=engine, progress=report)
+            )
         finally:
             self._done += weight
             self.seconds.append(perf_counter() - begin)

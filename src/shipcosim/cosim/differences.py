@@ -47,12 +47,16 @@ def differs(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, tolerance: 
     return not bool(np.all(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
 
 
-def difference(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, spread: float) -> Difference:
+def difference(
+    name: str, ours: xarray.Dataset, theirs: xarray.Dataset, spread: float
+) -> Difference:
     """Largest difference of a signal between two tables; `spread` is its range in ours."""
     distance = np.abs(_distance(name, ours, theirs))
     row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
     largest = float(distance[row])
-    return Difference(largest, largest / spread if spread else largest, float(theirs["time"].values[row]))
+    return Difference(
+        largest, largest / spread if spread else largest, float(theirs["time"].values[row])
+    )
 
 
 def _distance(name, ours, theirs):
@@ -104,7 +108,8 @@ def explained(
 def _cause(name, ours, theirs, step_size):
     """The simplest relation that makes most of a signal's difference disappear."""
     x, y = (table[name].values.astype(float) for table in (ours, theirs))
-    time, distance = ours["time"].values, _distance(name, ours, theirs)
+    time = ours["time"].values
+    distance = _distance(name, ours, theirs)
     largest = np.max(np.abs(distance))
     if not np.isfinite(largest):
         return f"{name} is no number somewhere."
@@ -112,7 +117,9 @@ def _cause(name, ours, theirs, step_size):
         if np.max(np.abs(y[1:] - x[:-1])) < 0.01 * largest:
             return f"{name} comes one row late: a connection passes it on a step later."
         if np.max(np.abs(y[:-1] - x[1:])) < 0.01 * largest:
-            return f"{name} comes one row early: a component gets it within the step, not at its end."
+            return (
+                f"{name} comes one row early: a component gets it within the step, not at its end."
+            )
         factor, offset = np.polyfit(x, y, 1)
         if np.max(np.abs(factor * x + offset - y)) < 0.01 * largest:
             return (

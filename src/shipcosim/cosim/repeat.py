@@ -49,21 +49,38 @@ def repeat(
     """
     facts = read_table(table).attrs if isinstance(table, str | os.PathLike) else table.attrs
     if "system_sha256" not in facts:
-        raise ShipcosimError(Problem("repeat", "The table does not say how it came about.", "Give a result.nc."))
+        raise ShipcosimError(
+            Problem("repeat", "The table does not say how it came about.", "Give a result.nc.")
+        )
     if not isinstance(system, System):
         folders = [Path(folder) for folder in fmus or [Path("build") / "fmus"]]
-        swapped = {name: _in(folders, file) for name, file in json.loads(facts.get("swapped", "{}")).items()}
-        system = read_system(system or Path("ssp") / facts["system"], fmus=folders, components=swapped)
+        swapped = {
+            name: _in(folders, file)
+            for name, file in json.loads(facts.get("swapped", "{}")).items()
+        }
+        system = read_system(
+            system or Path("ssp") / facts["system"], fmus=folders, components=swapped
+        )
     if problems := list(_differences(facts, system, inputs)):
         raise ShipcosimError(problems)
-    starts = {name: value for name, value in json.loads(facts["start_values"]).items() if value is not None}
-    about = {key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")}
+    starts = {
+        name: value
+        for name, value in json.loads(facts["start_values"]).items()
+        if value is not None
+    }
+    about = {
+        key: facts[key] for key in ("description", "stop_time", "step_size", "output_interval")
+    }
     # NetCDF gives numbers of NumPy's types.
     plain = {key: value if isinstance(value, str) else float(value) for key, value in about.items()}
     scenario = Scenario.model_validate(plain | {"events": json.loads(facts["events"])})
-    start_time, until = float(facts["start_time"]), facts.get("until")
-    engine, order = str(facts["engine"]), str(facts["order"])
-    options = RunOptions(engine=engine, inputs=inputs, order=order, start_time=start_time, until=until)
+    start_time = float(facts["start_time"])
+    until = facts.get("until")
+    engine = str(facts["engine"])
+    order = str(facts["order"])
+    options = RunOptions(
+        engine=engine, inputs=inputs, order=order, start_time=start_time, until=until
+    )
     again = run(with_values(system, starts, "repeat"), scenario, options)
     return again.assign_attrs(scenario=facts["scenario"])
 
@@ -75,15 +92,23 @@ def _in(folders, file):
 
 def _differences(facts, system, inputs):
     if "continued_from" in facts:
-        yield Problem("repeat", f"The run was continued from a snapshot at {facts['continued_from']:g} s.")
+        yield Problem(
+            "repeat", f"The run was continued from a snapshot at {facts['continued_from']:g} s."
+        )
     if fingerprint(system) != facts["system_sha256"]:
         yield Problem("repeat", f"{system.name} is not wired as {facts['system']} was in the run.")
-    wanted, present = json.loads(facts["fmus"]), hashes(system)
+    wanted = json.loads(facts["fmus"])
+    present = hashes(system)
     for name in sorted(wanted.keys() & present.keys()):
         if wanted[name]["sha256"] != present[name]:
             yield Problem(
-                "repeat", f"{name}: {wanted[name]['file']} is another FMU than in the run.", "Build that one."
+                "repeat",
+                f"{name}: {wanted[name]['file']} is another FMU than in the run.",
+                "Build that one.",
             )
     fed = facts.get("inputs_sha256")
     if fed != (None if inputs is None else digest(inputs)):
-        yield Problem("repeat", "inputs: The table is not the one that fed the run." if fed else "inputs: None fed it.")
+        yield Problem(
+            "repeat",
+            "inputs: The table is not the one that fed the run." if fed else "inputs: None fed it.",
+        )

@@ -86,7 +86,11 @@ def replay(
     """
     times = np.asarray(starts, dtype=float)
     if times.ndim != 1 or len(times) == 0 or not np.isfinite(times).all():
-        raise ShipcosimError(Problem("replay", "starts is no list of times.", "Give the time of each segment's start."))
+        raise ShipcosimError(
+            Problem(
+                "replay", "starts is no list of times.", "Give the time of each segment's start."
+            )
+        )
     segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()
     rows = _SegmentRows(times, segments.states, signals)
@@ -109,9 +113,14 @@ class _Segments:
         step_size = step_size or system.experiment.step_size
         if problems := list(_bad_times(starts, duration, step_size, output_interval)):
             raise ShipcosimError(problems)
-        self.system, self.starts, self.duration, self.options = system, starts, duration, RunOptions(inputs=inputs)
+        self.system = system
+        self.starts = starts
+        self.duration = duration
+        self.options = RunOptions(inputs=inputs)
         self.how = {"step_size": step_size, "output_interval": output_interval}
-        self.states = {name: _per_segment(name, given, system, len(starts)) for name, given in states.items()}
+        self.states = {
+            name: _per_segment(name, given, system, len(starts)) for name, given in states.items()
+        }
 
     def check(self) -> None:
         """Raise ShipcosimError with what is wrong with any segment."""
@@ -128,8 +137,12 @@ class _Segments:
     def simulation(self, number: int) -> Simulation:
         """Run of a segment, planned."""
         start = float(self.starts[number])
-        system = with_values(self.system, {name: values[number] for name, values in self.states.items()}, "states")
-        scenario = Scenario(description=f"Replay of {system.name}", stop_time=start + self.duration, **self.how)
+        system = with_values(
+            self.system, {name: values[number] for name, values in self.states.items()}, "states"
+        )
+        scenario = Scenario(
+            description=f"Replay of {system.name}", stop_time=start + self.duration, **self.how
+        )
         return Simulation(system, scenario, time_grid_of(scenario, start), self.options)
 
 
@@ -141,7 +154,11 @@ def _bad_times(starts, duration, step_size, output_interval):
     for name, time in (("duration", duration), ("output_interval", output_interval or step_size)):
         if not (whole_steps(time, step_size) or 0) > 0:
             found = f"{name} = {time:g} s is no whole number of steps of {step_size:g} s."
-            yield Problem("replay", found, f"The nearest would be {max(1, round(time / step_size)) * step_size:.9g} s.")
+            yield Problem(
+                "replay",
+                found,
+                f"The nearest would be {max(1, round(time / step_size)) * step_size:.9g} s.",
+            )
     if len(early := starts[starts + duration <= 0.0]):
         found = f"the segment at {early[0]:g} s ends before time 0."
         yield Problem("replay", found, "Shift the times of the table: runs end after 0.")
@@ -170,7 +187,9 @@ def _named(number, starts):
         yield
     except ShipcosimError as error:
         where = f"segment {number} at {starts[number]:.9g} s"
-        problems = [replace(p, where=f"{where}: {p.where}" if p.where else where) for p in error.problems]
+        problems = [
+            replace(p, where=f"{where}: {p.where}" if p.where else where) for p in error.problems
+        ]
         if isinstance(error, RunError):
             raise RunError(problems, error.table) from error
         raise ShipcosimError(problems) from error
@@ -180,7 +199,9 @@ class _SegmentRows:
     """Rows of all segments: (segments, rows) an array for each signal."""
 
     def __init__(self, starts: np.ndarray, states: Mapping, signals: Sequence[str] | None):
-        self.starts, self.states, self.signals = starts, states, signals
+        self.starts = starts
+        self.states = states
+        self.signals = signals
         self.about: dict[str, tuple[str, str]] = {}
         self.arrays: dict[str, np.ndarray] = {}
 
@@ -211,11 +232,23 @@ class _SegmentRows:
         import xarray
 
         variables = {
-            name: (("segment", "time"), values, dict(zip(("units", "long_name"), self.about[name], strict=True)))
+            name: (
+                ("segment", "time"),
+                values,
+                dict(zip(("units", "long_name"), self.about[name], strict=True)),
+            )
             for name, values in self.arrays.items()
         }
         coordinates = {
-            "time": ("time", self.time, {"units": "s", "long_name": "time since the segment's start"}),
-            "start_time": ("segment", self.starts, {"units": "s", "long_name": "time of the segment's start"}),
+            "time": (
+                "time",
+                self.time,
+                {"units": "s", "long_name": "time since the segment's start"},
+            ),
+            "start_time": (
+                "segment",
+                self.starts,
+                {"units": "s", "long_name": "time of the segment's start"},
+            ),
         }
         return xarray.Dataset(variables, coordinates, self.attributes)

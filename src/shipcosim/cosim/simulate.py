@@ -49,16 +49,24 @@ def simulate(
     """
     options = options or RunOptions()
     if options.engine not in ENGINES:
-        raise ShipcosimError(f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}")
+        raise ShipcosimError(
+            f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}"
+        )
     if not isinstance(system, System):
         system = system_of(scenario, system=Path(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    if errors := [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]:
+    if errors := [
+        problem for problem in check_scenario(scenario, system) if problem.severity == "error"
+    ]:
         raise ShipcosimError(errors)
     odd = [str(remark) for remark in odd_values(scenario, system)]
     scenario = with_numbers(scenario, units_of(system))
     if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."
-        raise ShipcosimError(Problem(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do."))
+        raise ShipcosimError(
+            Problem(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do.")
+        )
     table = ENGINES[options.engine](system, scenario, options)
-    return table.assign_attrs(remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))]))
+    return table.assign_attrs(
+        remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))])
+    )

@@ -51,7 +51,11 @@ def system_of(
 
     def located(problem: Problem) -> Problem:
         name = of_scenario.get(problem.where)
-        return problem_at(scenario, ("components", name), problem.found, problem.remedy) if name else problem
+        return (
+            problem_at(scenario, ("components", name), problem.found, problem.remedy)
+            if name
+            else problem
+        )
 
     try:
         return read_system(

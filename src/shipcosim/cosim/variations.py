@@ -115,16 +115,24 @@ def simulate_many(
     runs = _Runs(system, options, choose, reduce)
     for variation in {_kind(variation): variation for variation in variations}.values():
         runs.check(variation)
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = (
+        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    )
     done: list[Done] = [Done() for _ in variations]
-    with delayed_interrupt() as runs.check_interrupt, _sources(min(workers or cores, len(variations))) as sources:
+    with (
+        delayed_interrupt() as runs.check_interrupt,
+        _sources(min(workers or cores, len(variations))) as sources,
+    ):
         for n, (number, result) in enumerate(_in_threads(runs.run, variations, sources), start=1):
             done[number] = result
             if options.progress is not None:
                 options.progress(n, len(variations))
     if variations and all(one.error for one in done):
         raise ShipcosimError(f"All {len(done)} variations fail, the first with: {done[0].error}")
-    known = attributes_of(system, scenario) | {"start_time": options.start_time, "engine": options.engine}
+    known = attributes_of(system, scenario) | {
+        "start_time": options.start_time,
+        "engine": options.engine,
+    }
     remarks = dict.fromkeys(text for one in done for text in one.remarks)
     return _dataset(variations, done, known | {"remarks": json.dumps(list(remarks))})
 
@@ -135,9 +143,17 @@ class _Runs:
     check_interrupt: Callable[[], None]
 
     def __init__(
-        self, system: System, options: RunOptions, choose: Choose, reduce: Reduce | None, table: Callable = make_table
+        self,
+        system: System,
+        options: RunOptions,
+        choose: Choose,
+        reduce: Reduce | None,
+        table: Callable = make_table,
     ):
-        self._system, self._options, self._reduce, self._table = system, options, reduce, table
+        self._system = system
+        self._options = options
+        self._reduce = reduce
+        self._table = table
         self._choose = lru_cache(maxsize=64)(lambda names: tuple(choose(list(names))))
         self._unit_of = units_of(system)
 
@@ -152,7 +168,8 @@ class _Runs:
 
     def run(self, variation: Variation, slaves: _Source) -> Done:
         """One run; an error of it is part of the result."""
-        simulation, error = slaves.last, ""
+        simulation = slaves.last
+        error = ""
         slaves.last = None
         try:
             system, scenario = self._varied(variation)
@@ -178,7 +195,8 @@ class _Runs:
         done = Done(error, simulation.remarks(), simulation.row_times)
         if self._reduce is None:
             done.kept = {
-                name: (("time",), values, {"units": unit, "long_name": text}) for name, values, unit, text in columns
+                name: (("time",), values, {"units": unit, "long_name": text})
+                for name, values, unit, text in columns
             }
         elif not error:
             found = self._reduce(self._table(simulation.row_times, columns))
@@ -203,7 +221,8 @@ class _Source:
     last: Simulation | None = None
 
     def __init__(self, instances: Instances, lock: threading.Lock):
-        self._instances, self._lock = instances, lock
+        self._instances = instances
+        self._lock = lock
 
     def instance_of(self, component: Component) -> Slave:
         """See `SlaveSource`."""
@@ -220,7 +239,9 @@ def _sources(n: int) -> Iterator[list[_Source]]:
 
 
 def _in_threads(
-    run: Callable[[Variation, _Source], Done], variations: Sequence[Variation], sources: Sequence[_Source]
+    run: Callable[[Variation, _Source], Done],
+    variations: Sequence[Variation],
+    sources: Sequence[_Source],
 ) -> Iterator[tuple[int, Done]]:
     """Number and result of each run. The first goes alone: it compiles what the others share."""
     free: SimpleQueue[_Source] = SimpleQueue()
@@ -249,7 +270,11 @@ def _in_threads(
 
 def _kind(variation):
     """What the checks of a variation follow from, but for its numbers."""
-    return frozenset(variation.values), repr(variation.scenario.events), variation.scenario.stop_time
+    return (
+        frozenset(variation.values),
+        repr(variation.scenario.events),
+        variation.scenario.stop_time,
+    )
 
 
 def _dataset(variations, done, attributes) -> xarray.Dataset:
@@ -261,8 +286,14 @@ def _dataset(variations, done, attributes) -> xarray.Dataset:
     data = {}
     for name in names:
         dimensions, _, about = next(one.kept[name] for one in done if name in one.kept)
-        data[name] = (("variation", *dimensions), _stacked([one.kept.pop(name, None) for one in done]), about)
-    coordinates: dict[str, Any] = {"error": ("variation", np.array([one.error for one in done], dtype=str))}
+        data[name] = (
+            ("variation", *dimensions),
+            _stacked([one.kept.pop(name, None) for one in done]),
+            about,
+        )
+    coordinates: dict[str, Any] = {
+        "error": ("variation", np.array([one.error for one in done], dtype=str))
+    }
     if any(dimensions[1:2] == ("time",) for dimensions, *_ in data.values()):
         coordinates["time"] = ("time", times, {"units": "s", "long_name": "time"})
     for name in dict.fromkeys(name for variation in variations for name in variation.values):
@@ -306,7 +337,8 @@ class OneAfterAnother:
         reduce: Callable[[Any], Any],
         table: Callable = make_table,
     ):
-        self._runs, self._stack = _Runs(system, options, choose, reduce, table), ExitStack()
+        self._runs = _Runs(system, options, choose, reduce, table)
+        self._stack = ExitStack()
         self._runs.check_interrupt = lambda: None
         self._source = self._stack.enter_context(_sources(1))[0]
 

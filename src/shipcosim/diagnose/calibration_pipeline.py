@@ -154,12 +154,21 @@ def calibrate(
         errors = remaining_errors(fitted)
     told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
     ship = next(iter(found.values())).ship
-    ordinary = {kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG}
+    ordinary = {
+        kind: max(one[kind] for one in fitted.unmodelled.values()) for kind in _KINDS_OF_THE_LOG
+    }
     reference = reference_of(
-        fitted, ship, ordinary, list(told.values()), system=given.name, version=shipcosim.__version__
+        fitted,
+        ship,
+        ordinary,
+        list(told.values()),
+        system=given.name,
+        version=shipcosim.__version__,
     )
     each = tuple(
-        CalibratedLog(name, one.faults, _weather(fitted.fit, name), errors[name], fitted.unmodelled[name])
+        CalibratedLog(
+            name, one.faults, _weather(fitted.fit, name), errors[name], fitted.unmodelled[name]
+        )
         for name, one in found.items()
     )
     result = CalibratedShip(reference, each, *_judged(reference, fitted, suspects))
@@ -174,12 +183,18 @@ def _check_usable(found: dict[str, Identification]) -> None:
     problems = []
     for name, one in found.items():
         for fault in (fault for fault in one.faults if fault.alternatives):
-            problems.append(Problem(name, f"{fault.sentence}.", "Correct the channel file, and calibrate again."))
+            problems.append(
+                Problem(
+                    name, f"{fault.sentence}.", "Correct the channel file, and calibrate again."
+                )
+            )
         comparison = one.comparison
         problems += [Problem(name, why) for why in (comparison.obstacles if comparison else ())]
         for finding in comparison.findings if comparison else ():
             what = f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well."
-            problems.append(Problem(name, what, "Diagnose the log, and calibrate the extended system."))
+            problems.append(
+                Problem(name, what, "Diagnose the log, and calibrate the extended system.")
+            )
     if problems:
         raise ShipcosimError(problems)
 
@@ -189,7 +204,9 @@ def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
     if not logs:
         raise ShipcosimError(Problem("logs", "There are none.", "Give at least one log."))
     stems = [_stem(log, k) for k, log in enumerate(logs, start=1)]
-    return [stem if stems.count(stem) == 1 else f"{stem}-{k}" for k, stem in enumerate(stems, start=1)]
+    return [
+        stem if stems.count(stem) == 1 else f"{stem}-{k}" for k, stem in enumerate(stems, start=1)
+    ]
 
 
 def _stem(log, number):
@@ -208,7 +225,9 @@ def problems_of(
     reference: Reference | None = None,
 ) -> dict[str, Identification]:
     """Several logs by their names, each as an identification problem; what cannot be used of all is said at once."""
-    found, problems, names = {}, [], log_names(logs)
+    found = {}
+    problems = []
+    names = log_names(logs)
     for done, (name, log) in enumerate(zip(names, logs, strict=True)):
         if progress:
             progress(READING, done, len(names))
@@ -225,7 +244,12 @@ def _about(name, one):
     """What a reference says of a log that it was made from."""
     time = one.log["time"].values
     span = float(time[0]), float(time[-1])
-    return {"name": name, "sha256": one.log.encoding.get("sha256", ""), "rows": int(time.size), "span_s": span}
+    return {
+        "name": name,
+        "sha256": one.log.encoding.get("sha256", ""),
+        "rows": int(time.size),
+        "span_s": span,
+    }
 
 
 def _weather(fit: JointFit, name: str) -> dict[str, float]:
@@ -235,26 +259,38 @@ def _weather(fit: JointFit, name: str) -> dict[str, float]:
 
 def _judged(reference, found, suspects):
     """Why these logs make no reference, and what to know of one that they do make."""
-    refusals, remarks = [], []
+    refusals = []
+    remarks = []
     names, _, by, _ = numbers_of(found.fit)
     moved = dict(zip(names, by, strict=True))
     for label, gain in suspects.items():
         text = f"The logs still look like {label} beside the calibrated ship ({gain:.0f} nats)"
         if gain > NOT_WELL:
-            refusals.append(f"{text}: she is not well, or the system is wrong there. Diagnose these logs first.")
+            refusals.append(
+                f"{text}: she is not well, or the system is wrong there. Diagnose these logs first."
+            )
         else:
-            remarks.append(f"{text}. If it is there, later logs will be held against a ship that has it.")
+            remarks.append(
+                f"{text}. If it is there, later logs will be held against a ship that has it."
+            )
     for number in reference.numbers:
         wanted = number.nominal + moved[number.name]
         if abs(wanted - number.estimate) > BEYOND * number.std:
             refusals.append(f"{number.name} would be {wanted:g} {number.unit}, beyond its bounds.")
-        elif abs(number.estimate - number.nominal) > AT_EDGE * reference.tolerance_scale * number.tolerance:
+        elif (
+            abs(number.estimate - number.nominal)
+            > AT_EDGE * reference.tolerance_scale * number.tolerance
+        ):
             off = abs(number.estimate - number.nominal) / number.tolerance
-            remarks.append(f"{number.name} is {off:.1f} of its tolerances off: is its value right, and the tolerance?")
+            remarks.append(
+                f"{number.name} is {off:.1f} of its tolerances off: is its value right, and the tolerance?"
+            )
     for name, kinds in found.unmodelled.items():
         for kind, gain in kinds.items():
             if gain > NOT_WELL:
-                refusals.append(f"{name}: the calibrated ship does not fit it ({kind}, {gain:.0f} nats).")
+                refusals.append(
+                    f"{name}: the calibrated ship does not fit it ({kind}, {gain:.0f} nats)."
+                )
     if reference.tolerance_scale > 1.0:
         remarks.append(
             f"The logs are only explained with {reference.tolerance_scale:g} times the stated tolerances: the ship is "

@@ -81,7 +81,9 @@ class Finding:
         entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
         entry["parameters"] = {name: asdict(value) for name, value in self.parameters.items()}
         if self.at_reference:
-            entry["at_reference"] = {name: asdict(value) for name, value in self.at_reference.items()}
+            entry["at_reference"] = {
+                name: asdict(value) for name, value in self.at_reference.items()
+            }
         if self.kind == "data":
             entry["segments"] = [list(segment) for segment in self.segments]
             entry["channels"] = list(self.channels)

@@ -44,7 +44,12 @@ from shipcosim.diagnose.reference.common_findings import (
     ratio_of_logs,
     with_right_labels,
 )
-from shipcosim.diagnose.reference.held_out import errors_by_log, sizes_by_log, sizes_without, weather_of
+from shipcosim.diagnose.reference.held_out import (
+    errors_by_log,
+    sizes_by_log,
+    sizes_without,
+    weather_of,
+)
 from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
 from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
@@ -134,7 +139,11 @@ def diagnose_jointly(
             found.causes,
             lambda name, *done: say(f"{name} again, by co-simulation", *done),
         )
-    remarks = (*found.remarks, *extended.remarks, *(one.remark for one in errors.values() if one.remark))
+    remarks = (
+        *found.remarks,
+        *extended.remarks,
+        *(one.remark for one in errors.values() if one.remark),
+    )
     return replace(
         found,
         errors=errors,
@@ -151,7 +160,8 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
     basis = found.basis
     if basis is None or len(basis.verdict.logs.problems) < 2:
         return [], []
-    crude, judgement = [], basis.verdict.judgement
+    crude = []
+    judgement = basis.verdict.judgement
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
         crude = list(ratio_finding(ratio, found.causes))
     said = {shared.what.label for shared in found.findings}
@@ -197,9 +207,14 @@ def find_common_causes(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    ship = ship_model_of(system) if reference is None else with_reference(ship_model_of(system), reference)
+    ship = (
+        ship_model_of(system)
+        if reference is None
+        else with_reference(ship_model_of(system), reference)
+    )
     with threadpool_limits(1):
-        problems, alone = problems_of(logs, system, channels, causes, say, reference=reference), {}
+        problems = problems_of(logs, system, channels, causes, say, reference=reference)
+        alone = {}
         for name, problem in problems.items():
             say(f"{name} by itself")
             alone[name] = causes_in(problem, ship, lambda *_: None, reference)
@@ -210,7 +225,9 @@ def find_common_causes(
         "ambiguous" if any(one.verdict == "ambiguous" for one in alone.values()) else "unknown",
         tuple(common_faults({name: one.findings for name, one in alone.items()})),
         logs=alone,
-        discrepancies=tuple(common_discrepancies({name: one.discrepancies for name, one in alone.items()})),
+        discrepancies=tuple(
+            common_discrepancies({name: one.discrepancies for name, one in alone.items()})
+        ),
         left_out=left_out,
         causes=next(iter(known.values())).causes,
     )
@@ -221,9 +238,14 @@ def find_common_causes(
         found = _together(found, usable, ship, say)
     if reference is None:
         return found
-    since = with_sizes_at_reference((one.what for one in found.findings), ship, reference, found.causes)
+    since = with_sizes_at_reference(
+        (one.what for one in found.findings), ship, reference, found.causes
+    )
     return replace(
-        found, findings=tuple(replace(one, what=what) for one, what in zip(found.findings, since, strict=True))
+        found,
+        findings=tuple(
+            replace(one, what=what) for one, what in zip(found.findings, since, strict=True)
+        ),
     )
 
 
@@ -252,17 +274,25 @@ def _together(
     }
     comparisons = {name: one.comparison for name, one in usable.items()}
     comparisons |= {name: compared(checked(one)).comparison for name, one in read.items()}
-    ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one is not None and one.ratio})
+    ratios = ratio_of_logs(
+        {name: one.ratio for name, one in comparisons.items() if one is not None and one.ratio}
+    )
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
     say("all logs together")
-    verdict = judged_jointly(SeveralLogs(_of_one_form({name: one.problem for name, one in about.items()})))
+    verdict = judged_jointly(
+        SeveralLogs(_of_one_form({name: one.problem for name, one in about.items()}))
+    )
     basis = JointBasis(verdict, ratios, _has_ratio(ratios.common, verdict.judgement.verdict))
-    said = replace(found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()})
+    said = replace(
+        found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()}
+    )
     return _stated(said)
 
 
-def _relabelled(faults: Sequence[Shared[Finding]], usable: Mapping[str, Identification]) -> dict[str, list[Finding]]:
+def _relabelled(
+    faults: Sequence[Shared[Finding]], usable: Mapping[str, Identification]
+) -> dict[str, list[Finding]]:
     """Faults of the thrusters' labels that other logs show, by the logs that are put right after them."""
     found: dict[str, list[Finding]] = {}
     for fault in (one for one in faults if is_of_thrusters(one.what)):
@@ -294,7 +324,9 @@ def _of_one_form(problems: dict[str, IdentificationProblem]) -> dict[str, Identi
     """The problems of a ship whose form may differ by one scale: that of the log that says most of it."""
     widest = max(problem.model.form_scale for problem in problems.values())
     return {
-        name: problem if problem.model.form_scale == widest or problem.model.directions else of_scale(problem, widest)
+        name: problem
+        if problem.model.form_scale == widest or problem.model.directions
+        else of_scale(problem, widest)
         for name, problem in problems.items()
     }
 
@@ -309,7 +341,8 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     basis = found.basis
     if basis is None:
         return found
-    judgement, ratios = basis.verdict.judgement, basis.ratios
+    judgement = basis.verdict.judgement
+    ratios = basis.ratios
     is_split = ratios.common is None and any(one.differs(GROSS) for one in ratios.each.values())
     crude = ratio_finding(ratios.common, found.causes) if basis.has_ratio and ratios.common else ()
     causes = () if is_split else judgement.findings
@@ -322,7 +355,9 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     )
     seen = {one.label for one in (*judgement.candidates, *causes)} | {one.cause for one in crude}
     verdict = "unknown" if is_split else judgement.verdict
-    of_data = found.findings or any(one.kind == "data" for log in found.logs.values() for one in log.findings)
+    of_data = found.findings or any(
+        one.kind == "data" for log in found.logs.values() for one in log.findings
+    )
     return replace(
         found,
         verdict="named" if (crude or of_data) and verdict == "consistent" else verdict,
@@ -343,19 +378,25 @@ def _sizes(
     each = basis.ratios.each
     sizes = {
         one.label: {
-            name: dict.fromkeys(one.parameters, ParameterEstimate(of.ratio, of.std, "1")) for name, of in each.items()
+            name: dict.fromkeys(one.parameters, ParameterEstimate(of.ratio, of.std, "1"))
+            for name, of in each.items()
         }
         for one in crude
     }
     if not causes:
         return sizes
-    fit, said = basis.verdict.judgement.fit, {one.label for one in causes}
+    fit = basis.verdict.judgement.fit
+    said = {one.label for one in causes}
     named = [one for one in fit.hypotheses if one.label in said]
     return sizes | sizes_by_log(basis.verdict.logs, named, fit.values)
 
 
-def _with_relabelled(one: Shared[Finding], relabelled: Mapping[str, Sequence[Finding]]) -> Shared[Finding]:
-    return replace(one, put_right=tuple(name for name, faults in relabelled.items() if one.what in faults))
+def _with_relabelled(
+    one: Shared[Finding], relabelled: Mapping[str, Sequence[Finding]]
+) -> Shared[Finding]:
+    return replace(
+        one, put_right=tuple(name for name, faults in relabelled.items() if one.what in faults)
+    )
 
 
 def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
@@ -365,9 +406,12 @@ def _telling(logs: SeveralLogs, hypothesis: Hypothesis) -> tuple[str, ...]:
 
 def _prescription(basis: JointBasis) -> ExperimentDesign | None:
     """A manoeuvre that tells apart what all logs together cannot, planned about the longest of them."""
-    judgement, problems = basis.verdict.judgement, basis.verdict.logs.problems
+    judgement = basis.verdict.judgement
+    problems = basis.verdict.logs.problems
     name = max(problems, key=lambda name: problems[name].record.time.size)
-    if not judgement.rivals or problems[name].model.third_party:  # with those no manoeuvre can be prescribed
+    if (
+        not judgement.rivals or problems[name].model.third_party
+    ):  # with those no manoeuvre can be prescribed
         return None
     of_ship = [fit for fit in judgement.rivals if not all(map(is_in_one_log, fit.hypotheses))]
     best = cast(JointFit, judgement.fit)
@@ -381,7 +425,9 @@ def remarks_on(found: JointDiagnosis) -> list[str]:
     remarks = [f"{name} says nothing of the ship. {why}" for name, why in found.left_out.items()]
     for name, faults in found.relabelled.items():
         what = "; ".join(fault.sentence for fault in faults)
-        remarks.append(f"{name} is read as the other logs show ({what}): by itself it does not tell.")
+        remarks.append(
+            f"{name} is read as the other logs show ({what}): by itself it does not tell."
+        )
     if basis is None:
         return remarks
     if basis.ratios.contradiction:

@@ -60,7 +60,16 @@ from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import System, SystemStructure, read
 
-__all__ = ["STEPS", "Progress", "causes_in", "diagnose", "find_causes", "problem_of", "read_measurements", "verdict_on"]
+__all__ = [
+    "STEPS",
+    "Progress",
+    "causes_in",
+    "diagnose",
+    "find_causes",
+    "problem_of",
+    "read_measurements",
+    "verdict_on",
+]
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
@@ -135,7 +144,9 @@ def diagnose(
     say("extending the system")
     extended = with_findings(given, found.findings, basis.explained.identification, out)
     say("the gain, by co-simulation")
-    simulated = with_cosimulation(predicted, extended, lambda *done: say("the gain, by co-simulation", *done))
+    simulated = with_cosimulation(
+        predicted, extended, lambda *done: say("the gain, by co-simulation", *done)
+    )
     return replace(completed(found, predicted, extended, simulated), folder=folder)
 
 
@@ -197,7 +208,9 @@ def causes_in(
     found = stated(verdict_on(problem, progress))
     if reference is None:
         return found
-    return replace(found, findings=with_sizes_at_reference(found.findings, ship, reference, problem.causes))
+    return replace(
+        found, findings=with_sizes_at_reference(found.findings, ship, reference, problem.causes)
+    )
 
 
 def read_measurements(

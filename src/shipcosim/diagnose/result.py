@@ -139,13 +139,18 @@ class Diagnosis:
     @property
     def is_named(self) -> bool:
         """Whether causes of the physics are named, and nothing else is the matter."""
-        return self.verdict == "named" and any(finding.kind == "physics" for finding in self.findings)
+        return self.verdict == "named" and any(
+            finding.kind == "physics" for finding in self.findings
+        )
 
     @property
     def has_crude(self) -> bool:
         """Whether a cause is among the findings that only a comparison of commanded with felt force finds."""
         causes = self.basis.explained.identification.causes if self.basis else self.causes
-        return any(one.cause in causes and causes[one.cause].sought_in == "comparison" for one in self.findings)
+        return any(
+            one.cause in causes and causes[one.cause].sought_in == "comparison"
+            for one in self.findings
+        )
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -23,20 +23,34 @@ __all__ = ["completed", "stated"]
 
 def stated(log: JudgedLog) -> Diagnosis:
     """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""
-    found, judgement = log.explained.identification, log.judgement
+    found = log.explained.identification
+    judgement = log.judgement
     comparison = found.comparison
-    if any(fault.alternatives for fault in found.faults):  # of a log that may be misread, nothing is said of the ship
+    if any(
+        fault.alternatives for fault in found.faults
+    ):  # of a log that may be misread, nothing is said of the ship
         errors = comparison.errors if comparison else None
-        return Diagnosis("ambiguous", found.faults, not_testable=untestable_causes(log), baseline=errors, basis=log)
+        return Diagnosis(
+            "ambiguous",
+            found.faults,
+            not_testable=untestable_causes(log),
+            baseline=errors,
+            basis=log,
+        )
     beyond_doubt = comparison.findings if comparison else ()
     of_log = (*found.faults, *found.misconnections, *beyond_doubt)
     if comparison and judgement.verdict == "unknown":
         of_log = (*of_log, *comparison.found_without())
     seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
-    rivals = judgement.rivals if not found.ship.third_party else ()  # with those no manoeuvre can be prescribed
+    rivals = (
+        judgement.rivals if not found.ship.third_party else ()
+    )  # with those no manoeuvre can be prescribed
     return Diagnosis(
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
-        (*of_log, *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings)),
+        (
+            *of_log,
+            *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings),
+        ),
         judgement.candidates,
         judgement.indistinguishable,
         tuple(cause for cause in untestable_causes(log) if not _is_said(cause, seen, log)),
@@ -61,7 +75,12 @@ def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:
 def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
     """What the crude model gains over the craft's own horizon, where it is named and was measured."""
     comparison = log.explained.identification.comparison
-    if not found.has_crude or comparison is None or comparison.crude is None or comparison.crude.errors is None:
+    if (
+        not found.has_crude
+        or comparison is None
+        or comparison.crude is None
+        or comparison.crude.errors is None
+    ):
         return None
     return comparison.crude.errors.as_gain()
 
@@ -76,8 +95,10 @@ def completed(
     found: Diagnosis, predicted: PredictedLog, extended: ExtendedSystem, simulated: SimulatedLog
 ) -> Diagnosis:
     """A diagnosis with errors, gain, the extended system, and all that the page shows."""
-    log, errors = predicted.judged, simulated.errors
-    identification, problem = log.explained.identification, log.problem
+    log = predicted.judged
+    errors = simulated.errors
+    identification = log.explained.identification
+    problem = log.problem
     summary = LogSummary(
         Path(identification.log.encoding.get("source", "log")).name,
         identification.log,

@@ -42,15 +42,23 @@ class Access(dict):
 
     def __init__(self, variables: Sequence[Variable], kind: str):
         super().__init__()
-        self.variables, self.kind = variables, kind
+        self.variables = variables
+        self.kind = kind
 
     def __missing__(self, references: tuple[int, ...]) -> Found:
         found = []
         for reference in references:
-            if not 0 <= reference < len(self.variables) or self.variables[reference].type != self.kind:
+            if (
+                not 0 <= reference < len(self.variables)
+                or self.variables[reference].type != self.kind
+            ):
                 raise FmuError(f"there is no {self.kind} variable with value reference {reference}")
             found.append(self.variables[reference])
-        fixed = [variable.name for variable in found if variable.causality == "parameter" and not variable.tunable]
+        fixed = [
+            variable.name
+            for variable in found
+            if variable.causality == "parameter" and not variable.tunable
+        ]
         names = tuple(variable.name for variable in found)
         self[references] = Found(names, fixed[0] if fixed else "", getter(names))
         return self[references]
@@ -99,7 +107,9 @@ def refuse_not_finite_outputs(names: Sequence[str], values: Mapping[str, Any]) -
             raise FmuError(f"output '{name}' is {value!r}, not a finite number")
 
 
-def refuse_not_finite_inputs(variables: Sequence[Variable], names: Sequence[str], values: Sequence[float]) -> None:
+def refuse_not_finite_inputs(
+    variables: Sequence[Variable], names: Sequence[str], values: Sequence[float]
+) -> None:
     """Raise for the first variable that the host has set to NaN or infinity.
 
     Parameters

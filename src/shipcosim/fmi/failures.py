@@ -49,7 +49,9 @@ def message_of(text: str, status: str) -> Message:
     -------
     Message
     """
-    return Message(STATUSES.index(status), f"logStatus{status.capitalize()}", text.replace("%", "%%"))
+    return Message(
+        STATUSES.index(status), f"logStatus{status.capitalize()}", text.replace("%", "%%")
+    )
 
 
 def text_of(error: BaseException) -> str:

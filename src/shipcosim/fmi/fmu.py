@@ -52,11 +52,15 @@ class Fmu(Fmi2Slave):
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         if "__init__" in vars(cls):
-            raise TypeError(f"{cls.__name__} has an __init__: an FMU makes its state in start(self)")
+            raise TypeError(
+                f"{cls.__name__} has an __init__: an FMU makes its state in start(self)"
+            )
         cls.variables, cls.groups = variables_of(cls)
         taken = sorted({item.name for item in (*cls.variables, *cls.groups)} & set(dir(Fmu)))
         if taken:
-            raise TypeError(f"{cls.__name__} names a variable {', '.join(taken)}, which the shell uses itself")
+            raise TypeError(
+                f"{cls.__name__} names a variable {', '.join(taken)}, which the shell uses itself"
+            )
         leave_start_values(cls)
         if "start" in vars(cls):
             cls.start = _with_fresh_groups(cls.start)

@@ -72,7 +72,9 @@ class Fmi2Slave:
 
     variables: ClassVar[tuple[Variable, ...]] = ()
     groups: ClassVar[tuple[Parameters, ...]] = ()
-    newest: ClassVar[Any] = None  # refers to the instance that the binary made last, for a master in this process
+    newest: ClassVar[Any] = (
+        None  # refers to the instance that the binary made last, for a master in this process
+    )
 
     def start(self) -> None:
         """Set state and outputs for the start; see `Fmu`."""
@@ -86,7 +88,9 @@ class Fmi2Slave:
         cls._real, cls._integer, cls._boolean, cls._string = (
             Access(cls.variables, kind) for kind in ("Real", "Integer", "Boolean", "String")
         )
-        cls._real_outputs = tuple(v.name for v in cls.variables if v.causality == "output" and v.type == "Real")
+        cls._real_outputs = tuple(
+            v.name for v in cls.variables if v.causality == "output" and v.type == "Real"
+        )
         cls._real_output_values = staticmethod(getter(cls._real_outputs))
         cls._starts = {variable.name: variable.start for variable in cls.variables}
 
@@ -114,7 +118,8 @@ class Fmi2Slave:
     def exit_initialization_mode(self) -> None:
         if self._stale:
             self._start()
-        self._initialising, self._initialised = False, True
+        self._initialising = False
+        self._initialised = True
 
     def advance(self, time: float, step_size: float) -> bool:
         """`do_step` for a master in this process that can call it by itself; errors as of `real_setter`."""
@@ -157,7 +162,10 @@ class Fmi2Slave:
     @_guarded
     def get_integer(self, references: Sequence[int]) -> list[int]:
         found = self._integer[tuple(references)]
-        return [whole_number(name, value) for name, value in zip(found.names, self._get(found), strict=True)]
+        return [
+            whole_number(name, value)
+            for name, value in zip(found.names, self._get(found), strict=True)
+        ]
 
     @_guarded
     def get_boolean(self, references: Sequence[int]) -> list[bool]:
@@ -173,8 +181,11 @@ class Fmi2Slave:
         What goes wrong is raised as it is; `failure` turns it into what `set_real` raises. The same holds for
         `prepared_getter`.
         """
-        found, put = self._real[references], self.__dict__.update
-        names, fixed, isfinite = found.names, found.fixed, math.isfinite
+        found = self._real[references]
+        put = self.__dict__.update
+        names = found.names
+        fixed = found.fixed
+        isfinite = math.isfinite
 
         def set_values(values: Sequence[float]) -> None:
             if not isfinite(sum(values)):
@@ -189,8 +200,10 @@ class Fmi2Slave:
 
     def prepared_getter(self, kind: str, references: tuple[int, ...]) -> Callable[[], Sequence]:
         """`get_real`, `get_integer` or `get_boolean` for the same variables every time; see `real_setter`."""
-        found, values = getattr(self, f"_{kind.lower()}")[references], self.__dict__
-        take, names = found.values, found.names
+        found = getattr(self, f"_{kind.lower()}")[references]
+        values = self.__dict__
+        take = found.values
+        names = found.names
 
         def get_values() -> tuple:
             if self._stale:
@@ -198,7 +211,9 @@ class Fmi2Slave:
             return take(values)
 
         def get_integers() -> list[int]:
-            return [whole_number(name, value) for name, value in zip(names, get_values(), strict=True)]
+            return [
+                whole_number(name, value) for name, value in zip(names, get_values(), strict=True)
+            ]
 
         def get_booleans() -> tuple[bool, ...]:
             return tuple(map(bool, get_values()))
@@ -269,7 +284,9 @@ class Fmi2Slave:
         status : str
             "ok", "warning" or "error"; none of them stops the run, an exception does.
         """
-        self.messages.append(message_of(f"{self.instance_name} at t = {self._time:.9g} s: {message}", status))
+        self.messages.append(
+            message_of(f"{self.instance_name} at t = {self._time:.9g} s: {message}", status)
+        )
 
     def failure(self, error: BaseException) -> FmuError:
         """The error to raise in place of another: component and time, earlier messages, traceback below the shell."""
@@ -285,7 +302,9 @@ class Fmi2Slave:
     def _start(self) -> None:
         values = self.__dict__
         parameters = [variable for variable in self.variables if variable.causality == "parameter"]
-        missing = [variable for variable in parameters if variable.is_left_out(values[variable.name])]
+        missing = [
+            variable for variable in parameters if variable.is_left_out(values[variable.name])
+        ]
         problems = [text_of_left_out(missing)] if missing else []
         for variable in parameters:
             if variable not in missing and (problem := variable.outside(values[variable.name])):

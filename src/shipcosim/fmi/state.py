@@ -19,7 +19,18 @@ NUMPY = {
     "numpy.random.bit_generator": {"SeedSequence", "__pyx_unpickle_SeedSequence"},
 }
 PLAIN = {
-    "builtins": {"complex", "range", "slice", "bytearray", "set", "frozenset", "list", "dict", "int", "float"},
+    "builtins": {
+        "complex",
+        "range",
+        "slice",
+        "bytearray",
+        "set",
+        "frozenset",
+        "list",
+        "dict",
+        "int",
+        "float",
+    },
     "collections": {"deque", "OrderedDict", "defaultdict", "Counter"},
 }
 

@@ -56,14 +56,23 @@ class Variable:
         if self.required:
             start = "" if start is str else LEFT_OUT if maximum is None else -LEFT_OUT
         if type(start) not in TYPES:
-            raise TypeError(f"start value {start!r} of '{description}': give a float, an int, a bool or a str")
+            raise TypeError(
+                f"start value {start!r} of '{description}': give a float, an int, a bool or a str"
+            )
         if type(start) is int and unit != "1":
-            raise TypeError(f"'{description}' in {unit} starts at the whole number {start}: write {float(start)}")
+            raise TypeError(
+                f"'{description}' in {unit} starts at the whole number {start}: write {float(start)}"
+            )
         self.name = ""
         self.type = TYPES[type(start)]
-        self.start, self.unit, self.description = start, unit, description
-        self.minimum, self.maximum, self.tunable = minimum, maximum, tunable
-        self.origin, self.tolerance = origin, tolerance
+        self.start = start
+        self.unit = unit
+        self.description = description
+        self.minimum = minimum
+        self.maximum = maximum
+        self.tunable = tunable
+        self.origin = origin
+        self.tolerance = tolerance
         if outside := self.outside(start):
             raise ValueError(f"start value of '{description}' is {outside}")
 
@@ -157,7 +166,9 @@ class Parameters:
     def __init__(self, kind: type, *, prefix: str = ""):
         if not (dataclasses.is_dataclass(kind) and vars(kind)["__dataclass_params__"].frozen):
             raise TypeError(f"Parameters({kind.__name__}): give a frozen dataclass")
-        self.kind, self.prefix, self.name = kind, prefix, ""
+        self.kind = kind
+        self.prefix = prefix
+        self.name = ""
         self.variables = [self._variable(field) for field in dataclasses.fields(kind) if field.init]
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -168,18 +179,29 @@ class Parameters:
         if instance is None:
             return self
         values = instance.__dict__
-        if missing := [variable for variable in self.variables if variable.is_left_out(values[variable.name])]:
+        if missing := [
+            variable for variable in self.variables if variable.is_left_out(values[variable.name])
+        ]:
             raise ValueError(text_of_left_out(missing))
         start = len(self.prefix)
-        group = self.kind(**{variable.name[start:]: values[variable.name] for variable in self.variables})
+        group = self.kind(
+            **{variable.name[start:]: values[variable.name] for variable in self.variables}
+        )
         values[self.name] = group
         return group
 
     def holds(self, values: Mapping[str, Any]) -> bool:
         """Whether the dataclass among the values of an instance is the one that they make."""
-        made, start = values[self.name], len(self.prefix)
-        pairs = ((getattr(made, variable.name[start:]), values[variable.name]) for variable in self.variables)
-        return all(one is other or (type(one) is type(other) in PLAIN and one == other) for one, other in pairs)
+        made = values[self.name]
+        start = len(self.prefix)
+        pairs = (
+            (getattr(made, variable.name[start:]), values[variable.name])
+            for variable in self.variables
+        )
+        return all(
+            one is other or (type(one) is type(other) in PLAIN and one == other)
+            for one, other in pairs
+        )
 
     def _variable(self, field: dataclasses.Field) -> "Parameter":
         about = field.metadata
@@ -189,8 +211,12 @@ class Parameters:
                 "required(unit, description)"
             )
         default: Any = about["kind"] if field.default is dataclasses.MISSING else field.default
-        default = float(default) if field.type in (float, "float") and default is not float else default
-        bounds = {key: about[key] for key in ("minimum", "maximum", "origin", "tolerance") if key in about}
+        default = (
+            float(default) if field.type in (float, "float") and default is not float else default
+        )
+        bounds = {
+            key: about[key] for key in ("minimum", "maximum", "origin", "tolerance") if key in about
+        }
         try:
             variable = Parameter(default, about["unit"], about["description"], **bounds)
         except (TypeError, ValueError) as error:

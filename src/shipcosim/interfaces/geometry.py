@@ -26,10 +26,14 @@ def check_geometry(effect: Sequence[Sequence[float]], limits: Sequence[float]) -
     """
     columns = [tuple(unit) for unit, most in zip(effect, limits, strict=True) if most > 0.0]
     if not columns:
-        raise FmuError("no unit has any thrust: every largest thrust is 0 N. Give at least two units a limit above 0")
+        raise FmuError(
+            "no unit has any thrust: every largest thrust is 0 N. Give at least two units a limit above 0"
+        )
     matrix = np.array(columns).T
     least = np.eye(3) - matrix @ np.linalg.pinv(matrix, rcond=1e-6)
-    missing = [axis for axis, miss in zip(AXES, np.abs(least).max(axis=0), strict=True) if miss > 1e-6]
+    missing = [
+        axis for axis, miss in zip(AXES, np.abs(least).max(axis=0), strict=True) if miss > 1e-6
+    ]
     if missing:
         raise FmuError(
             f"the units cannot give {' or '.join(missing)} by itself, by their places and directions. "

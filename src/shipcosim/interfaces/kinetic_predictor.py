@@ -35,7 +35,9 @@ class KineticPredictor(MotionPredictor):
     def follow(self, state: Surroundings, known: Known, since: float) -> Surroundings:
         """Surroundings as `surroundings.step` has them."""
         models = {"hull": self.hull, "wind": self.wind, "ship": self.ship}
-        return self._estimated(surroundings.step(state, known, since, **models, parameters=self.assumed))
+        return self._estimated(
+            surroundings.step(state, known, since, **models, parameters=self.assumed)
+        )
 
     def reckoned(self, state: Surroundings, known: Known) -> tuple[Motion, ...]:
         """Motion at the horizons with the thrust of now held."""

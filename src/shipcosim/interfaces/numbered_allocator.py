@@ -77,15 +77,24 @@ class NumberedAllocator(Fmu):
     slack_X = Output("N", "force forward that is requested and not given")
     slack_Y = Output("N", "force to starboard that is requested and not given")
     slack_N = Output("N.m", "yaw moment that is requested and not given")
-    saturated = Output("1", "limits of thrust or missing units keep the commands from the requested load", start=False)
+    saturated = Output(
+        "1",
+        "limits of thrust or missing units keep the commands from the requested load",
+        start=False,
+    )
     thruster_power = Output(
         "W", "estimate of the power that the commands take: of each unit full power times share^1.5"
     )
-    solve_time = Output("s", "time that the law took by the clock, where measure_solve_time is true")
+    solve_time = Output(
+        "s", "time that the law took by the clock, where measure_solve_time is true"
+    )
 
     power = Parameters(FullPowers)
     measure_solve_time = Parameter(
-        False, "1", "measure the time of the law; off, so that runs repeat to the last digit", origin="choice"
+        False,
+        "1",
+        "measure the time of the law; off, so that runs repeat to the last digit",
+        origin="choice",
     )
 
     law: ClassVar[ModuleType]
@@ -95,8 +104,14 @@ class NumberedAllocator(Fmu):
     def start(self) -> None:
         self.design = self.designed()
         self._check()
-        self.least, self.most = (tuple(self.model.of_units(name)) for name in ("thrust_min", "thrust_max"))
-        self._show(self.law.at_rest((self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd), parameters=self.model))
+        self.least, self.most = (
+            tuple(self.model.of_units(name)) for name in ("thrust_min", "thrust_max")
+        )
+        self._show(
+            self.law.at_rest(
+                (self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd), parameters=self.model
+            )
+        )
 
     def designed(self) -> Any:
         """What the law computes once; an FMU that was trained reads its weights here."""
@@ -107,17 +122,24 @@ class NumberedAllocator(Fmu):
         first = self.available_1, self.available_2, self.available_3
         available = (*first, self.available_4, self.available_5, self.available_6)
         start = perf_counter() if self.measure_solve_time else 0.0
-        state = self.law.step(self.state, tau, available, h, parameters=self.model, design=self.design)
+        state = self.law.step(
+            self.state, tau, available, h, parameters=self.model, design=self.design
+        )
         self.solve_time = perf_counter() - start if self.measure_solve_time else 0.0
         self._show(state)
 
     def _check(self):
         """Refuse units that cannot give the three loads: as they can turn, or at their fixed angles."""
         names = ("x", "y", "azimuth", "thrust_min", "thrust_max")
-        effect, limits = [], []
-        for x, y, angle, least, most in zip(*(self.model.of_units(name) for name in names), strict=True):
+        effect = []
+        limits = []
+        for x, y, angle, least, most in zip(
+            *(self.model.of_units(name) for name in names), strict=True
+        ):
             for direction in (0.0, 0.5 * pi) if self.turns else (angle,):
-                effect.append((cos(direction), sin(direction), x * sin(direction) - y * cos(direction)))
+                effect.append(
+                    (cos(direction), sin(direction), x * sin(direction) - y * cos(direction))
+                )
                 limits.append(max(most, -least))
         check_geometry(effect, limits)
 
@@ -127,7 +149,14 @@ class NumberedAllocator(Fmu):
         self.thrust_cmd_4, self.thrust_cmd_5, self.thrust_cmd_6 = state.thrusts[3:]
         self.azimuth_cmd_1, self.azimuth_cmd_2, self.azimuth_cmd_3 = state.azimuths[:3]
         self.azimuth_cmd_4, self.azimuth_cmd_5, self.azimuth_cmd_6 = state.azimuths[3:]
-        self.tau_X, self.tau_Y, self.tau_N, self.saturated = state.tau_X, state.tau_Y, state.tau_N, state.saturated
+        self.tau_X = state.tau_X
+        self.tau_Y = state.tau_Y
+        self.tau_N = state.tau_N
+        self.saturated = state.saturated
         tau = self.tau_X_cmd, self.tau_Y_cmd, self.tau_N_cmd
-        self.slack_X, self.slack_Y, self.slack_N = slack(tau, (state.tau_X, state.tau_Y, state.tau_N))
-        self.thruster_power = thruster_power(used_shares(state.thrusts, self.least, self.most), self.power.of_units)
+        self.slack_X, self.slack_Y, self.slack_N = slack(
+            tau, (state.tau_X, state.tau_Y, state.tau_N)
+        )
+        self.thruster_power = thruster_power(
+            used_shares(state.thrusts, self.least, self.most), self.power.of_units
+        )

@@ -67,15 +67,23 @@ class MotionPredictor(Fmu):
     u_hat = Input("m/s", "estimated surge velocity over ground")
     v_hat = Input("m/s", "estimated sway velocity over ground")
     r_hat = Input("rad/s", "estimated yaw rate")
-    tau_X_bias = Input("N", "estimated force forward that neither thrust nor measured wind explains")
-    tau_Y_bias = Input("N", "estimated force to starboard that neither thrust nor measured wind explains")
+    tau_X_bias = Input(
+        "N", "estimated force forward that neither thrust nor measured wind explains"
+    )
+    tau_Y_bias = Input(
+        "N", "estimated force to starboard that neither thrust nor measured wind explains"
+    )
     tau_N_bias = Input("N.m", "estimated yaw moment that neither thrust nor measured wind explains")
     tau_X_allocated = Input("N", "force forward that the allocator's commands give")
     tau_Y_allocated = Input("N", "force to starboard that the allocator's commands give")
     tau_N_allocated = Input("N.m", "yaw moment that the allocator's commands give")
     wind_speed_meas = Input("m/s", "measured apparent wind speed at the mast")
-    wind_from_meas = Input("rad", "measured direction of the apparent wind at the mast, clockwise from the bow")
-    wind_rejected = Input("1", "the anemometer is lost or not believed: the bias has the wind's load", start=False)
+    wind_from_meas = Input(
+        "rad", "measured direction of the apparent wind at the mast, clockwise from the bow"
+    )
+    wind_rejected = Input(
+        "1", "the anemometer is lost or not believed: the bias has the wind's load", start=False
+    )
     x_d = Input("m", "desired north position")
     y_d = Input("m", "desired east position")
     psi_d = Input("rad", "desired heading, clockwise from north")
@@ -85,28 +93,48 @@ class MotionPredictor(Fmu):
     x_d_ddot = Input("m/s2", "desired acceleration north")
     y_d_ddot = Input("m/s2", "desired acceleration east")
     r_d_dot = Input("rad/s2", "desired yaw acceleration")
-    wave_frequency_hat = Input("rad/s", "frequency that the controller's wave filter has adapted to", start=1.0)
-    x_goal = Input("m", "north position that the reference goes to; as it starts: nobody says", start=NO_GOAL)
+    wave_frequency_hat = Input(
+        "rad/s", "frequency that the controller's wave filter has adapted to", start=1.0
+    )
+    x_goal = Input(
+        "m", "north position that the reference goes to; as it starts: nobody says", start=NO_GOAL
+    )
     y_goal = Input("m", "east position that the reference goes to")
     psi_goal = Input("rad", "heading that the reference goes to, clockwise from north")
 
-    predicted_at = Output("s", "time at which the prediction was made, from which its seconds count")
+    predicted_at = Output(
+        "s", "time at which the prediction was made, from which its seconds count"
+    )
     x_10 = Output("m", "north position in 10 s")
     y_10 = Output("m", "east position in 10 s")
     psi_10 = Output("rad", "heading in 10 s")
-    position_region_10 = Output("m", "radius about the place in 10 s that has the true one in 90 % of cases, or 0")
-    heading_region_10 = Output("rad", "half-width about the heading in 10 s that has the true one in 90 %, or 0")
+    position_region_10 = Output(
+        "m", "radius about the place in 10 s that has the true one in 90 % of cases, or 0"
+    )
+    heading_region_10 = Output(
+        "rad", "half-width about the heading in 10 s that has the true one in 90 %, or 0"
+    )
     x_30 = Output("m", "north position in 30 s")
     y_30 = Output("m", "east position in 30 s")
     psi_30 = Output("rad", "heading in 30 s")
-    position_region_30 = Output("m", "radius about the place in 30 s that has the true one in 90 % of cases, or 0")
-    heading_region_30 = Output("rad", "half-width about the heading in 30 s that has the true one in 90 %, or 0")
+    position_region_30 = Output(
+        "m", "radius about the place in 30 s that has the true one in 90 % of cases, or 0"
+    )
+    heading_region_30 = Output(
+        "rad", "half-width about the heading in 30 s that has the true one in 90 %, or 0"
+    )
     x_60 = Output("m", "north position in 60 s")
     y_60 = Output("m", "east position in 60 s")
     psi_60 = Output("rad", "heading in 60 s")
-    position_region_60 = Output("m", "radius about the place in 60 s that has the true one in 90 % of cases, or 0")
-    heading_region_60 = Output("rad", "half-width about the heading in 60 s that has the true one in 90 %, or 0")
-    learned = Output("1", "share of the learned correction in the prediction; 0 is the equations of motion alone")
+    position_region_60 = Output(
+        "m", "radius about the place in 60 s that has the true one in 90 % of cases, or 0"
+    )
+    heading_region_60 = Output(
+        "rad", "half-width about the heading in 60 s that has the true one in 90 %, or 0"
+    )
+    learned = Output(
+        "1", "share of the learned correction in the prediction; 0 is the equations of motion alone"
+    )
 
     mast = Parameters(MastParameters)
     regions = Parameters(RegionParameters)
@@ -115,14 +143,17 @@ class MotionPredictor(Fmu):
     def start(self) -> None:
         self.made = samples_due(self.start_time, self.prediction_period)
         known = self._known()
-        self.state, self.errors, self.lost_for = self.begin(known), (0.0, 0.0), -1.0
+        self.state = self.begin(known)
+        self.errors = (0.0, 0.0)
+        self.lost_for = -1.0
         self.awaited = ((inf, known.ship),) * (ceil(FORESIGHT / self.prediction_period) + 1)
         self._show(known, self.start_time)
 
     def step(self, t: float, h: float) -> None:
         due = samples_due(t, self.prediction_period)
         if self.made < due:
-            known, since = self._known(), (due - self.made) * self.prediction_period
+            known = self._known()
+            since = (due - self.made) * self.prediction_period
             self.made = due
             self.state = self.follow(self.state, known, since)
             self._judge_itself(known, since, t)
@@ -134,7 +165,10 @@ class MotionPredictor(Fmu):
         for at, foreseen in self.awaited:
             has_come = at <= t + 1e-6
             errors = own_errors(self.errors, known.ship, foreseen, since, regions=self.regions)
-            self.errors = where(has_come, errors[0], self.errors[0]), where(has_come, errors[1], self.errors[1])
+            self.errors = (
+                where(has_come, errors[0], self.errors[0]),
+                where(has_come, errors[1], self.errors[1]),
+            )
             awaited.append((where(has_come, inf, at), foreseen))
         self.awaited = tuple(awaited)
         self.lost_for = where(thrust_is_lost(known), maximum(self.lost_for, 0.0) + since, -1.0)
@@ -157,12 +191,15 @@ class MotionPredictor(Fmu):
             ship,
             (self.tau_X_bias, self.tau_Y_bias, self.tau_N_bias),
             (self.tau_X_allocated, self.tau_Y_allocated, self.tau_N_allocated),
-            *wind_from_mast(self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast),
+            *wind_from_mast(
+                self.wind_speed_meas, self.wind_from_meas, ship.u, ship.v, ship.r, mast=self.mast
+            ),
             1.0 - self.wind_rejected,
         )
         if self.x_goal == NO_GOAL:
             return known
-        place, rates = (self.x_d, self.y_d, self.psi_d), (self.x_d_dot, self.y_d_dot, self.r_d)
+        place = (self.x_d, self.y_d, self.psi_d)
+        rates = (self.x_d_dot, self.y_d_dot, self.r_d)
         desired = Desired(*place, *rates, self.x_d_ddot, self.y_d_ddot, self.r_d_dot)
         goal = self.x_goal, self.y_goal, self.psi_goal
         return known._replace(desired=desired, goal=goal, wave_frequency=self.wave_frequency_hat)
@@ -172,7 +209,8 @@ class MotionPredictor(Fmu):
         motions, positions, headings, self.learned = self.predict(self.state, known)
         self.awaited = (*self.awaited[1:], (t + FORESIGHT, motions[0]))
         wider, wider_heading = widening(self.errors, self.lost_for, regions=self.regions)
-        positions, headings = [wider * one for one in positions], [wider_heading * one for one in headings]
+        positions = [wider * one for one in positions]
+        headings = [wider_heading * one for one in headings]
         self.x_10, self.y_10, self.psi_10 = motions[0][:3]
         self.x_30, self.y_30, self.psi_30 = motions[1][:3]
         self.x_60, self.y_60, self.psi_60 = motions[2][:3]

@@ -70,7 +70,9 @@ class Ship(Fmu):
     v_wave = Output("m/s", "rate of the first-order motion, to starboard")
     r_wave = Output("rad/s", "rate of the first-order yaw")
     apparent_wind_speed = Output("m/s", "wind speed relative to the ship")
-    apparent_wind_from = Output("rad", "direction the apparent wind comes from, clockwise from the bow")
+    apparent_wind_from = Output(
+        "rad", "direction the apparent wind comes from, clockwise from the bow"
+    )
     tau_thrusters_X = Output("N", "sum of the connected loads, forward")
     tau_thrusters_Y = Output("N", "sum of the connected loads, to starboard")
     tau_thrusters_N = Output("N.m", "sum of the connected loads, yaw")
@@ -109,7 +111,14 @@ class Ship(Fmu):
         """Nothing else changes over a step."""
 
     def start(self) -> None:
-        self.state = Motion(self.x_start, self.y_start, wrap(self.psi_start), self.u_start, self.v_start, self.r_start)
+        self.state = Motion(
+            self.x_start,
+            self.y_start,
+            wrap(self.psi_start),
+            self.u_start,
+            self.v_start,
+            self.r_start,
+        )
         self.water = self.current_north, self.current_east
         self.settle()
         self._meet_waves(self.start_time)
@@ -125,7 +134,9 @@ class Ship(Fmu):
         self._add_connected()
         tau = self._with_form(self._loads())
         self.remember(h)
-        self.state = step(self.state, *tau, self.current_north, self.current_east, h, hull=self.hull)
+        self.state = step(
+            self.state, *tau, self.current_north, self.current_east, h, hull=self.hull
+        )
         self._meet_waves(tidy_time(t + h))
         self._write()
 
@@ -151,14 +162,23 @@ class Ship(Fmu):
         X = self.tau_X_1 + self.tau_X_2 + self.tau_X_3 + self.tau_X_4 + self.tau_X_5 + self.tau_X_6
         Y = self.tau_Y_1 + self.tau_Y_2 + self.tau_Y_3 + self.tau_Y_4 + self.tau_Y_5 + self.tau_Y_6
         N = self.tau_N_1 + self.tau_N_2 + self.tau_N_3 + self.tau_N_4 + self.tau_N_5 + self.tau_N_6
-        self.tau_thrusters_X, self.tau_thrusters_Y, self.tau_thrusters_N = X, Y, N
+        self.tau_thrusters_X = X
+        self.tau_thrusters_Y = Y
+        self.tau_thrusters_N = N
 
     def _meet_waves(self, t):
-        ship, hull = self.state, self.hull
+        ship = self.state
+        hull = self.hull
         load, motion = wave_response(
             t,
             *ship[:5],
-            components(self.wave_height, self.wave_period, self.wave_from, self.wave_peak_enhancement, self.wave_seed),
+            components(
+                self.wave_height,
+                self.wave_period,
+                self.wave_from,
+                self.wave_peak_enhancement,
+                self.wave_seed,
+            ),
             drift_table(self.drift.drift_table),
             length=hull.length,
             breadth=hull.breadth,
@@ -170,7 +190,9 @@ class Ship(Fmu):
     def _write(self):
         tau = self._with_form(self._loads())
         self.x, self.y, self.psi, self.u, self.v, self.r = ship = self.state
-        water, rates, loads = at_present(ship, *tau, self.current_north, self.current_east, hull=self.hull)
+        water, rates, loads = at_present(
+            ship, *tau, self.current_north, self.current_east, hull=self.hull
+        )
         self.u_r, self.v_r = water
         self.u_dot, self.v_dot, self.r_dot = rates
         self.tau_hull_X, self.tau_hull_Y, self.tau_hull_N = self._with_form(loads)

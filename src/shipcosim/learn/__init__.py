@@ -5,7 +5,15 @@ The only door to torch, which comes with `pip install "shipcosim[learn]"`. What 
 in `kinds`.
 """
 
-from shipcosim.learn.kinds import ALLOCATORS, COMPONENTS, DEAD_RECKONING, DOCKING, DRIFT, Kind, train
+from shipcosim.learn.kinds import (
+    ALLOCATORS,
+    COMPONENTS,
+    DEAD_RECKONING,
+    DOCKING,
+    DRIFT,
+    Kind,
+    train,
+)
 from shipcosim.learn.results import Trained, write_trained
 
 __all__ = [

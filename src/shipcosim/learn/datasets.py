@@ -5,7 +5,9 @@ import hashlib
 import numpy as np
 
 
-def independent(ranges: np.ndarray, sequences: int, samples: int, rng: np.random.Generator) -> np.ndarray:
+def independent(
+    ranges: np.ndarray, sequences: int, samples: int, rng: np.random.Generator
+) -> np.ndarray:
     """Commands that know nothing of one another, uniform between -range and +range.
 
     Parameters

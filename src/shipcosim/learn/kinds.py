@@ -49,18 +49,26 @@ ALLOCATORS: Mapping[str, Kind] = {
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 
 DRIFT: Mapping[str, Kind] = {
-    "ours": Kind(drift.OURS.description, lambda progress: drift.train(drift.ours, drift.OURS, progress)),
+    "ours": Kind(
+        drift.OURS.description, lambda progress: drift.train(drift.ours, drift.OURS, progress)
+    ),
     "paper-iv": Kind(
-        drift.PAPER_IV.description, lambda progress: drift.train(drift.as_paper_iv, drift.PAPER_IV, progress)
+        drift.PAPER_IV.description,
+        lambda progress: drift.train(drift.as_paper_iv, drift.PAPER_IV, progress),
     ),
 }
 """Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
 
-DEAD_RECKONING: Mapping[str, Kind] = {name: Kind(*one) for name, one in dead_reckoning.KINDS.items()}
+DEAD_RECKONING: Mapping[str, Kind] = {
+    name: Kind(*one) for name, one in dead_reckoning.KINDS.items()
+}
 """Dead reckoning by the name that `shipcosim train dead-reckoning --kind NAME` takes; the first is the default."""
 
 DOCKING: Mapping[str, Kind] = {
-    "ours": Kind(docking.OURS.description, lambda progress: docking.train(docking.learn_ours, docking.OURS, progress)),
+    "ours": Kind(
+        docking.OURS.description,
+        lambda progress: docking.train(docking.learn_ours, docking.OURS, progress),
+    ),
     "paper-iii": Kind(
         docking.PAPER_III.description,
         lambda progress: docking.train(docking.learn_paper_iii, docking.PAPER_III, progress),
@@ -95,6 +103,9 @@ def train(component: str, name: str, folder: Path, progress: Progress) -> list[P
     list of Path
         NAME.npz, NAME.json and NAME.md.
     """
-    clock, processor = time.perf_counter(), time.process_time()
+    clock = time.perf_counter()
+    processor = time.process_time()
     trained = COMPONENTS[component][name].train(progress)
-    return write_trained(trained, folder, name, time.perf_counter() - clock, time.process_time() - processor)
+    return write_trained(
+        trained, folder, name, time.perf_counter() - clock, time.process_time() - processor
+    )

@@ -66,8 +66,18 @@ class NeuralTraining:
 
 
 DP_SHIP = {
-    **{"port_x": -14.02, "port_y": -2.0, "starboard_x": -14.02, "starboard_y": 2.0, "tunnel_x": 14.48},
-    **{"port_azimuth": -0.7853981633974483, "starboard_azimuth": 0.7853981633974483, "azimuth_thrust_min": -30e3},
+    **{
+        "port_x": -14.02,
+        "port_y": -2.0,
+        "starboard_x": -14.02,
+        "starboard_y": 2.0,
+        "tunnel_x": 14.48,
+    },
+    **{
+        "port_azimuth": -0.7853981633974483,
+        "starboard_azimuth": 0.7853981633974483,
+        "azimuth_thrust_min": -30e3,
+    },
     **{"azimuth_thrust_max": 60e3, "tunnel_thrust_max": 21.6e3, "thrust_rate_max": 1000.0},
     **{"yaw_lever": 14.0, "yaw_lever_degraded": 300.0},
 }
@@ -88,21 +98,30 @@ def _four_azimuths() -> Units:
     each |= {"azimuth_rate": math.radians(10.0), "diameter": DIAMETER}
     values = {f"{name}_{k}": value for k in range(1, 5) for name, value in each.items()}
     for k, (x, y) in enumerate(places, 1):
-        middle, half = math.copysign(0.5 * math.pi, -y), math.pi - math.atan(0.1 + DIAMETER / (2.0 * abs(y)))
-        values |= {f"x_{k}": x, f"y_{k}": y, f"azimuth_first_{k}": middle - half, f"azimuth_last_{k}": middle + half}
+        middle = math.copysign(0.5 * math.pi, -y)
+        half = math.pi - math.atan(0.1 + DIAMETER / (2.0 * abs(y)))
+        values |= {
+            f"x_{k}": x,
+            f"y_{k}": y,
+            f"azimuth_first_{k}": middle - half,
+            f"azimuth_last_{k}": middle + half,
+        }
     parameters = neural_units.NeuralUnitsParameters(**values, yaw_lever=14.0)
     return neural_units.units_of(parameters, (POWER[0],) * 6)[0]
 
 
 RECIPES = {
     "neural": NeuralTraining(
-        "Our neural allocator of the DP ship, within the forbidden sectors of paper V", _dp_ship(0.0)
+        "Our neural allocator of the DP ship, within the forbidden sectors of paper V",
+        _dp_ship(0.0),
     ),
     "neural-slipstreams": NeuralTraining(
-        "Our neural allocator of the DP ship, which knows slipstreams instead of sectors", _dp_ship(DIAMETER)
+        "Our neural allocator of the DP ship, which knows slipstreams instead of sectors",
+        _dp_ship(DIAMETER),
     ),
     "neural-four-azimuths": NeuralTraining(
-        "Our neural allocator of the system four_azimuths, which knows slipstreams", _four_azimuths()
+        "Our neural allocator of the system four_azimuths, which knows slipstreams",
+        _four_azimuths(),
     ),
 }
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes."""
@@ -138,8 +157,19 @@ def train(recipe: NeuralTraining, progress: Progress) -> Trained:
         "interval in training [s]": 2 * interval,
         "drawn for each sequence": "scale 0.5 to 2, mirrored or not, units missing, power short, angles at the start",
     }
-    names = ("iterations", "hidden", "batch", "steps", "settling", "learning_rate", "missed", "turning")
-    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "Adam, cosine schedule"}
+    names = (
+        "iterations",
+        "hidden",
+        "batch",
+        "steps",
+        "settling",
+        "learning_rate",
+        "missed",
+        "turning",
+    )
+    settings = {name: getattr(recipe, name) for name in names} | {
+        "optimiser": "Adam, cosine schedule"
+    }
     return Trained(arrays, recipe.description, recipe.seed, data, settings, history)
 
 
@@ -147,16 +177,22 @@ def tensors(units: Units) -> Units:
     """The units in tensors of the precision of training."""
     found = {name: getattr(units, name) for name in Units._fields}
     vectors = {name: value for name, value in found.items() if isinstance(value, np.ndarray)}
-    return units._replace(**{name: torch.tensor(value, dtype=PRECISION) for name, value in vectors.items()})
+    return units._replace(
+        **{name: torch.tensor(value, dtype=PRECISION) for name, value in vectors.items()}
+    )
 
 
 def first_weights(recipe: NeuralTraining) -> list[torch.Tensor]:
     """Weights at the start: small in the last layer, so that units stay where they are."""
     n = len(recipe.units.x)
-    sizes, found = (8 + 5 * n, *recipe.hidden, 2 * n), []
+    sizes = (8 + 5 * n, *recipe.hidden, 2 * n)
+    found = []
     for number, (k, m) in enumerate(zip(sizes[:-1], sizes[1:], strict=True), 1):
         gain = 0.02 if number == len(sizes) - 1 else 1.0
-        found += [gain * torch.randn(k, m).to(PRECISION) / math.sqrt(k), torch.zeros(m, dtype=PRECISION)]
+        found += [
+            gain * torch.randn(k, m).to(PRECISION) / math.sqrt(k),
+            torch.zeros(m, dtype=PRECISION),
+        ]
     return [weight.requires_grad_() for weight in found]
 
 
@@ -167,7 +203,8 @@ def paired(weights: list) -> tuple:
 
 def smoothed(runs: np.ndarray, interval: float) -> np.ndarray:
     """Requests as the law smooths them, over whole runs."""
-    found, share = np.empty_like(runs), 1.0 - math.exp(-interval / neural.SMOOTHING)
+    found = np.empty_like(runs)
+    share = 1.0 - math.exp(-interval / neural.SMOOTHING)
     found[:, 0] = runs[:, 0]
     for k in range(1, runs.shape[1]):
         found[:, k] = found[:, k - 1] + share * (runs[:, k] - found[:, k - 1])
@@ -181,29 +218,39 @@ class Sequences:
         runs, _, self.interval = recorded_requests(every=2)
         part = slice(-HELD_OUT, None) if held_out else slice(None, -HELD_OUT)
         self.runs = [(kind[part], smoothed(kind[part], self.interval)) for kind in runs]
-        self.recipe, self.units = recipe, tensors(recipe.units)
+        self.recipe = recipe
+        self.units = tensors(recipe.units)
         self.random = np.random.default_rng(recipe.seed + (1000 if held_out else 0))
 
     def draw(self) -> tuple[torch.Tensor, torch.Tensor, Commands]:
         """Requests (steps, batch, 3), availability (batch, n) and the state before."""
-        r, size, steps = self.random, self.recipe.batch, self.recipe.steps
+        r = self.random
+        size = self.recipe.batch
+        steps = self.recipe.steps
         rows = [self._row(*self.runs[r.integers(len(self.runs))], steps) for _ in range(size)]
         scale = np.exp(r.uniform(-0.7, 0.7, (size, 1, 1)))
         scale = scale * np.where(r.random((size, 1, 1)) < 0.5, [1.0, -1.0, -1.0], 1.0)
-        tau = torch.from_numpy(np.array([tau for tau, _ in rows]) * scale).transpose(0, 1).contiguous()
+        tau = (
+            torch.from_numpy(np.array([tau for tau, _ in rows]) * scale)
+            .transpose(0, 1)
+            .contiguous()
+        )
         smooth = torch.from_numpy(np.array([smooth for _, smooth in rows]) * scale[:, 0])
         available = torch.from_numpy(self._availability(size))
         return tau, available, self._before(tau[0], smooth, available)
 
     def _row(self, tau, smooth, steps):
-        run, start = self.random.integers(len(tau)), self.random.integers(tau.shape[1] - steps)
+        run = self.random.integers(len(tau))
+        start = self.random.integers(tau.shape[1] - steps)
         return tau[run, start : start + steps], smooth[run, start]
 
     def _availability(self, size):
         """All units in half of the sequences; else one is missing, in a tenth two; in a fifth less power for all."""
-        r, n = self.random, len(self.recipe.units.x)
+        r = self.random
+        n = len(self.recipe.units.x)
         found = np.ones((size, n))
-        rows, lost = np.arange(size), r.integers(n, size=(2, size))
+        rows = np.arange(size)
+        lost = r.integers(n, size=(2, size))
         found[rows, lost[0]] = np.where(r.random(size) < 0.5, 0.0, 1.0)
         found[rows, lost[1]] *= np.where(r.random(size) < 0.1, 0.0, 1.0)
         less = np.where(r.random(size) < 0.2, r.uniform(0.3, 1.0, size), 1.0)
@@ -211,17 +258,22 @@ class Sequences:
 
     def _before(self, tau, smooth, available):
         """Units at random angles, with thrusts that meet the first request as well as these angles allow."""
-        units, r = self.units, self.random
-        first, last = torch.clamp(units.first, min=-np.pi), torch.clamp(units.last, max=np.pi)
+        units = self.units
+        r = self.random
+        first = torch.clamp(units.first, min=-np.pi)
+        last = torch.clamp(units.last, max=np.pi)
         last = torch.where(torch.isfinite(units.last), units.last, last)
         drawn = torch.from_numpy(r.random((len(tau), len(units.x))))
         angles = first + drawn * (last - first)
         angles = torch.where(units.turn > 0.0, angles, units.azimuth)
-        least, most = units.least * available, units.most * available
+        least = units.least * available
+        most = units.most * available
         thrusts = torch.clamp(0.05 * most, min=least)
         for _ in range(4):
             effect = neural.effects(thrusts, angles, units=units)
-            thrusts, _ = neural.completed(thrusts, tau, effect, least, most, torch.ones_like(thrusts), units=units)
+            thrusts, _ = neural.completed(
+                thrusts, tau, effect, least, most, torch.ones_like(thrusts), units=units
+            )
         return Commands(thrusts, angles, smooth)
 
 
@@ -236,7 +288,9 @@ def cost(
     tau, available, state = drawn
     with torch.no_grad():
         for request in tau[: recipe.settling]:
-            state = neural.propose(state, request, available, interval, units=units, weights=weights)
+            state = neural.propose(
+                state, request, available, interval, units=units, weights=weights
+            )
     tau = tau[recipe.settling :]
     size = (neural._scaled(tau, units.lever) ** 2).sum(-1).mean(0).sqrt() + 1e-3 * units.most.max()
     worth = units.full_power.max() * (size / units.most.max()) ** 1.5
@@ -249,8 +303,15 @@ def cost(
         missed = missed + torch.sqrt((left * left).sum(-1) + 1e-5)
         turn = (state.azimuths - before.azimuths) / (units.turn + 1e-6) / interval
         turned = turned + (turn * turn * (units.turn > 0.0)).mean(-1)
-    parts = [spent / len(tau), recipe.missed * missed / len(tau), recipe.turning * turned / len(tau)]
-    means = {name: part.mean() for name, part in zip(("power", "missed load", "turning"), parts, strict=True)}
+    parts = [
+        spent / len(tau),
+        recipe.missed * missed / len(tau),
+        recipe.turning * turned / len(tau),
+    ]
+    means = {
+        name: part.mean()
+        for name, part in zip(("power", "missed load", "turning"), parts, strict=True)
+    }
     return {"objective": torch.log(torch.stack(parts).sum(0)).mean()} | means
 
 
@@ -260,21 +321,30 @@ def missing(state: Commands, request: torch.Tensor, units: Units) -> torch.Tenso
     return neural._scaled(request, units.lever) - (effect @ state.thrusts[..., None])[..., 0]
 
 
-def fit(recipe: NeuralTraining, progress: Progress) -> tuple[list[np.ndarray], list[dict[str, float]]]:
+def fit(
+    recipe: NeuralTraining, progress: Progress
+) -> tuple[list[np.ndarray], list[dict[str, float]]]:
     """Weights of the smallest cost on held-out sequences, and costs on the way."""
-    weights, units = first_weights(recipe), tensors(recipe.units)
-    training, checked = Sequences(recipe, held_out=False), Sequences(replace(recipe, batch=256), held_out=True)
+    weights = first_weights(recipe)
+    units = tensors(recipe.units)
+    training = Sequences(recipe, held_out=False)
+    checked = Sequences(replace(recipe, batch=256), held_out=True)
     test = checked.draw()
     optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
     rate = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.iterations, eta_min=1e-4)
-    best, kept, history = math.inf, [], []
+    best = math.inf
+    kept = []
+    history = []
     for number in range(recipe.iterations + 1):
         if number % EVERY == 0 or number == recipe.iterations:
             with torch.no_grad():
                 found = cost(recipe, units, paired(weights), test, checked.interval)
-            history.append({"iteration": number} | {name: float(value) for name, value in found.items()})
+            history.append(
+                {"iteration": number} | {name: float(value) for name, value in found.items()}
+            )
             if history[-1]["objective"] < best:
-                best, kept = history[-1]["objective"], [w.detach().numpy().astype(float).copy() for w in weights]
+                best = history[-1]["objective"]
+                kept = [w.detach().numpy().astype(float).copy() for w in weights]
         if number < recipe.iterations:
             parts = cost(recipe, units, paired(weights), training.draw(), training.interval)
             optimiser.zero_grad()

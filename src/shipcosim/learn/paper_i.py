@@ -22,7 +22,10 @@ from shipcosim.series import read_table
 RECORD = Path(__file__).with_name("paper_i_exercise.csv.gz")
 """The exercise: 7800 rows at 20 Hz of the load that all thrusters give, and their commands. Written by
 docs/generators/write_exercise.py from a run of scenarios/paper_i/exercise.toml."""
-UNITS, NEURONS, SEED, HELD_OUT = 6, 20, 1, 0.1
+UNITS = 6
+NEURONS = 20
+SEED = 1
+HELD_OUT = 0.1
 DIGITS = 1e-15
 """Cutoff of a pseudo-inverse to the digits of its numbers. [1]"""
 NOTES = (
@@ -55,7 +58,9 @@ class PaperITraining:
 _OF = "Allocators 1 and 2 of paper I, 82.7 m vessel"
 RECIPES = {
     "paper-i": PaperITraining(f"{_OF}, as printed"),
-    "paper-i-cutoff": PaperITraining(f"{_OF}, singular values below 1 % of the largest left out", cutoff=0.01),
+    "paper-i-cutoff": PaperITraining(
+        f"{_OF}, singular values below 1 % of the largest left out", cutoff=0.01
+    ),
 }
 
 
@@ -74,10 +79,14 @@ def read_exercise(path: Path = RECORD) -> tuple[np.ndarray, np.ndarray]:
     """
     table = read_table(path)
     loads = np.stack([table[f"tau_{axis}"].values for axis in "XYN"], axis=-1)
-    return loads, np.stack([table[f"command_{unit}"].values for unit in range(1, UNITS + 1)], axis=-1)
+    return loads, np.stack(
+        [table[f"command_{unit}"].values for unit in range(1, UNITS + 1)], axis=-1
+    )
 
 
-def samples(loads: np.ndarray, commands: np.ndarray, allocator: int, signals: int) -> tuple[np.ndarray, np.ndarray]:
+def samples(
+    loads: np.ndarray, commands: np.ndarray, allocator: int, signals: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Inputs and targets of an allocator.
 
     Parameters
@@ -100,7 +109,12 @@ def samples(loads: np.ndarray, commands: np.ndarray, allocator: int, signals: in
 
 
 def fitted(
-    inputs: np.ndarray, targets: np.ndarray, *, neurons: int = NEURONS, seed: int = SEED, cutoff: float = DIGITS
+    inputs: np.ndarray,
+    targets: np.ndarray,
+    *,
+    neurons: int = NEURONS,
+    seed: int = SEED,
+    cutoff: float = DIGITS,
 ) -> dict:
     """An extreme learning machine: random hidden layer, output weights by the pseudo-inverse.
 
@@ -120,7 +134,11 @@ def fitted(
     """
     rng = np.random.default_rng(seed)
     scale = np.abs(inputs).max(axis=0)
-    found = {"scale": scale, "hidden": rng.uniform(-1.0, 1.0, (neurons, inputs.shape[1])), "bias": rng.random(neurons)}
+    found = {
+        "scale": scale,
+        "hidden": rng.uniform(-1.0, 1.0, (neurons, inputs.shape[1])),
+        "bias": rng.random(neurons),
+    }
     inverse = np.linalg.pinv(hidden_layer(found, inputs), rcond=cutoff)
     return found | {"output": (inverse @ targets).T}
 
@@ -140,7 +158,9 @@ def hidden_layer(network: dict, inputs: np.ndarray) -> np.ndarray:
     (n, neurons) array
         Between 0 and 1. [1]
     """
-    return 1.0 / (1.0 + np.exp(-(inputs / network["scale"] @ network["hidden"].T + network["bias"])))
+    return 1.0 / (
+        1.0 + np.exp(-(inputs / network["scale"] @ network["hidden"].T + network["bias"]))
+    )
 
 
 def train(recipe: PaperITraining, progress: Progress) -> Trained:
@@ -169,14 +189,20 @@ def train(recipe: PaperITraining, progress: Progress) -> Trained:
         seconds = time.perf_counter() - start
         arrays |= {f"{allocator}.{signals}.{name}": array for name, array in found.items()}
         named = f"allocator {allocator}, {signals} signals"
-        settings[f"{named}: RMSE on the exercise by output"] = _rounded(_rmse(found, inputs, targets))
-        settings[f"{named}: RMSE held out, over the range, by neurons"] = _by_neurons(inputs, targets, recipe.cutoff)
+        settings[f"{named}: RMSE on the exercise by output"] = _rounded(
+            _rmse(found, inputs, targets)
+        )
+        settings[f"{named}: RMSE held out, over the range, by neurons"] = _by_neurons(
+            inputs, targets, recipe.cutoff
+        )
         settings[f"{named}: time of one training (s)"] = round(seconds, 3)
     return Trained(arrays, recipe.description, SEED, _about(loads, commands), settings, (), NOTES)
 
 
 def _rmse(network, inputs, targets):
-    return np.sqrt(((hidden_layer(network, inputs) @ network["output"].T - targets) ** 2).mean(axis=0))
+    return np.sqrt(
+        ((hidden_layer(network, inputs) @ network["output"].T - targets) ** 2).mean(axis=0)
+    )
 
 
 def _by_neurons(inputs, targets, cutoff):
@@ -185,7 +211,9 @@ def _by_neurons(inputs, targets, cutoff):
     found = {}
     for neurons in (5, 10, 20, 40, 80):
         network = fitted(inputs[~held], targets[~held], neurons=neurons, cutoff=cutoff)
-        found[neurons] = float((_rmse(network, inputs[held], targets[held]) / np.ptp(targets, axis=0)).mean())
+        found[neurons] = float(
+            (_rmse(network, inputs[held], targets[held]) / np.ptp(targets, axis=0)).mean()
+        )
     return ", ".join(f"{neurons}: {error:.2g}" for neurons, error in found.items())
 
 

@@ -17,7 +17,9 @@ from shipcosim.learn.networks import Recurrent, arrays_of
 from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress, Schedule, fit, repeatable
 
-TUNNEL_X, AZIMUTH_X, AZIMUTH_Y = 13.08, -13.22, 2.7
+TUNNEL_X = 13.08
+AZIMUTH_X = -13.22
+AZIMUTH_Y = 2.7
 """Places of the thrusters, T2 to port and T3 to starboard. [m] OSP demo case of the ship of 28.9 m, grade B."""
 RANGES = np.array([10e3, 5e3, 180.0, 5e3, 180.0])
 """Ranges of F1, F2, angle 2, F3, angle 3. [N, N, deg, N, deg] Paper V, eq. 3."""
@@ -31,7 +33,8 @@ SECTORS = ((-100.0, -80.0), (80.0, 100.0))
 """Disallowed sectors of both azimuths. [deg] Paper V, III-B5."""
 K = (100.0, 100.0, 0.1, 1e-7, 1e-7, 0.1)
 """Weights k0 to k5 of the losses. [1] Paper V, Table II."""
-WIDTH, LAYERS = 64, 2
+WIDTH = 64
+LAYERS = 2
 NAMES = ("k0 L0", "k1 L1", "k2 L2", "k3 L3", "k4 L4", "k5 L5")
 NOTES = (
     "Not printed in the paper, and chosen here: Adam with a learning rate of 0.001; torch's initial weights; a"
@@ -124,13 +127,27 @@ def train(recipe: PaperVTraining, progress: Progress) -> Trained:
     with repeatable(recipe.schedule.seed):
         network = Autoencoder()
         loss = partial(losses, network, k4=recipe.k4, mean=_row(data.mean), std=_row(data.std))
-        batches, held_out = data.forces[: data.trained], data.forces[data.trained :].flatten(0, 1)[None]
+        batches = data.forces[: data.trained]
+        held_out = data.forces[data.trained :].flatten(0, 1)[None]
         epochs = fit(network, loss, batches, held_out, recipe.schedule, progress)
     # Commands with their angles in rad.
     radians = RANGES * np.array([1.0, 1.0, np.pi / 180.0, 1.0, np.pi / 180.0])
-    arrays = {"mean": data.mean, "std": data.std, "ranges": radians, "sample_time": np.array(SAMPLE_TIME)}
+    arrays = {
+        "mean": data.mean,
+        "std": data.std,
+        "ranges": radians,
+        "sample_time": np.array(SAMPLE_TIME),
+    }
     arrays |= arrays_of(network.encoder, "encoder") | arrays_of(network.decoder, "decoder")
-    return Trained(arrays, recipe.description, recipe.seed, _about(recipe, data), _settings(recipe), epochs, NOTES)
+    return Trained(
+        arrays,
+        recipe.description,
+        recipe.seed,
+        _about(recipe, data),
+        _settings(recipe),
+        epochs,
+        NOTES,
+    )
 
 
 def data_of(recipe: PaperVTraining) -> Data:
@@ -148,11 +165,16 @@ def data_of(recipe: PaperVTraining) -> Data:
     """
     rng = np.random.default_rng(recipe.seed)
     size = recipe.batches * recipe.sequences, recipe.samples
-    drawn = random_walks(RANGES, RATES * SAMPLE_TIME, *size, rng) if recipe.walks else independent(RANGES, *size, rng)
+    drawn = (
+        random_walks(RANGES, RATES * SAMPLE_TIME, *size, rng)
+        if recipe.walks
+        else independent(RANGES, *size, rng)
+    )
     trained = round(recipe.share * recipe.batches)
     drawn = drawn.reshape(recipe.batches, recipe.sequences, recipe.samples, len(RANGES))
     forces = generalised_force(torch.from_numpy(drawn)).numpy()
-    mean, std = forces[:trained].mean((0, 1, 2)), forces[:trained].std((0, 1, 2))
+    mean = forces[:trained].mean((0, 1, 2))
+    std = forces[:trained].std((0, 1, 2))
     return Data(drawn, torch.from_numpy((forces - mean) / std).float(), mean, std, trained)
 
 
@@ -170,8 +192,12 @@ def generalised_force(commands: torch.Tensor) -> torch.Tensor:
         Forward, to starboard, yaw moment. [N, N, N.m]
     """
     f1, f2, a2, f3, a3 = commands.unbind(-1)
-    a2, a3 = torch.deg2rad(a2), torch.deg2rad(a3)
-    X2, Y2, X3, Y3 = f2 * a2.cos(), f2 * a2.sin(), f3 * a3.cos(), f3 * a3.sin()
+    a2 = torch.deg2rad(a2)
+    a3 = torch.deg2rad(a3)
+    X2 = f2 * a2.cos()
+    Y2 = f2 * a2.sin()
+    X3 = f3 * a3.cos()
+    Y3 = f3 * a3.sin()
     N = TUNNEL_X * f1 + AZIMUTH_X * (Y2 + Y3) + AZIMUTH_Y * (X2 - X3)
     return torch.stack([X2 + X3, f1 + Y2 + Y3, N], -1)
 
@@ -200,9 +226,15 @@ def losses(
     code = network.encoder(forces)
     commands = code * _row(RANGES)
     given = (generalised_force(commands) - mean) / std
-    size, thrusts, angles = abs(commands), commands[..., [0, 1, 3]], commands[..., [2, 4]]
+    size = abs(commands)
+    thrusts = commands[..., [0, 1, 3]]
+    angles = commands[..., [2, 4]]
     changes = abs(commands[:, 1:] - commands[:, :-1])
-    inside = torch.stack([(angles > low) & (angles < high) for low, high in SECTORS]).to(code.dtype).sum((0, -1))
+    inside = (
+        torch.stack([(angles > low) & (angles < high) for low, high in SECTORS])
+        .to(code.dtype)
+        .sum((0, -1))
+    )
     found = (
         ((forces - given) ** 2).sum(-1),
         ((forces - network.decoder(code)) ** 2).sum(-1),
@@ -220,7 +252,9 @@ def _row(values: np.ndarray) -> torch.Tensor:
 
 
 def _about(recipe: PaperVTraining, data: Data) -> dict:
-    kind = "random walks, steps uniform within the rates" if recipe.walks else "independent, uniform"
+    kind = (
+        "random walks, steps uniform within the rates" if recipe.walks else "independent, uniform"
+    )
     return {
         "commands": f"{kind}; F1 within 10 kN, F2 and F3 within 5 kN, angles within 180 deg",
         "mini-batches to train on": data.trained,
@@ -228,7 +262,9 @@ def _about(recipe: PaperVTraining, data: Data) -> dict:
         "a mini-batch": f"{recipe.sequences} sequences of {recipe.samples} samples",
         "SHA-256 of the commands": digest(data.commands),
         "mean of the forces (N, N, N.m)": [float(f"{value:.6g}") for value in data.mean],
-        "standard deviation of the forces (N, N, N.m)": [float(f"{value:.6g}") for value in data.std],
+        "standard deviation of the forces (N, N, N.m)": [
+            float(f"{value:.6g}") for value in data.std
+        ],
     }
 
 

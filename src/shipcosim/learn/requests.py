@@ -29,6 +29,7 @@ def recorded_requests(every: int = 1) -> tuple[list[np.ndarray], np.ndarray, flo
     """
     with np.load(REQUESTS) as found:
         runs = [
-            (found[kind][:, ::every] * found["unit"]).astype(np.float32) for kind in ("stationkeeping", "four_corner")
+            (found[kind][:, ::every] * found["unit"]).astype(np.float32)
+            for kind in ("stationkeeping", "four_corner")
         ]
         return runs, found["seeds"], every * float(found["interval"])

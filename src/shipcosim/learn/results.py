@@ -66,7 +66,10 @@ def write_trained(
     list of Path
         NAME.npz, NAME.json and NAME.md.
     """
-    report = report_of(trained, name) | {"time_s": round(time, 1), "processor_time_s": round(processor_time, 1)}
+    report = report_of(trained, name) | {
+        "time_s": round(time, 1),
+        "processor_time_s": round(processor_time, 1),
+    }
     contents = {
         ".npz": npz_bytes(trained.arrays),
         ".json": (json.dumps(report, indent=1, ensure_ascii=False) + "\n").encode(),
@@ -149,13 +152,21 @@ def markdown(report: Mapping[str, Any]) -> str:
     lines = [f"# {report['name']}", "", report["description"], ""]
     lines += [f"{note}\n" for note in report["notes"]]
     times = f"{report['time_s']:.0f} s by the clock, {report['processor_time_s']:.0f} s of one processor core"
-    lines += [f"{report['weights']} numbers, seed {report['seed']}, trained in {times}, by {versions}."]
+    lines += [
+        f"{report['weights']} numbers, seed {report['seed']}, trained in {times}, by {versions}."
+    ]
     for title in ("data", "settings"):
         lines += ["", f"## {title.capitalize()}", "", "| | |", "|---|---|"]
         lines += [f"| {name} | {_text(value)} |" for name, value in report[title].items()]
     if report["epochs"]:
         names = list(report["epochs"][0])
-        lines += ["", "## Losses by epoch", "", f"| epoch | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
+        lines += [
+            "",
+            "## Losses by epoch",
+            "",
+            f"| epoch | {' | '.join(names)} |",
+            "|---" * (len(names) + 1) + "|",
+        ]
         for number, epoch in enumerate(report["epochs"], 1):
             lines.append(f"| {number} | {' | '.join(f'{epoch[name]:.4g}' for name in names)} |")
     return "\n".join(lines) + "\n"

@@ -64,7 +64,9 @@ def repeatable(seed: int) -> Iterator[None]:
     """
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
-    torch.set_flush_denormal(True)  # gradients that vanish along a sequence are slow to compute with
+    torch.set_flush_denormal(
+        True
+    )  # gradients that vanish along a sequence are slow to compute with
     try:
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seed)
@@ -105,7 +107,9 @@ def fit(
     order = np.random.default_rng(schedule.seed)
     optimiser = torch.optim.Adam(network.parameters(), lr=schedule.learning_rate, fused=True)
     epochs: list[dict[str, float]] = []
-    best, weights, total = np.inf, copy.deepcopy(network.state_dict()), schedule.most_epochs * len(batches)
+    best = np.inf
+    weights = copy.deepcopy(network.state_dict())
+    total = schedule.most_epochs * len(batches)
     for number in range(schedule.most_epochs):
         trained = 0.0
         for done, index in enumerate(order.permutation(len(batches)), number * len(batches) + 1):
@@ -114,7 +118,8 @@ def fit(
         found = _held_out(losses, held_out)
         epochs.append({"training": trained / len(batches), "held out": sum(found.values())} | found)
         if epochs[-1]["held out"] < best:
-            best, weights = epochs[-1]["held out"], copy.deepcopy(network.state_dict())
+            best = epochs[-1]["held out"]
+            weights = copy.deepcopy(network.state_dict())
         if best < min(epoch["held out"] for epoch in epochs[-schedule.patience :]):
             break
     network.load_state_dict(weights)

@@ -12,7 +12,12 @@ from shipcosim.ssp import Component
 
 Drawn = TypeVar("Drawn")
 Record = TypeVar("Record")
-STRIPS, WIND, POWER, DAMPING, MEMORY, NOISE = 0.30, 0.15, 0.15, 0.4, 0.25, 0.2
+STRIPS = 0.30
+WIND = 0.15
+POWER = 0.15
+DAMPING = 0.4
+MEMORY = 0.25
+NOISE = 0.2
 """Most at distance 1: of the drag factor at five places along the hull, of the wind load factors at eight directions,
 of powers of speed from 2, of linear damping over the quadratic one at `SPEEDS`, of the added mass that remembers, of
 the errors of sensors. [1]"""
@@ -54,7 +59,9 @@ class TrueLoads(NamedTuple):
         }
 
 
-def factors(rng: np.random.Generator, size: int | tuple[int, int], most: float, distance: float) -> np.ndarray:
+def factors(
+    rng: np.random.Generator, size: int | tuple[int, int], most: float, distance: float
+) -> np.ndarray:
     """Factors about 1, drawn uniformly.
 
     Parameters
@@ -95,7 +102,10 @@ def known_to(component: Component, *kinds: type) -> list[Any]:
 
 
 def sailed(
-    sail: Callable[[Drawn], Record], drawn: Sequence[Drawn], processes: int, progress: Callable[[int, int], Any] | None
+    sail: Callable[[Drawn], Record],
+    drawn: Sequence[Drawn],
+    processes: int,
+    progress: Callable[[int, int], Any] | None,
 ) -> Iterator[Record]:
     """What several co-simulations give, in their order.
 

@@ -5,7 +5,14 @@ in what the package ships. `entries` lists them, `fmus` gives the folders of bui
 """
 
 from shipcosim.library.building import build_stale, built_fmus, fmus
-from shipcosim.library.finding import SYSTEMS, check_is_system, find, find_any, find_parameters, scenarios
+from shipcosim.library.finding import (
+    SYSTEMS,
+    check_is_system,
+    find,
+    find_any,
+    find_parameters,
+    scenarios,
+)
 from shipcosim.library.names import KINDS, Entry, entries, fmu_sources, line_of, named, names
 from shipcosim.library.places import cache, project_of, roots, shipped
 

@@ -63,7 +63,8 @@ def build_stale(project: Path) -> Path:
     """
     from shipcosim.fmi.export.builder import build_fmu
 
-    out, shared = built_fmus(project), max(_newest(PACKAGE / part) for part in IN_EVERY_FMU)
+    out = built_fmus(project)
+    shared = max(_newest(PACKAGE / part) for part in IN_EVERY_FMU)
     for name, folder in fmu_sources(project).items():
         fmu = out / f"{name}.fmu"
         if not fmu.is_file() or fmu.stat().st_mtime < max(shared, _newest(folder)):
@@ -101,7 +102,9 @@ def _build_into_cache(root: Path, folder: Path) -> None:
         temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".building-"))
     except OSError as error:
         remedy = f"Set {CACHE} to a folder that can be written to."
-        raise ShipcosimError(Problem(str(folder), f"cannot be written: {error.strerror}.", remedy)) from None
+        raise ShipcosimError(
+            Problem(str(folder), f"cannot be written: {error.strerror}.", remedy)
+        ) from None
     try:
         build_all(root / "fmus", out=temporary)
         temporary.chmod(0o755)
@@ -123,7 +126,9 @@ def _digest(root: Path) -> str:
         for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
             if file.is_file() and file.suffix != ".pyc":
                 content = file.read_bytes()
-                digest.update(f"{file.relative_to(PACKAGE).as_posix()} {len(content)}\n".encode() + content)
+                digest.update(
+                    f"{file.relative_to(PACKAGE).as_posix()} {len(content)}\n".encode() + content
+                )
     return digest.hexdigest()[:16]
 
 

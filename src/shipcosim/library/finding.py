@@ -21,7 +21,9 @@ WHAT = {
 }
 
 
-def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = None, build: bool = True) -> Path:
+def find(
+    kind: str, given: StrPath, option: str = "", near: StrPath | None = None, build: bool = True
+) -> Path:
     """Path of what a user means.
 
     Parameters
@@ -49,15 +51,22 @@ def find(kind: str, given: StrPath, option: str = "", near: StrPath | None = Non
     """
     text = os.fspath(given)
     _check_kind(kind, text)
-    path, known = Path(text.partition("#")[0]), names(kind, near)
+    path = Path(text.partition("#")[0])
+    known = names(kind, near)
     is_plain = text in known and not _is_one(kind, path)
-    if path.exists() and not is_plain and (kind not in ("scenario", "study", "fmu") or path.is_file()):
+    if (
+        path.exists()
+        and not is_plain
+        and (kind not in ("scenario", "study", "fmu") or path.is_file())
+    ):
         return Path(text)
     if text in known:
         return built_fmu(known[text], build) if kind == "fmu" else known[text]
     where = f"{option} {text}" if option else text
     raise ShipcosimError(
-        Problem(where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), known))
+        Problem(
+            where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), known)
+        )
     )
 
 
@@ -75,7 +84,11 @@ def find_any(given: str) -> str:
     if kinds:
         return str(find(kinds[0], given))
     close = get_close_matches(given, [name for kind in KINDS for name in names(kind)], n=1)
-    remedy = f"Did you mean '{close[0]}'?" if close else "Give the path of one, or a name of `shipcosim list`."
+    remedy = (
+        f"Did you mean '{close[0]}'?"
+        if close
+        else "Give the path of one, or a name of `shipcosim list`."
+    )
     raise ShipcosimError(Problem(given, "There is no such file or folder.", remedy))
 
 
@@ -93,7 +106,9 @@ def scenarios(given: str) -> list[Path]:
         return []
     found = sorted(folder.glob("*.toml"))
     if not found:
-        raise ShipcosimError(Problem(given, "There is no scenario file in this folder.", "Name a .toml file."))
+        raise ShipcosimError(
+            Problem(given, "There is no scenario file in this folder.", "Name a .toml file.")
+        )
     return found
 
 
@@ -119,7 +134,9 @@ def _check_kind(kind: str, text: str) -> None:
         check_is_system(text)
     if kind == "scenario" and Path(text).suffix.lower() in SYSTEMS:
         raise ShipcosimError(
-            Problem(text, "This is a system, not a scenario.", f"`shipcosim simulate {text}` runs it.")
+            Problem(
+                text, "This is a system, not a scenario.", f"`shipcosim simulate {text}` runs it."
+            )
         )
 
 

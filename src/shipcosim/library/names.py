@@ -69,22 +69,34 @@ def line_of(kind: str, path: Path) -> str:
             "fmu": _description_in_python,
             "example": _description_of_example,
         }[kind](path)
-    except (OSError, ValueError, SyntaxError, RecursionError):  # TOMLDecodeError and ParseError are among these
+    except (
+        OSError,
+        ValueError,
+        SyntaxError,
+        RecursionError,
+    ):  # TOMLDecodeError and ParseError are among these
         return "(its file cannot be read)"
 
 
 def fmu_sources(project: Path) -> dict[str, Path]:
     """Folders of FMUs by name, in the order of their names."""
-    return {f.name: f for f in sorted((project / "fmus").glob("*")) if (f / f"{f.name}.py").is_file()}
+    return {
+        f.name: f for f in sorted((project / "fmus").glob("*")) if (f / f"{f.name}.py").is_file()
+    }
 
 
 def _in_root(kind: str, root: Path) -> Iterator[tuple[str, Path]]:
     """Names of a kind in a project or in what is shipped, in their order."""
     if kind in FOLDERS_OF:
         folder = root / FOLDERS_OF[kind]
-        yield from ((f.relative_to(folder).with_suffix("").as_posix(), f) for f in sorted(folder.rglob("*.toml")))
+        yield from (
+            (f.relative_to(folder).with_suffix("").as_posix(), f)
+            for f in sorted(folder.rglob("*.toml"))
+        )
     elif kind == "system":
-        yield from ((f.parent.name, f.parent) for f in sorted(root.glob(f"ssp/*/{SYSTEM_STRUCTURE}")))
+        yield from (
+            (f.parent.name, f.parent) for f in sorted(root.glob(f"ssp/*/{SYSTEM_STRUCTURE}"))
+        )
         yield from ((f.stem, f) for f in sorted([*root.glob("ssp/*.ssp"), *root.glob("ssp/*.ssd")]))
     elif kind == "ship":
         for folder in (root / "ships", root / "ssp" / "ships"):
@@ -93,7 +105,9 @@ def _in_root(kind: str, root: Path) -> Iterator[tuple[str, Path]]:
     elif kind == "fmu":
         yield from fmu_sources(root).items()
     elif root == shipped():
-        files = (f for f in sorted(root.glob("docs/examples/*")) if f.name.endswith((".csv", ".csv.gz")))
+        files = (
+            f for f in sorted(root.glob("docs/examples/*")) if f.name.endswith((".csv", ".csv.gz"))
+        )
         yield from ((f.name.partition(".")[0], f) for f in files)
 
 
@@ -122,7 +136,9 @@ def _description_in_python(path: Path) -> str:
     """First line on the FMU's class, else on the file."""
     tree = ast.parse((path / f"{path.name}.py").read_bytes())
     classes = [node for node in tree.body if isinstance(node, ast.ClassDef)]
-    fmus = [node for node in classes if any(ast.unparse(base).endswith("Fmu") for base in node.bases)]
+    fmus = [
+        node for node in classes if any(ast.unparse(base).endswith("Fmu") for base in node.bases)
+    ]
     text = next(filter(None, map(ast.get_docstring, (*fmus, tree))), "")
     return text.partition("\n")[0]
 

@@ -5,7 +5,13 @@ from pathlib import Path
 
 StrPath = str | os.PathLike[str]
 PACKAGE = Path(__file__).resolve().parents[1]
-FOLDERS = ("fmus", "ssp", "scenarios", "studies", "ships")  # each makes the folder around it a project
+FOLDERS = (
+    "fmus",
+    "ssp",
+    "scenarios",
+    "studies",
+    "ships",
+)  # each makes the folder around it a project
 CACHE = "SHIPCOSIM_CACHE"  # environment variable: folder of the cache, in place of the platform's
 
 
@@ -23,7 +29,9 @@ def project_of(start: StrPath | None = None) -> Path | None:
 
 def _is_project(folder: Path) -> bool:
     """Our own ships lie in ssp/ships, which makes no project of ssp/."""
-    return any((folder / name).is_dir() for name in FOLDERS if (folder.name, name) != ("ssp", "ships"))
+    return any(
+        (folder / name).is_dir() for name in FOLDERS if (folder.name, name) != ("ssp", "ships")
+    )
 
 
 def shipped() -> Path:
@@ -41,4 +49,8 @@ def cache() -> Path:
     """Folder of what is made on first use: SHIPCOSIM_CACHE, else where the platform keeps such things."""
     from platformdirs import user_cache_path
 
-    return Path(os.environ[CACHE]) if os.environ.get(CACHE) else user_cache_path("shipcosim", appauthor=False)
+    return (
+        Path(os.environ[CACHE])
+        if os.environ.get(CACHE)
+        else user_cache_path("shipcosim", appauthor=False)
+    )

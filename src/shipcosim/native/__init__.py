@@ -4,4 +4,11 @@ from shipcosim.native.compiler import check_installed, is_installed, libraries
 from shipcosim.native.component import CompiledStep, compiled_steps
 from shipcosim.native.symbols import Untraceable
 
-__all__ = ["CompiledStep", "Untraceable", "check_installed", "compiled_steps", "is_installed", "libraries"]
+__all__ = [
+    "CompiledStep",
+    "Untraceable",
+    "check_installed",
+    "compiled_steps",
+    "is_installed",
+    "libraries",
+]

@@ -35,7 +35,8 @@ def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:
     Untraceable
         A number differs; with its name, the step and both values.
     """
-    random, before = np.random.default_rng(1), compiled.memory.copy()
+    random = np.random.default_rng(1)
+    before = compiled.memory.copy()
     function = ctypes.CFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 4)(compiled.function.value)
     call = ctypes.cast(compiled.call, ctypes.c_void_p)
     python = _copy(compiled.fmu)
@@ -50,7 +51,9 @@ def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:
                 python.step(time + number * step_size, step_size)
             except Exception:
                 if status == DONE:
-                    raise Untraceable(f"in step {number} Python fails and compiled code does not") from None
+                    raise Untraceable(
+                        f"in step {number} Python fails and compiled code does not"
+                    ) from None
                 python = _copy(compiled.fmu)
                 continue
             if status == DONE:
@@ -87,10 +90,15 @@ def _give_inputs(fmu, compiled, random):
 def _compare(compiled, shape, number):
     expected = np.array(shape.numbers, dtype=float)
     if len(expected) != len(compiled.memory) - 2:
-        raise Untraceable(f"in step {number} its state has another shape than compiled code gives it")
+        raise Untraceable(
+            f"in step {number} its state has another shape than compiled code gives it"
+        )
     with np.errstate(invalid="ignore"):
         off = np.abs(compiled.memory[:-2] - expected) > LARGEST * np.maximum(np.abs(expected), 1.0)
     if off.any():
         place = int(np.argmax(off))
-        name, found = text_of(shape.flat.leaves[place].path), compiled.memory[place]
-        raise Untraceable(f"in step {number} compiled code gives {name} = {found:.9g}, Python {expected[place]:.9g}")
+        name = text_of(shape.flat.leaves[place].path)
+        found = compiled.memory[place]
+        raise Untraceable(
+            f"in step {number} compiled code gives {name} = {found:.9g}, Python {expected[place]:.9g}"
+        )

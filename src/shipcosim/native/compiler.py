@@ -37,7 +37,9 @@ def check_installed() -> None:
     """
     if not is_installed():
         found = "It compiles the models, and there is no compiler."
-        raise ShipcosimError(Problem("engine 'native'", found, "Install it: pip install 'shipcosim[native]'."))
+        raise ShipcosimError(
+            Problem("engine 'native'", found, "Install it: pip install 'shipcosim[native]'.")
+        )
 
 
 def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
@@ -56,7 +58,13 @@ def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
     sources = list(sources)
     missing = [source for source in dict.fromkeys(sources) if source not in _LOADED]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        _LOADED.update(zip(missing, (ctypes.CDLL(str(path)) for path in pool.map(_compiled, missing)), strict=True))
+        _LOADED.update(
+            zip(
+                missing,
+                (ctypes.CDLL(str(path)) for path in pool.map(_compiled, missing)),
+                strict=True,
+            )
+        )
     return [_LOADED[source] for source in sources]
 
 
@@ -73,9 +81,21 @@ def _compiled(source: str) -> Path:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=path.parent) as folder:
-            text, made = Path(folder, "step.c"), Path(folder, path.name)
+            text = Path(folder, "step.c")
+            made = Path(folder, path.name)
             text.write_text(source, encoding="utf-8")
-            command = [sys.executable, "-m", "ziglang", "cc", *OPTIONS, EXACT, str(text), "-o", str(made), "-lm"]
+            command = [
+                sys.executable,
+                "-m",
+                "ziglang",
+                "cc",
+                *OPTIONS,
+                EXACT,
+                str(text),
+                "-o",
+                str(made),
+                "-lm",
+            ]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode:
                 raise ShipcosimError(Problem("compiler", f"fails: {done.stderr.strip()[:1000]}"))

@@ -20,7 +20,11 @@ from shipcosim.native.symbols import Untraceable
 from shipcosim.native.trace import Shape, shape_of, trace
 
 CALL = ctypes.CFUNCTYPE(
-    ctypes.c_int, ctypes.c_void_p, ctypes.c_int, ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_double)
+    ctypes.c_int,
+    ctypes.c_void_p,
+    ctypes.c_int,
+    ctypes.POINTER(ctypes.c_double),
+    ctypes.POINTER(ctypes.c_double),
 )
 
 
@@ -53,11 +57,16 @@ class CompiledStep:
     """
 
     def __init__(self, fmu: Any, shape: Shape, record: Record, library: ctypes.CDLL):
-        self.fmu, self._shape, self._record, self._library = fmu, shape, record, library
+        self.fmu = fmu
+        self._shape = shape
+        self._record = record
+        self._library = library
         self.function = ctypes.cast(library.step, ctypes.c_void_p)
         self.memory = np.zeros(len(shape.numbers) + 2)
         self.memory[:-2] = shape.numbers
-        self.kept = np.full(max(1, sum(len(call.changing) + call.size for call in record.calls)), np.nan)
+        self.kept = np.full(
+            max(1, sum(len(call.changing) + call.size for call in record.calls)), np.nan
+        )
         self.call = CALL(self._called)
         self.places = shape.flat.places
 
@@ -65,7 +74,9 @@ class CompiledStep:
         """Take the numbers of the Python object. Raises Untraceable where it has another shape now."""
         shape = shape_of(self.fmu)
         if not shape.flat.same_shape(self._shape.flat):
-            raise Untraceable(f"its state changes its shape: {self._shape.flat.difference(shape.flat)}")
+            raise Untraceable(
+                f"its state changes its shape: {self._shape.flat.difference(shape.flat)}"
+            )
         self.memory[:-2] = shape.numbers
 
     def take_anew(self, time: float, step_size: float) -> bool:
@@ -76,7 +87,10 @@ class CompiledStep:
             return False
         if not shape.flat.same_shape(self._shape.flat):
             return False
-        if kept_record(key_of(self.fmu, shape), [*shape.numbers, time, step_size]) is not self._record:
+        if (
+            kept_record(key_of(self.fmu, shape), [*shape.numbers, time, step_size])
+            is not self._record
+        ):
             return False
         self.memory[:-2] = shape.numbers
         self.kept[:] = np.nan
@@ -84,9 +98,11 @@ class CompiledStep:
 
     def give_back(self) -> None:
         """Give the numbers to the Python object."""
-        values, shape = vars(self.fmu), self._shape
+        values = vars(self.fmu)
+        shape = self._shape
         numbers = [
-            typed(number, leaf.kind) for number, leaf in zip(self.memory.tolist(), shape.flat.leaves, strict=False)
+            typed(number, leaf.kind)
+            for number, leaf in zip(self.memory.tolist(), shape.flat.leaves, strict=False)
         ]
         made = attributes_like(values, numbers, shape.constant, shape.unchanging)
         fixed = shape.constant | shape.unchanging
@@ -97,7 +113,8 @@ class CompiledStep:
         call = self._record.calls[number]
         try:
             example = self._record.examples[number]
-            numbers, leaves = list(example.numbers), example.leaves
+            numbers = list(example.numbers)
+            leaves = example.leaves
             for place, changing in enumerate(call.changing):
                 numbers[changing] = typed(arguments[place], leaves[changing].kind)
             result = call.function(*made_like(call.arguments, iter(numbers)))
@@ -108,7 +125,9 @@ class CompiledStep:
         return 0
 
 
-def compiled_steps(fmus: Sequence[Any], time: float, step_size: float) -> list[CompiledStep | Untraceable]:
+def compiled_steps(
+    fmus: Sequence[Any], time: float, step_size: float
+) -> list[CompiledStep | Untraceable]:
     """Compiled steps of components, or why there are none.
 
     Parameters
@@ -126,7 +145,10 @@ def compiled_steps(fmus: Sequence[Any], time: float, step_size: float) -> list[C
     with _ONE_AT_A_TIME:
         found = [_recorded(fmu, time, step_size) for fmu in fmus]
         made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
-        return [_checked(one, next(made), time, step_size) if isinstance(one, _Recorded) else one for one in found]
+        return [
+            _checked(one, next(made), time, step_size) if isinstance(one, _Recorded) else one
+            for one in found
+        ]
 
 
 _ONE_AT_A_TIME = threading.Lock()
@@ -146,7 +168,8 @@ def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
     """What a component records as, from the cache where it is there."""
     try:
         shape = shape_of(fmu)
-        numbers, key = [*shape.numbers, time, step_size], key_of(fmu, shape)
+        numbers = [*shape.numbers, time, step_size]
+        key = key_of(fmu, shape)
         if (record := kept_record(key, numbers)) is not None:
             return _Recorded(fmu, shape, record, "")
         step = trace(fmu, shape, time, step_size)

@@ -54,7 +54,9 @@ class Flat:
         All else.
     """
 
-    def __init__(self, value: Any, constant: Set[str] = frozenset(), unchanging: Set[str] = frozenset()):
+    def __init__(
+        self, value: Any, constant: Set[str] = frozenset(), unchanging: Set[str] = frozenset()
+    ):
         self.numbers: list[Any] = []
         self.leaves: list[Leaf] = []
         self.structure: list[tuple[tuple, Any]] = []
@@ -70,7 +72,9 @@ class Flat:
     @cached_property
     def places(self) -> dict[str, int]:
         """Where the numbers lie that are attributes themselves."""
-        return {leaf.path[0]: place for place, leaf in enumerate(self.leaves) if len(leaf.path) == 1}
+        return {
+            leaf.path[0]: place for place, leaf in enumerate(self.leaves) if len(leaf.path) == 1
+        }
 
     def same_shape(self, other: Flat) -> bool:
         """Whether two objects differ in their numbers alone."""
@@ -81,15 +85,24 @@ class Flat:
 
     def difference(self, other: Flat) -> str:
         """The first place where their structures differ, as text."""
-        for (path, one), (other_path, another) in zip(self.structure, other.structure, strict=False):
+        for (path, one), (other_path, another) in zip(
+            self.structure, other.structure, strict=False
+        ):
             if path != other_path or one != another:
-                return f"{text_of(path)} was {str(one)[:40]}, then {text_of(other_path)} was {another}"
+                return (
+                    f"{text_of(path)} was {str(one)[:40]}, then {text_of(other_path)} was {another}"
+                )
         ours, theirs = ({leaf.path for leaf in flat.leaves} for flat in (self, other))
-        return ", ".join(text_of(path) for path in sorted(ours ^ theirs, key=str)[:3]) + " is not always there"
+        return (
+            ", ".join(text_of(path) for path in sorted(ours ^ theirs, key=str)[:3])
+            + " is not always there"
+        )
 
     def _add(self, path, value, fixed):
         value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
-        if isinstance(value, Symbol) or (isinstance(value, NUMBERS) and not (fixed and kind_of(value) == "b")):
+        if isinstance(value, Symbol) or (
+            isinstance(value, NUMBERS) and not (fixed and kind_of(value) == "b")
+        ):
             self._number(path, value)
         elif isinstance(value, WHOLE) or isinstance(value, STRUCTURE):
             self.structure.append((path, value))
@@ -97,7 +110,9 @@ class Flat:
             self.structure.append((path, value.shape))
             elements = value.ravel().tolist()
             self.numbers += elements
-            self.leaves += [Leaf((*path, index), kind_of(element)) for index, element in enumerate(elements)]
+            self.leaves += [
+                Leaf((*path, index), kind_of(element)) for index, element in enumerate(elements)
+            ]
         else:
             self.structure.append((path, type(value).__qualname__))
             for key, part in _parts(path, value):
@@ -108,7 +123,9 @@ class Flat:
         self.leaves.append(Leaf(path, kind_of(value)))
 
 
-def numbers_of(values: dict[str, Any], constant: Set[str], unchanging: Set[str]) -> tuple[list[Any], tuple]:
+def numbers_of(
+    values: dict[str, Any], constant: Set[str], unchanging: Set[str]
+) -> tuple[list[Any], tuple]:
     """The numbers of attributes as `Flat` has them, and all else in a form that is equal for the same shape.
 
     It takes a tenth of the time of a `Flat`.
@@ -130,7 +147,8 @@ def _take_once(value, numbers, rest):
     """`_take` of what does not change: a frozen dataclass of parameters, tuples of floats. It is taken apart once."""
     known = _TAKEN.get(id(value))
     if known is None or known[0] is not value:
-        taken, others = [], []
+        taken = []
+        others = []
         if isinstance(value, tuple):
             for part in value:
                 _take(part, False, taken, others)
@@ -158,7 +176,8 @@ def _is_table(value):
 
 
 def _take(value, fixed, numbers, rest):
-    kind, made = type(value), type(value).__qualname__
+    kind = type(value)
+    made = type(value).__qualname__
     if kind is float:
         numbers.append(value)
         rest.append("d")
@@ -175,7 +194,9 @@ def _take(value, fixed, numbers, rest):
     elif kind is np.ndarray and value.ndim and value.dtype.kind in "fib":
         numbers += value.ravel().tolist()
         rest += (value.dtype.kind, value.shape)
-    elif isinstance(value, dict) or (dataclasses.is_dataclass(value) and not isinstance(value, type)):
+    elif isinstance(value, dict) or (
+        dataclasses.is_dataclass(value) and not isinstance(value, type)
+    ):
         parts = value if isinstance(value, dict) else vars(value)
         rest += (made, *parts)
         for key, part in parts.items():
@@ -205,7 +226,9 @@ def made_like(value: Any, numbers: Iterator[Any]) -> Any:
         found = [next(numbers) for _ in range(value.size)]
         if any(isinstance(one, Symbol) for one in found):
             return np.array(found, dtype=object).reshape(value.shape).view(SymbolArray)
-        return np.array(found, dtype=float if value.dtype == object else value.dtype).reshape(value.shape)
+        return np.array(found, dtype=float if value.dtype == object else value.dtype).reshape(
+            value.shape
+        )
     if isinstance(value, (tuple, list)):
         made = [made_like(part, numbers) for part in value]
         return type(value)(*made) if hasattr(value, "_fields") else type(value)(made)
@@ -241,7 +264,10 @@ def _keeping_flags(value, numbers):
     flat = Flat(value)
     keeps = [kind_of(one) == "b" and not isinstance(one, Symbol) for one in flat.numbers]
     return made_like(
-        value, iter([one if keep else next(numbers) for keep, one in zip(keeps, flat.numbers, strict=True)])
+        value,
+        iter(
+            [one if keep else next(numbers) for keep, one in zip(keeps, flat.numbers, strict=True)]
+        ),
     )
 
 

@@ -83,7 +83,9 @@ def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
         )
         for call in step.recording.calls
     ]
-    return Record(source, calls, {place: _rounded(numbers[place]) for place in sorted(_guarded(step))})
+    return Record(
+        source, calls, {place: _rounded(numbers[place]) for place in sorted(_guarded(step))}
+    )
 
 
 def key_of(fmu: Any, shape: Shape) -> str:
@@ -116,7 +118,9 @@ _READ: dict[Path, list[Record]] = {}
 def _fitting(records, numbers):
     """The first record whose code belongs to some numbers."""
     fitting = (
-        record for record in records if all(_rounded(numbers[place]) == value for place, value in record.guards.items())
+        record
+        for record in records
+        if all(_rounded(numbers[place]) == value for place, value in record.guards.items())
     )
     return next(fitting, None)
 
@@ -131,7 +135,14 @@ def keep_record(key: str, record: Record) -> None:
         with os.fdopen(handle, "wb") as file:
             file.write(pickle.dumps([record, *records][:MOST]))
         os.replace(temporary, path)
-    except (OSError, EOFError, pickle.PicklingError, pickle.UnpicklingError, AttributeError, ImportError):
+    except (
+        OSError,
+        EOFError,
+        pickle.PicklingError,
+        pickle.UnpicklingError,
+        AttributeError,
+        ImportError,
+    ):
         return
 
 

@@ -132,7 +132,8 @@ class Recording:
     most_ways = MOST_PATHS
 
     def __init__(self, example: Sequence[float], choices: Set[int] = frozenset()):
-        self.memory, self._choices = example, choices
+        self.memory = example
+        self._choices = choices
         self.tables: list[np.ndarray] = []
         self.calls: list[Call] = []
         self.loops: list[RecordedLoop] = []
@@ -160,21 +161,29 @@ class Recording:
         Untraceable
         """
         before = self.block, self._answers, self._prefix, self._taken, self._due
-        root, self._due = Block(parent=parent), [()]
+        root = Block(parent=parent)
+        self._due = [()]
         ways = 0
         while self._due:
-            self._prefix, self._taken = self._due.pop(), []
-            self.block, self._answers = root, dict(before[1])
+            self._prefix = self._due.pop()
+            self._taken = []
+            self.block = root
+            self._answers = dict(before[1])
             ways += 1
             if ways > self.most_ways:
                 (where, _), *_ = self._asked.most_common(1)
-                raise Untraceable(f"it has more than {self.most_ways} ways through a step, most of them by {where}")
+                raise Untraceable(
+                    f"it has more than {self.most_ways} ways through a step, most of them by {where}"
+                )
             try:
                 result = function()
             except (Untraceable, AssertionError, MemoryError, RecursionError):
                 raise
             except Exception as error:
-                if not isinstance(error, (ArithmeticError, ValueError)) and type(error).__name__ != "FmuError":
+                if (
+                    not isinstance(error, (ArithmeticError, ValueError))
+                    and type(error).__name__ != "FmuError"
+                ):
                     raise
                 result = error
             if isinstance(result, Flat):
@@ -186,26 +195,37 @@ class Recording:
 
     def repeat(self, going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
         """The state after as many turns as a condition on it holds for."""
-        flat, parent = Flat(state), self.block
+        flat = Flat(state)
+        parent = self.block
         kinds = [leaf.kind for leaf in flat.leaves]
         while True:
             number = len(self.loops)
             self._starts[number] = flat.numbers
-            carried = [self.fresh("carried", kind, number, place) for place, kind in enumerate(kinds)]
+            carried = [
+                self.fresh("carried", kind, number, place) for place, kind in enumerate(kinds)
+            ]
             state_then = made_like(state, iter(carried))
             condition = self.record(lambda state=state_then: going(state), parent)
             body = self.record(lambda state=state_then: Flat(turn(state)), parent)
             for end in ends(body):
                 if isinstance(end.result, Flat) and not end.result.same_shape(flat):
-                    raise Untraceable(f"in a loop the state changes its shape: {flat.difference(end.result)}")
+                    raise Untraceable(
+                        f"in a loop the state changes its shape: {flat.difference(end.result)}"
+                    )
             after = [end.result.leaves for end in ends(body) if isinstance(end.result, Flat)]
-            wider = ["d" if any(way[i].kind == "d" for way in after) else kind for i, kind in enumerate(kinds)]
+            wider = [
+                "d" if any(way[i].kind == "d" for way in after) else kind
+                for i, kind in enumerate(kinds)
+            ]
             if wider == kinds:
                 break
             kinds = wider
         self.loops.append(RecordedLoop(flat.numbers, carried, condition, body))
         self.fresh("loop", "d", number)
-        return made_like(state, iter([self.fresh("after", kind, number, place) for place, kind in enumerate(kinds)]))
+        return made_like(
+            state,
+            iter([self.fresh("after", kind, number, place) for place, kind in enumerate(kinds)]),
+        )
 
     def decide(self, condition: Symbol) -> bool:
         """The answer to a question of Python's on this way."""
@@ -224,7 +244,11 @@ class Recording:
         self._answers[condition.number] = answer
         block = self.block
         if block.condition is None:
-            block.condition, block.yes, block.no = condition, Block(parent=block), Block(parent=block)
+            block.condition, block.yes, block.no = (
+                condition,
+                Block(parent=block),
+                Block(parent=block),
+            )
         following = block.yes if answer else block.no
         assert block.condition is condition and following is not None
         self.block = following
@@ -268,7 +292,8 @@ class Recording:
         key = function, *(id(one) if isinstance(one, Symbol) else one for one in given.numbers)
         if key not in self._call_numbers:
             numbers = (
-                typed(self.example(one), leaf.kind) for one, leaf in zip(given.numbers, given.leaves, strict=True)
+                typed(self.example(one), leaf.kind)
+                for one, leaf in zip(given.numbers, given.leaves, strict=True)
             )
             example = made_like(arguments, numbers)
             self._call_numbers[key] = len(self.calls)
@@ -279,13 +304,17 @@ class Recording:
         result = self.calls[number].result
         self.value("call", "d", number, *(one for one in given.numbers if isinstance(one, Symbol)))
         flat = Flat(result)
-        kept = [self.value("kept", leaf.kind, number, place) for place, leaf in enumerate(flat.leaves)]
+        kept = [
+            self.value("kept", leaf.kind, number, place) for place, leaf in enumerate(flat.leaves)
+        ]
         return marked(made_like(result, iter(kept)))
 
     def refuse_left_behind(self, value: Any) -> None:
         """Raise Untraceable for a value of another way or of the inside of a loop, which Python kept elsewhere."""
         if isinstance(value, Symbol) and value.block not in self.block.lineage:
-            raise Untraceable("it keeps a value of a loop or of another way in a variable of its own")
+            raise Untraceable(
+                "it keeps a value of a loop or of another way in a variable of its own"
+            )
 
     def guarded(self, symbol: Symbol) -> int:
         """The whole number that a value is in the example; compiled code gives up where it is another one."""
@@ -319,7 +348,8 @@ class Recording:
         return self._examples[value.number]
 
     def _computed(self, value):
-        op, operands = value.op, value.operands
+        op = value.op
+        operands = value.operands
         if op == "load":
             return typed(self.memory[operands[0]], value.kind)
         if op == "kept":

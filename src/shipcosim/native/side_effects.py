@@ -7,8 +7,29 @@ from typing import Any
 
 from shipcosim.native.symbols import Untraceable
 
-MODULES = {"builtins", "math", "numpy", "operator", "_operator", "itertools", "functools", "_functools", "collections"}
-MODULES |= {"_collections", "bisect", "_bisect", "typing", "dataclasses", "enum", "abc", "_abc", "shipcosim", "zlib"}
+MODULES = {
+    "builtins",
+    "math",
+    "numpy",
+    "operator",
+    "_operator",
+    "itertools",
+    "functools",
+    "_functools",
+    "collections",
+}
+MODULES |= {
+    "_collections",
+    "bisect",
+    "_bisect",
+    "typing",
+    "dataclasses",
+    "enum",
+    "abc",
+    "_abc",
+    "shipcosim",
+    "zlib",
+}
 FORBIDDEN = {"open", "print", "input", "exec", "eval", "compile", "__import__", "id", "globals"}
 RANDOM = "numpy.random"
 
@@ -35,7 +56,12 @@ def only_arithmetic(code: str) -> Iterator[None]:
         module = function.__module__ or type(getattr(function, "__self__", None)).__module__
         if module == "_contextvars":
             return  # how NumPy treats errors meanwhile
-        if module == "_thread" and function.__name__ in ("__enter__", "__exit__", "acquire", "release"):
+        if module == "_thread" and function.__name__ in (
+            "__enter__",
+            "__exit__",
+            "acquire",
+            "release",
+        ):
             return  # the lock of a cached property
         is_own = frame.f_globals.get("__name__", "").startswith("shipcosim.native")
         if is_own or (

@@ -12,7 +12,8 @@ from shipcosim.native.recording import Block, RecordedLoop, Recording
 from shipcosim.native.symbols import Symbol, kind_of
 from shipcosim.native.trace import Step
 
-DONE, GIVEN_UP = 0, 1
+DONE = 0
+GIVEN_UP = 1
 """What the function returns: the step is done; nothing has changed, Python must do it."""
 
 HEAD = """\
@@ -63,7 +64,10 @@ UNARY = {
     "number": "(double){}",
     "whole": "trunc({})",
 } | {name: f"{name}({{}})" for name in FUNCTIONS}
-BINARY = {op: f"{{}} {op} {{}}" for op in ("+", "-", "*", "/", "<", "<=", ">", ">=", "==", "!=", "&", "|", "^")} | {
+BINARY = {
+    op: f"{{}} {op} {{}}"
+    for op in ("+", "-", "*", "/", "<", "<=", ">", ">=", "==", "!=", "&", "|", "^")
+} | {
     "**": "pow({}, {})",
     "%": "remainder_of({}, {})",
     "//": "floor_division({}, {})",
@@ -90,7 +94,8 @@ class Writer:
     """Writes the blocks of a recording."""
 
     def __init__(self, step: Step):
-        self.step, self.recording = step, step.recording
+        self.step = step
+        self.recording = step.recording
         self.sizes = kept_sizes(step.recording)
         firsts = np.cumsum([0, *(a + b for a, b in self.sizes)]).tolist()
         self.arguments = firsts[:-1]
@@ -113,7 +118,9 @@ class Writer:
         parameters = "double *restrict m, double *restrict k, Call call, void *host"
         body = "\n".join(self.lines)
         unused = "    (void)m; (void)k; (void)call; (void)host;"
-        return "\n".join([HEAD, *tables, "", f"EXPORT int step({parameters}) {{", unused, body, "}", ""])
+        return "\n".join(
+            [HEAD, *tables, "", f"EXPORT int step({parameters}) {{", unused, body, "}", ""]
+        )
 
     def _put(self, depth, line):
         self.lines.append("    " * depth + line)
@@ -155,9 +162,13 @@ class Writer:
         return place
 
     def _value(self, symbol: Symbol, depth):
-        op, operands = symbol.op, symbol.operands
+        op = symbol.op
+        operands = symbol.operands
         if op == "guard":
-            self._put(depth, f"if ({operand(operands[0])} != {operand(operands[1])}) {self._other(*operands)}")
+            self._put(
+                depth,
+                f"if ({operand(operands[0])} != {operand(operands[1])}) {self._other(*operands)}",
+            )
         elif op == "call":
             self._call(operands, depth)
         elif op == "loop":
@@ -166,7 +177,8 @@ class Writer:
             self._put(depth, f"const {_type(symbol)} {_name(symbol)} = {self._expression(symbol)};")
 
     def _expression(self, symbol) -> str:
-        op, operands = symbol.op, symbol.operands
+        op = symbol.op
+        operands = symbol.operands
         if op == "load":
             return f"m[{self._place(operands[0])}]"
         if op == "kept":
@@ -178,7 +190,11 @@ class Writer:
             return f"table_{table}[(long){operand(index)} * {width} + {column}]"
         if op in ("load_row", "kept_row"):
             index, (*call, place), width, column = operands
-            base = f"m[{self._place(place)}" if op == "load_row" else f"k[{self.results[call[0]] + place}"
+            base = (
+                f"m[{self._place(place)}"
+                if op == "load_row"
+                else f"k[{self.results[call[0]] + place}"
+            )
             return f"{base} + (long){operand(index)} * {width} + {column}]"
         if op == "interp":
             x, first, second, n = operands
@@ -193,7 +209,9 @@ class Writer:
     def _call(self, operands, depth):
         number, *arguments = operands
         first = self.arguments[number]
-        same = " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
+        same = (
+            " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
+        )
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
             self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
@@ -209,7 +227,8 @@ class Writer:
             if symbol.number in self.used or (number, place) in self.after
         ]
         for place in needed:
-            symbol, start = loop.carried[place], loop.start[place]
+            symbol = loop.carried[place]
+            start = loop.start[place]
             self._put(depth, f"{_type(symbol)} c{number}_{place} = {operand(start)};")
         self._put(depth, "for (;;) {")
         for place, symbol in enumerate(loop.carried):

@@ -54,8 +54,14 @@ class Symbol:
 
     __slots__ = ("recording", "number", "op", "kind", "operands", "block")
 
-    def __init__(self, recording: Any, number: int, op: str, kind: str, operands: tuple, block: int):
-        self.recording, self.number, self.op, self.kind, self.operands = recording, number, op, kind, operands
+    def __init__(
+        self, recording: Any, number: int, op: str, kind: str, operands: tuple, block: int
+    ):
+        self.recording = recording
+        self.number = number
+        self.op = op
+        self.kind = kind
+        self.operands = operands
         self.block = block
 
     @property
@@ -69,8 +75,11 @@ class Symbol:
             count, repeated = cast("tuple[Any, Any]", (a, b) if isinstance(a, Symbol) else (b, a))
             return operator.index(count) * repeated
         if not isinstance(a, NUMBERS) or not isinstance(b, NUMBERS):
-            raise Untraceable(f"it computes with a {type(b if isinstance(a, NUMBERS) else a).__name__}")
-        a, b = plain(a), plain(b)
+            raise Untraceable(
+                f"it computes with a {type(b if isinstance(a, NUMBERS) else a).__name__}"
+            )
+        a = plain(a)
+        b = plain(b)
         if kind is None:
             kind = "i" if op not in ("/", "**") and kind_of(a) != "d" and kind_of(b) != "d" else "d"
         return self.recording.value(op, kind, a, b)
@@ -210,7 +219,13 @@ def kind_of(value: Any) -> str:
     """Kind of a number, as `Symbol.kind`."""
     if isinstance(value, Symbol):
         return value.kind
-    return "b" if isinstance(value, (bool, np.bool_)) else "i" if isinstance(value, (int, np.integer)) else "d"
+    return (
+        "b"
+        if isinstance(value, (bool, np.bool_))
+        else "i"
+        if isinstance(value, (int, np.integer))
+        else "d"
+    )
 
 
 def first_symbol(*values: Any) -> Symbol | None:
@@ -224,7 +239,11 @@ def first_symbol(*values: Any) -> Symbol | None:
                     return element
         inside = value if isinstance(value, (tuple, list)) else ()
         inside = (
-            value.values() if isinstance(value, dict) else vars(value).values() if hasattr(value, "maths") else inside
+            value.values()
+            if isinstance(value, dict)
+            else vars(value).values()
+            if hasattr(value, "maths")
+            else inside
         )
         if (found := first_symbol(*inside)) is not None:
             return found
@@ -252,7 +271,8 @@ def _where(condition, a, b):
         return a if condition else b
     if a is b:
         return a
-    a, b = plain(a), plain(b)
+    a = plain(a)
+    b = plain(b)
     kinds = {kind_of(a), kind_of(b)}
     return symbol.recording.value("where", kinds.pop() if len(kinds) == 1 else "d", condition, a, b)
 
@@ -288,7 +308,9 @@ class Maths:
     def kept(function: Callable, arguments: tuple) -> Any:
         """See `Recording.kept`."""
         symbol = first_symbol(*arguments)
-        return function(*arguments) if symbol is None else symbol.recording.kept(function, arguments)
+        return (
+            function(*arguments) if symbol is None else symbol.recording.kept(function, arguments)
+        )
 
     @staticmethod
     def repeat(going: Callable, turn: Callable, state: Any) -> Any:
@@ -302,7 +324,9 @@ class Maths:
     def acts(value: Any, neutral: float) -> bool:
         """Whether a parameter can change anything: asked where it can have another value when the code runs."""
         symbol = first_symbol(value)
-        return not (isinstance(symbol, Symbol) and symbol.recording.stands_alone) or bool(value != neutral)
+        return not (isinstance(symbol, Symbol) and symbol.recording.stands_alone) or bool(
+            value != neutral
+        )
 
     @staticmethod
     def repeat_of(fmu: Any, going: Callable, turn: Callable) -> None:
@@ -315,11 +339,14 @@ class Maths:
             values.update(state)
             return function()
 
-        before, changed = dict(values), set()
+        before = dict(values)
+        changed = set()
 
         def noticed():
             with_state(turn, before)
-            changed.update(name for name, value in values.items() if value is not before.get(name, before))
+            changed.update(
+                name for name, value in values.items() if value is not before.get(name, before)
+            )
 
         condition = with_state(going, before)
         condition.recording.record(noticed, condition.recording.block)
@@ -351,7 +378,9 @@ class Maths:
     def interp(x: Any, xs: Sequence[float], ys: Sequence[float]) -> Any:
         """Linear interpolation, as `models.core.interpolation.interp` of a float."""
         if isinstance(x, np.ndarray):
-            return np.array([Maths.interp(element, xs, ys) for element in x.flat], dtype=object).reshape(x.shape)
+            return np.array(
+                [Maths.interp(element, xs, ys) for element in x.flat], dtype=object
+            ).reshape(x.shape)
         if first_symbol(xs, ys) is not None:
             # Linear interpolation in a short table of values in memory.
             found = ys[0]
@@ -360,7 +389,8 @@ class Maths:
                 found = Maths.where(x >= xs[k], between, found)
             return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
         recording = x.recording
-        first, second = recording.table(np.asarray(xs)), recording.table(np.asarray(ys))
+        first = recording.table(np.asarray(xs))
+        second = recording.table(np.asarray(ys))
         return recording.value("interp", "d", x, first, second, len(xs))
 
     @staticmethod
@@ -368,17 +398,28 @@ class Maths:
         """Row of a table, or element of a sequence, whose number is a symbol."""
         recording = index.recording
         if isinstance(table, np.ndarray) and table.dtype != object:
-            flat, width = recording.table(table), int(np.prod(table.shape[1:], dtype=int))
-            found = [recording.value("row", "d", index, flat, width, column) for column in range(width)]
-            return np.array(found, dtype=object).reshape(table.shape[1:]) if table.ndim > 1 else found[0]
+            flat = recording.table(table)
+            width = int(np.prod(table.shape[1:], dtype=int))
+            found = [
+                recording.value("row", "d", index, flat, width, column) for column in range(width)
+            ]
+            return (
+                np.array(found, dtype=object).reshape(table.shape[1:])
+                if table.ndim > 1
+                else found[0]
+            )
         if (place := _consecutive(table)) is not None:
             op, first, shape = place
             width = int(np.prod(shape[1:], dtype=int))
-            found = [recording.value(op, "d", index, first, width, column) for column in range(width)]
+            found = [
+                recording.value(op, "d", index, first, width, column) for column in range(width)
+            ]
             return np.array(found, dtype=object).reshape(shape[1:]) if len(shape) > 1 else found[0]
         chosen = table[-1]
         for number in range(len(table) - 2, -1, -1):
-            chosen = _chosen((index == number) | (index == number - len(table)), table[number], chosen)
+            chosen = _chosen(
+                (index == number) | (index == number - len(table)), table[number], chosen
+            )
         return chosen
 
 
@@ -392,7 +433,10 @@ def _consecutive(table):
         return None
     *before, place = first.operands
     for number, element in enumerate(elements):
-        if not isinstance(element, Symbol) or (element.op, element.operands) != (first.op, (*before, place + number)):
+        if not isinstance(element, Symbol) or (element.op, element.operands) != (
+            first.op,
+            (*before, place + number),
+        ):
             return None
     return f"{first.op}_row", first.operands, table.shape
 
@@ -405,7 +449,9 @@ def _chosen(condition, a, b):
     return Maths.where(condition, a, b)
 
 
-def primitive(symbol: Symbol, name: str, shape: tuple[int, ...], arguments: Sequence[Any]) -> np.ndarray:
+def primitive(
+    symbol: Symbol, name: str, shape: tuple[int, ...], arguments: Sequence[Any]
+) -> np.ndarray:
     """The result of a function of the C runtime, as an array of symbols.
 
     Parameters
@@ -419,7 +465,8 @@ def primitive(symbol: Symbol, name: str, shape: tuple[int, ...], arguments: Sequ
     arguments : sequence of float or Symbol
         What it is given.
     """
-    size, recording = int(np.prod(shape, dtype=int)), symbol.recording
+    size = int(np.prod(shape, dtype=int))
+    recording = symbol.recording
     made = recording.value("primitive", "d", name, size, *arguments)
     parts = [recording.value("part", "d", made, place) for place in range(size)]
     found = np.empty(size, dtype=object)
@@ -450,7 +497,9 @@ class SymbolArray(np.ndarray):
             ufunc = _EXTREMES[ufunc]
             named = {key: value for key, value in named.items() if key == "axis"}
         found = getattr(ufunc, method)(*given, **named)
-        return found.item() if isinstance(found, np.ndarray) and found.ndim == 0 else as_symbols(found)
+        return (
+            found.item() if isinstance(found, np.ndarray) and found.ndim == 0 else as_symbols(found)
+        )
 
 
 def _products(symbol, a, b):
@@ -458,15 +507,28 @@ def _products(symbol, a, b):
     stack = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
     if stack:
         a, b = (np.broadcast_to(one, (*stack, *one.shape[-2:])) for one in (a, b))
-        return np.stack([_products(symbol, one, other) for one, other in zip(a, b, strict=True)]).view(SymbolArray)
+        return np.stack(
+            [_products(symbol, one, other) for one, other in zip(a, b, strict=True)]
+        ).view(SymbolArray)
     sizes = [*a.shape, b.shape[1]]
-    return primitive(symbol, "multiplied", (a.shape[0], b.shape[1]), [*sizes, *a.ravel().tolist(), *b.ravel().tolist()])
+    return primitive(
+        symbol,
+        "multiplied",
+        (a.shape[0], b.shape[1]),
+        [*sizes, *a.ravel().tolist(), *b.ravel().tolist()],
+    )
 
 
 COMPARISONS = {"greater", "greater_equal", "less", "less_equal", "equal", "not_equal"}
-FUNCTIONS = {name: getattr(Maths, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor")}
+FUNCTIONS = {
+    name: getattr(Maths, name)
+    for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "floor")
+}
 FUNCTIONS["arctan2"] = Maths.atan2
-_EXTREMES = {np.maximum: np.frompyfunc(Maths.maximum, 2, 1), np.minimum: np.frompyfunc(Maths.minimum, 2, 1)}
+_EXTREMES = {
+    np.maximum: np.frompyfunc(Maths.maximum, 2, 1),
+    np.minimum: np.frompyfunc(Maths.minimum, 2, 1),
+}
 
 
 def as_symbols(value: Any) -> Any:

@@ -12,7 +12,16 @@ from shipcosim.native.recording import Block, Recording, ends
 from shipcosim.native.side_effects import only_arithmetic
 from shipcosim.native.symbols import Symbol, Untraceable, kind_of
 
-STANDS = "messages", "_in_binary", "_initialised", "_initialising", "_stale", "_time", "instance_name", "start_time"
+STANDS = (
+    "messages",
+    "_in_binary",
+    "_initialised",
+    "_initialising",
+    "_stale",
+    "_time",
+    "instance_name",
+    "start_time",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +83,11 @@ def shape_of(fmu: Any) -> Shape:
     known = _SHAPES.get(key)
     if known is None:
         flat = Flat(vars(fmu), constant, unchanging)
-        choices = (n for n, leaf in enumerate(flat.leaves) if leaf.kind == "i" and leaf.path[0] in whole | unchanging)
+        choices = (
+            n
+            for n, leaf in enumerate(flat.leaves)
+            if leaf.kind == "i" and leaf.path[0] in whole | unchanging
+        )
         known = Shape(flat, numbers, constant, unchanging, frozenset(choices))
         if len(_SHAPES) >= MOST_SHAPES:
             _SHAPES.clear()
@@ -125,25 +138,36 @@ def trace(
     Untraceable
         With what in the component cannot be recorded.
     """
-    before, constant, unchanging = shape.flat, shape.constant, shape.unchanging
-    values, n = dict(vars(fmu)), len(before.leaves)
-    recording = kind([*(shape.numbers if numbers is None else numbers), time, step_size], shape.choices)
+    before = shape.flat
+    constant = shape.constant
+    unchanging = shape.unchanging
+    values = dict(vars(fmu))
+    n = len(before.leaves)
+    recording = kind(
+        [*(shape.numbers if numbers is None else numbers), time, step_size], shape.choices
+    )
 
     def run():
-        loads = [recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)]
+        loads = [
+            recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)
+        ]
         clone = object.__new__(type(fmu))
         for name in STANDS:
             setattr(clone, name, getattr(fmu, name))
         clone.messages = []
         vars(clone).update(attributes_like(values, loads, constant, unchanging))
-        time, step_size = recording.value("load", "d", n), recording.value("load", "d", n + 1)
+        time = recording.value("load", "d", n)
+        step_size = recording.value("load", "d", n + 1)
         with only_arithmetic(type(fmu).__module__.partition(".")[0]):
             clone.step(time, step_size)
         if clone.messages:
             raise ValueError("it writes to the log")
         parameters = attributes_like(values, loads, constant, unchanging)
         # The attributes after a step; parameters are those of before, whatever they may have remembered meanwhile.
-        mutable = {name: parameters[name] if name in unchanging else value for name, value in vars(clone).items()}
+        mutable = {
+            name: parameters[name] if name in unchanging else value
+            for name, value in vars(clone).items()
+        }
         return _changes(before, loads, mutable, constant, unchanging)
 
     root = recording.record(run)

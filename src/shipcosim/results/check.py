@@ -52,9 +52,14 @@ class CheckedFiles(Result):
         """What `shipcosim check --json` prints: an entry a file, with its problems and an FMU's variables."""
         listed = []
         for file, problems in self.files.items():
-            entry: dict[str, Any] = {"file": file, "problems": [asdict(problem) for problem in problems]}
+            entry: dict[str, Any] = {
+                "file": file,
+                "problems": [asdict(problem) for problem in problems],
+            }
             if file in self.variables:
-                entry["variables"] = [dict(zip(VARIABLE_KEYS, row, strict=True)) for row in self.variables[file]]
+                entry["variables"] = [
+                    dict(zip(VARIABLE_KEYS, row, strict=True)) for row in self.variables[file]
+                ]
             listed.append(entry)
         return listed
 
@@ -75,18 +80,24 @@ class CheckedFiles(Result):
 
         errors = sum(problem.severity == "error" for problem in self.problems)
         remarks = len(self.problems) - errors
-        said = f"{errors or 'No'} error{'s' * (errors != 1)}" + f", {remarks} remark{'s' * (remarks > 1)}" * (
-            remarks > 0
+        said = (
+            f"{errors or 'No'} error{'s' * (errors != 1)}"
+            + f", {remarks} remark{'s' * (remarks > 1)}" * (remarks > 0)
         )
         head = ("variable", "causality", "type", "unit", "start", "meaning")
         return Card(
             title=f"Check of {', '.join(self.files)}",
             facts=(),
-            outcome=Outcome("failed", "FAIL", f"{said}.") if errors else Outcome("passed", "PASS", f"{said}."),
+            outcome=Outcome("failed", "FAIL", f"{said}.")
+            if errors
+            else Outcome("passed", "PASS", f"{said}."),
             links=(),
             data=(),
             blocks=(
-                *(Block(name, lines=tuple(map(str, worth_showing(found)))) for name, found in self.files.items()),
+                *(
+                    Block(name, lines=tuple(map(str, worth_showing(found))))
+                    for name, found in self.files.items()
+                ),
                 *(
                     Block(f"Variables of {name}", Table(rows, head), folded=True)
                     for name, rows in self.variables.items()

@@ -76,7 +76,9 @@ class DiagnosisOfLog(_Saved, Diagnosis):
 
         if self.tracks is None:
             found = "There are no predictions of this log to draw."
-            raise ShipcosimError(Problem(self._name, found, "`shipcosim.read_log(...).track()` draws the log."))
+            raise ShipcosimError(
+                Problem(self._name, found, "`shipcosim.read_log(...).track()` draws the log.")
+            )
         return Picture(f"track of {self._name}", tracks_svg(self.tracks, f"track of {self._name}"))
 
     def page(self) -> HtmlPage:

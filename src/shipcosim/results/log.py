@@ -90,7 +90,9 @@ class Log(LikeTable):
         from shipcosim.report.notebook.chart import Path, chart_svg
 
         if not {"north", "east"} <= set(self.table):
-            raise ShipcosimError(Problem(self.name, "The log has no position.", "`.plot(...)` draws any channels."))
+            raise ShipcosimError(
+                Problem(self.name, "The log has no position.", "`.plot(...)` draws any channels.")
+            )
         heading = self.table["heading"].values if "heading" in self.table else None
         path = Path("measured", self.table["north"].values, self.table["east"].values, heading)
         return Picture(f"track of {self.name}", chart_svg([path], f"track of {self.name}"))

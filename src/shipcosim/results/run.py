@@ -104,7 +104,11 @@ class Run(LikeTable, Result):
         from shipcosim.report.theme.display import display_table
 
         roles = find_roles(self.table.data_vars)
-        pose = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")] if roles.ship is not None else []
+        pose = (
+            [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
+            if roles.ship is not None
+            else []
+        )
         names = chosen(map(str, self.table.data_vars), signals or [n for n in pose if n] or ["*"])
         shown = display_table(self.table, roles.signal(roles.ship, "psi"))
         drawn = [name for name in names if name in shown]
@@ -113,7 +117,10 @@ class Run(LikeTable, Result):
             raise ShipcosimError(Problem(self.name, found, "Only those can be drawn."))
         title = f"{', '.join(signals) or 'signals'} of {self.name}"
         return Picture(
-            title, panels_svg(panels_of(shown, drawn), title, sorted({e.time for e in self.scenario.events}))
+            title,
+            panels_svg(
+                panels_of(shown, drawn), title, sorted({e.time for e in self.scenario.events})
+            ),
         )
 
     def track(self) -> Picture:
@@ -129,14 +136,18 @@ class Run(LikeTable, Result):
         svg = run_track(self.table, self.expectations, f"track of {self.name}")
         if svg is None:
             remedy = "`.plot(...)` draws any signals."
-            raise ShipcosimError(Problem(self.name, "Nothing here is a ship, with x, y and psi over time.", remedy))
+            raise ShipcosimError(
+                Problem(self.name, "Nothing here is a ship, with x, y and psi over time.", remedy)
+            )
         return Picture(f"track of {self.name}", svg)
 
     def page(self) -> HtmlPage:
         """The page of the run, as `shipcosim run` writes it."""
         from shipcosim.report.run.page import render
 
-        page = render(self.table, scenario=self.scenario, verdicts=self.expectations, system=self.system)
+        page = render(
+            self.table, scenario=self.scenario, verdicts=self.expectations, system=self.system
+        )
         return HtmlPage(self.name, page)
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
@@ -194,7 +205,8 @@ class Run(LikeTable, Result):
     def __repr__(self) -> str:
         from shipcosim.report.run.expectations import outcome
 
-        found, components = outcome(self.table, self.expectations), {n.rpartition(".")[0] for n in map(str, self.table)}
+        found = outcome(self.table, self.expectations)
+        components = {n.rpartition(".")[0] for n in map(str, self.table)}
         size = f"{self.table.sizes['time']} rows of {len(self.table)} signals of {len(components)} components"
         return f"<Run of {self.name!r}: {found.word}. {found.sentence} {size}>"
 

@@ -31,12 +31,16 @@ def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
     >>> chosen(["vessel.x", "port.thrust", "port.rpm", "tunnel.thrust"], ["port", "*.thrust"])
     ['port.thrust', 'port.rpm', 'tunnel.thrust']
     """
-    known, found, problems = list(names), {}, []
+    known = list(names)
+    found = {}
+    problems = []
     for one in wanted:
         matching = _matching(known, one)
         found |= dict.fromkeys(matching)
         if not matching:
-            problems.append(Problem(str(one), "There is no such signal or component.", _remedy(known, str(one))))
+            problems.append(
+                Problem(str(one), "There is no such signal or component.", _remedy(known, str(one)))
+            )
     if problems:
         raise ShipcosimError(problems)
     return list(found)

@@ -52,7 +52,9 @@ class EngineComparison(Result, Comparison):
             | {"of range": one.worst, "half the step": one.step.largest}
             for one in self.signals
         ]
-        return pandas.DataFrame(rows, index=pandas.Index([one.name for one in self.signals], name="signal"))
+        return pandas.DataFrame(
+            rows, index=pandas.Index([one.name for one in self.signals], name="signal")
+        )
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import comparison_card
@@ -79,7 +81,9 @@ class Replay(Result, LogReplay):
 
         facts = dict(zip(self.tracks.predicted, self.systems, strict=False))
         facts |= {"Predictions": f"{self.tracks.horizon:.0f} s"}
-        return page_of(f"Replay of {self.name}", lambda path: write_replay(self, path, self.name, facts))
+        return page_of(
+            f"Replay of {self.name}", lambda path: write_replay(self, path, self.name, facts)
+        )
 
     def to_pandas(self) -> pandas.DataFrame:
         """Root mean square errors by simulation and time since the start of a prediction."""
@@ -121,7 +125,9 @@ class Calibration(Result, CalibratedShip):
         """The page of the calibration, as `shipcosim calibrate` writes it."""
         from shipcosim.report.calibration.page import write_calibration
 
-        return page_of(f"Calibration of {self.reference.system}", lambda path: write_calibration(self, path))
+        return page_of(
+            f"Calibration of {self.reference.system}", lambda path: write_calibration(self, path)
+        )
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Write report.html; ``calibrate(..., out=folder)`` leaves calibrated.ssv and reference.json beside it.
@@ -169,7 +175,9 @@ class CapabilityOfShip(Result, Capability):
         """The page of the capability, as `shipcosim capability` writes it."""
         from shipcosim.report.capability.page import write_capability
 
-        return page_of(f"Capability of {self.vessel.name}", lambda path: write_capability(self, path))
+        return page_of(
+            f"Capability of {self.vessel.name}", lambda path: write_capability(self, path)
+        )
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row a direction that the weather comes from [deg], a column a case: DP capability numbers."""
@@ -218,7 +226,9 @@ class SeaTrials(Result, SeaTrialStudy):
 
         thrusters = "orders" if self.orders else "feedback"
         facts = {"Log": self.name, "System": self.system, "Thrusters": thrusters}
-        return page_of(f"Sea trials of {self.name}", lambda path: write_sea_trials(self, path, facts))
+        return page_of(
+            f"Sea trials of {self.name}", lambda path: write_sea_trials(self, path, facts)
+        )
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import sea_trials_card
@@ -230,7 +240,9 @@ def series_of(tracks: Tracks) -> xarray.Dataset:
     """All that a replay draws in one table: measured over time, predicted over the time since each start."""
     import xarray
 
-    parts = [tracks.measured.rename({name: f"measured_{name}" for name in tracks.measured.data_vars})]
+    parts = [
+        tracks.measured.rename({name: f"measured_{name}" for name in tracks.measured.data_vars})
+    ]
     for name, predicted in tracks.predicted.items():
         own = {variable: f"{name}_{variable}" for variable in predicted.data_vars}
         parts.append(predicted.rename(own | {"time": "since_start"}))

@@ -50,7 +50,9 @@ class StudyResult(Result, Swept):
         """The page of the study, as `shipcosim sweep` writes it."""
         from shipcosim.report.study import write_study
 
-        return page_of(f"Study {self.plan.study.name}", lambda path: write_study(self._tables(), path))
+        return page_of(
+            f"Study {self.plan.study.name}", lambda path: write_study(self._tables(), path)
+        )
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.sweep_card import sweep_card

@@ -5,7 +5,14 @@ A scenario is data. `read_scenario` reads and checks a file, `check_scenario` ch
 """
 
 from shipcosim.scenario.amounts import units_of, with_numbers
-from shipcosim.scenario.check import check_files, check_scenario, check_times, step_times, time_complaints, whole_steps
+from shipcosim.scenario.check import (
+    check_files,
+    check_scenario,
+    check_times,
+    step_times,
+    time_complaints,
+    whole_steps,
+)
 from shipcosim.scenario.judge import Verdict, judge, within_run
 from shipcosim.scenario.model import Event, Expectation, Scenario
 from shipcosim.scenario.plausible import odd_values

@@ -94,7 +94,9 @@ def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str,
             yield "signal", found, "Write an expectation for each."
     for key, signal, value in _amounts(expect):
         if key == "near" and value in expect.signals and _differ(signal, value, unit_of):
-            found = f"{_in(signal, unit_of)} and {_in(value, unit_of)}: they measure different things."
+            found = (
+                f"{_in(signal, unit_of)} and {_in(value, unit_of)}: they measure different things."
+            )
             yield key, found, f"Compare {signal} with a signal of its unit."
         try:
             _number(value, signal, unit_of, key == "within")
@@ -105,7 +107,11 @@ def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str,
 def _differ(one: str, other: str, unit_of: UnitOf) -> bool:
     """Whether two signals cannot be compared; signals without a unit can be, since nothing is known of them."""
     units = unit_of(one), unit_of(other)
-    return units[0] is not None and units[1] is not None and relation(units[0], units[1]) == "incompatible"
+    return (
+        units[0] is not None
+        and units[1] is not None
+        and relation(units[0], units[1]) == "incompatible"
+    )
 
 
 def _in(signal: str, unit_of: UnitOf) -> str:

@@ -26,8 +26,16 @@ MOST_STEPS = 1e8
 def check_files(scenario: Scenario) -> list[Problem]:
     """What a scenario names and what is not there: its system, its parameter sets, its components' FMUs."""
     if not scenario.system:
-        return [problem_at(scenario, ("system",), "the scenario names no system.", suggestion("", _systems(scenario)))]
-    system, problems = scenario.system_path, []
+        return [
+            problem_at(
+                scenario,
+                ("system",),
+                "the scenario names no system.",
+                suggestion("", _systems(scenario)),
+            )
+        ]
+    system = scenario.system_path
+    problems = []
     if not system.exists() and "#" not in scenario.system:
         known = _systems(scenario)
         found = f"there is no system '{scenario.system}', by this name or beside the scenario."
@@ -42,7 +50,9 @@ def check_files(scenario: Scenario) -> list[Problem]:
             scenario.model_copy(update={"components": {name: fmu}}).component_paths(build=False)
         except ShipcosimError as error:
             found = f"there is no FMU '{fmu}', by this name or beside the scenario."
-            problems.append(problem_at(scenario, ("components", name), found, error.problems[0].remedy))
+            problems.append(
+                problem_at(scenario, ("components", name), found, error.problems[0].remedy)
+            )
     return problems
 
 
@@ -89,10 +99,15 @@ def step_times(step_size: float, first: int, last: int, start_time: float = 0.0)
     >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
     True
     """
-    step, before = Fraction(step_size).limit_denominator(10**12), whole_steps(start_time, step_size)
+    step = Fraction(step_size).limit_denominator(10**12)
+    before = whole_steps(start_time, step_size)
     if before is None:
         return start_time + step_times(step_size, first, last)
-    return np.arange(before + first, before + last + 1) * float(step.numerator) / float(step.denominator)
+    return (
+        np.arange(before + first, before + last + 1)
+        * float(step.numerator)
+        / float(step.denominator)
+    )
 
 
 def check_times(scenario: Scenario) -> Iterator[Problem]:
@@ -103,10 +118,16 @@ def check_times(scenario: Scenario) -> Iterator[Problem]:
 
 def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
     """What is wrong with the times of a scenario: (keys, what was found, what would be right, severity)."""
-    step, stop = scenario.step_size, scenario.stop_time
+    step = scenario.step_size
+    stop = scenario.stop_time
     if stop / step > MOST_STEPS:
         found = f"stop_time = {stop:g} s takes {stop / step:.3g} steps of {step:g} s."
-        yield ("stop_time",), found, f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier.", "error"
+        yield (
+            ("stop_time",),
+            found,
+            f"At most {MOST_STEPS:,.0f} are done: take larger steps or stop earlier.",
+            "error",
+        )
         return
     times: list[tuple[tuple[str | int, ...], float]] = [
         (("stop_time",), stop),
@@ -120,7 +141,12 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
             nearest = max(1, round(time / step)) * step
             yield keys, found, f"The nearest would be {nearest:g} s.", "error"
         elif keys[0] == "events" and time >= stop:
-            yield keys, f"the event at {time:g} s never acts: the run ends at {stop:g} s.", "", "remark"
+            yield (
+                keys,
+                f"the event at {time:g} s never acts: the run ends at {stop:g} s.",
+                "",
+                "remark",
+            )
     for number, expect in enumerate(scenario.expect):
         if expect.during and expect.during[1] > stop:
             found = f"during = {expect.during} reaches beyond the end of the run at {stop:g} s."
@@ -129,13 +155,22 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
 
 def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
     """Parameters that describe a ship and that nothing gives: every component's, all of them."""
-    given = {*scenario.set, *(".".join(filter(None, connection.target)) for connection in system.connections)}
+    given = {
+        *scenario.set,
+        *(".".join(filter(None, connection.target)) for connection in system.connections),
+    }
     for component in system.components.values():
-        if missing := [name for name in component.left_out if f"{component.name}.{name}" not in given]:
+        if missing := [
+            name for name in component.left_out if f"{component.name}.{name}" not in given
+        ]:
             units = {name: component.fmu.variables[name].unit for name in missing}
             names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
             found = f"parameters left out, which have no value of their own: {names}."
-            yield Problem(f"{system.file}: {component.name}", found, "Give them, as a ship's parameter set does.")
+            yield Problem(
+                f"{system.file}: {component.name}",
+                found,
+                "Give them, as a ship's parameter set does.",
+            )
 
 
 def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
@@ -158,7 +193,10 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
     for number, expect in enumerate(scenario.expect):
         complaints = expectation_complaints(expect, system, changed)
-        problems += [problem_at(scenario, ("expect", number, key), *complaint) for key, *complaint in complaints]
+        problems += [
+            problem_at(scenario, ("expect", number, key), *complaint)
+            for key, *complaint in complaints
+        ]
     return problems
 
 
@@ -175,8 +213,12 @@ def expectation_complaints(
     changed : collection of str
         Signals that events change.
     """
-    complaints = [c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))]
-    return [("signal", *complaint) for complaint in complaints] or list(unit_complaints(expect, units_of(system)))
+    complaints = [
+        c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))
+    ]
+    return [("signal", *complaint) for complaint in complaints] or list(
+        unit_complaints(expect, units_of(system))
+    )
 
 
 def event_complaints(event: Event, system: System) -> Iterator[tuple[str, str, str, str]]:
@@ -186,20 +228,30 @@ def event_complaints(event: Event, system: System) -> Iterator[tuple[str, str, s
             yield verb, signal, *complaint
 
 
-def _event_complaint(system: System, verb: str, signal: str, value: Value | None) -> tuple[str, str] | None:
+def _event_complaint(
+    system: System, verb: str, signal: str, value: Value | None
+) -> tuple[str, str] | None:
     """What is wrong with a change of a signal, as (found, remedy), or None."""
     try:
         component, name = system.split(signal)
     except ShipcosimError as error:
         return error.problems[0].found, error.problems[0].remedy
     if component is None and name not in system.inputs:
-        return f"'{signal}' is no input of the system.", f"Inputs: {', '.join(system.inputs) or 'none'}."
+        return (
+            f"'{signal}' is no input of the system.",
+            f"Inputs: {', '.join(system.inputs) or 'none'}.",
+        )
     if component is None:
-        kind, items = system.inputs[name].type or "", system.inputs[name].items
+        kind = system.inputs[name].type or ""
+        items = system.inputs[name].items
     else:
         variable = system.components[component].fmu.variables[name]
-        kind, items = variable.kind, variable.items
-        may_change = variable.causality in ("input", "output") or (variable.causality, variable.variability) == (
+        kind = variable.kind
+        items = variable.items
+        may_change = variable.causality in ("input", "output") or (
+            variable.causality,
+            variable.variability,
+        ) == (
             "parameter",
             "tunable",
         )
@@ -245,7 +297,9 @@ def _fits(value: Value | None, kind: str, items: Mapping[str, int], verb: str) -
     return kind == "Real" and isinstance(value, (int, float))
 
 
-def _expect_complaint(system: System, signal: str, changed: Collection[str]) -> tuple[str, str] | None:
+def _expect_complaint(
+    system: System, signal: str, changed: Collection[str]
+) -> tuple[str, str] | None:
     """Why a signal will not be in the table, as (found, remedy), or None."""
     try:
         component, name = system.split(signal)
@@ -257,7 +311,13 @@ def _expect_complaint(system: System, signal: str, changed: Collection[str]) -> 
     feeding = next((c.source for c in system.connections if c.target == (component, name)), None)
     if variable.causality == "input" and feeding is not None:
         source = ".".join(filter(None, feeding))
-        return f"'{signal}' is not recorded: it is what {source} puts out.", f"Expect something of {source}."
+        return (
+            f"'{signal}' is not recorded: it is what {source} puts out.",
+            f"Expect something of {source}.",
+        )
     if variable.causality not in ("input", "output") or variable.kind == "String":
-        return f"'{signal}' is not recorded: it is a {variable.kind} {variable.causality}.", "Outputs and inputs are."
+        return (
+            f"'{signal}' is not recorded: it is a {variable.kind} {variable.causality}.",
+            "Outputs and inputs are.",
+        )
     return None

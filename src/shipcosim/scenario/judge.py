@@ -41,7 +41,11 @@ class Verdict:
 
     def __str__(self) -> str:
         measure = "distance" if self.expect.near is not None else "value"
-        found = f"worst {measure} {self.worst:.4g} at {self.time:g} s" if np.isfinite(self.time) else "no row to judge"
+        found = (
+            f"worst {measure} {self.worst:.4g} at {self.time:g} s"
+            if np.isfinite(self.time)
+            else "no row to judge"
+        )
         return f"{'holds' if self.passed else 'FAILS'}: {self.expect} ({found})"
 
 
@@ -64,7 +68,11 @@ def within_run(
     is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
     found: tuple[list[Expectation], list[Expectation]] = [], []
     for expect in scenario.expect:
-        lies_within = first <= expect.during[0] and expect.during[1] <= last if expect.during else not expect.statistic
+        lies_within = (
+            first <= expect.during[0] and expect.during[1] <= last
+            if expect.during
+            else not expect.statistic
+        )
         found[0 if is_whole or lies_within else 1].append(expect)
     return found
 
@@ -80,7 +88,11 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
         If a signal is not in the table, or an expectation takes different things together: metres and radians.
     """
     missing = [
-        Problem(scenario.name, f"the table has no signal '{signal}'.", suggestion(signal, map(str, table.data_vars)))
+        Problem(
+            scenario.name,
+            f"the table has no signal '{signal}'.",
+            suggestion(signal, map(str, table.data_vars)),
+        )
         for expect in scenario.expect
         for signal in expect.signals
         if signal not in table
@@ -95,12 +107,16 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     ]
     if wrong:
         raise ShipcosimError(wrong)
-    return [verdict_on(table, expectation_in_numbers(expect, unit_of), unit_of) for expect in scenario.expect]
+    return [
+        verdict_on(table, expectation_in_numbers(expect, unit_of), unit_of)
+        for expect in scenario.expect
+    ]
 
 
 def verdict_on(table: xarray.Dataset, expect: Expectation, unit_of: UnitOf) -> Verdict:
     """Verdict on an expectation in plain numbers whose signals are all in the table; see `judge`."""
-    times, rows = table["time"].values, rows_of(table, expect)
+    times = table["time"].values
+    rows = rows_of(table, expect)
     if len(rows) == 0:
         return Verdict(expect, False, np.nan, np.nan)
     rows, values = _reduced(rows, values_of(table, expect, rows, unit_of), expect.statistic)
@@ -118,7 +134,9 @@ def rows_of(table: xarray.Dataset, expect: Expectation) -> np.ndarray:
     return np.flatnonzero((times >= start - tolerance) & (times <= end + tolerance))
 
 
-def values_of(table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit_of: UnitOf) -> np.ndarray:
+def values_of(
+    table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit_of: UnitOf
+) -> np.ndarray:
     """The signals of an expectation in plain numbers, or their differences from `near` in the unit of the first.
 
     Parameters
@@ -151,7 +169,9 @@ def values_of(table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit
     return values
 
 
-def _reduced(rows: np.ndarray, values: np.ndarray, statistic: str | None) -> tuple[np.ndarray, np.ndarray]:
+def _reduced(
+    rows: np.ndarray, values: np.ndarray, statistic: str | None
+) -> tuple[np.ndarray, np.ndarray]:
     """Rows and values that remain after the statistic: one, or all."""
     if statistic == "mean":
         return rows[-1:], values.mean(axis=0, keepdims=True)

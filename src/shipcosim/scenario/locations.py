@@ -15,7 +15,11 @@ _NAME = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
 
 
 def problem_at(
-    scenario: Scenario, keys: Sequence[str | int], found: str, remedy: str = "", severity: str = "error"
+    scenario: Scenario,
+    keys: Sequence[str | int],
+    found: str,
+    remedy: str = "",
+    severity: str = "error",
 ) -> Problem:
     """Problem at a key of a scenario, with its line where the scenario was read from a file.
 
@@ -47,7 +51,10 @@ def line_of(text: str, keys: Sequence[str | int]) -> int:
     >>> line_of("step_size = 0.1\\n[[events]]\\ntime = 2.0", ("events", 0, "time"))
     3
     """
-    section, counts, depth, found = (), {}, 0, 0
+    section = ()
+    counts = {}
+    depth = 0
+    found = 0
     for number, line in enumerate(text.splitlines(), 1):
         here = section
         if header := _HEADER.match(line):
@@ -55,7 +62,8 @@ def line_of(text: str, keys: Sequence[str | int]) -> int:
         elif key := _KEY.match(line):
             here = (*section, *_names(key[1]))
         if len(here) > depth and here == tuple(keys[: len(here)]):
-            depth, found = len(here), number
+            depth = len(here)
+            found = number
     return found
 
 
@@ -63,7 +71,9 @@ def _names(dotted: str) -> list[str]:
     return [name.strip("\"'") for name in _NAME.findall(dotted)]
 
 
-def _section(names: Sequence[str], repeated: bool, counts: dict[tuple, int]) -> tuple[str | int, ...]:
+def _section(
+    names: Sequence[str], repeated: bool, counts: dict[tuple, int]
+) -> tuple[str | int, ...]:
     """Keys to a table by its header; `counts` has the positions of the tables that stand in lists."""
     path: tuple[str | int, ...] = ()
     for number, name in enumerate(names, 1):

@@ -36,7 +36,9 @@ def _plain(value: Any) -> bool | int | float | str:
 def _amount(value: Any) -> float | str:
     plain = _plain(value)
     if isinstance(plain, bool) or (isinstance(plain, str) and amount(plain) is None):
-        raise PydanticCustomError("float_type", "Input should be a number, or a text such as '2.5 deg'")
+        raise PydanticCustomError(
+            "float_type", "Input should be a number, or a text such as '2.5 deg'"
+        )
     return plain if isinstance(plain, str) else float(plain)
 
 
@@ -66,7 +68,9 @@ Amount = Annotated[float, PlainValidator(_amount), PlainSerializer(lambda value:
 """A number in the signal's unit. One with another unit stays a text until `with_numbers` or `judge` converts it."""
 Seconds = Annotated[float, BeforeValidator(_seconds)]
 Value = Annotated[bool | int | float | str, PlainValidator(_plain)]
-ListOfNames = Annotated[list[str], BeforeValidator(lambda names: [names] if isinstance(names, str) else names)]
+ListOfNames = Annotated[
+    list[str], BeforeValidator(lambda names: [names] if isinstance(names, str) else names)
+]
 
 
 POSITION = ["x", "y"]  # names of signals that make a position: north, east
@@ -80,7 +84,13 @@ def problems_in(error: ValidationError, where: str) -> list[Problem]:
         if finding["type"] == "missing":
             problems.append(Problem(where, f"{name} is missing.", "Give it; times are in s."))
         elif finding["type"] == "extra_forbidden":
-            problems.append(Problem(where, f"{name}: There is no such key.", f"It was given {finding['input']!r:.60}."))
+            problems.append(
+                Problem(
+                    where,
+                    f"{name}: There is no such key.",
+                    f"It was given {finding['input']!r:.60}.",
+                )
+            )
         else:
             found = f"{name} = {finding['input']!r:.60}." if name else ""
             text = finding["msg"].removeprefix("Value error, ").removesuffix(".")
@@ -108,9 +118,13 @@ class Event(Part):
     """What changes at a time, in the words of OSP. An event at time t acts on the step that starts at t."""
 
     time: Seconds = Field(ge=0.0, description="s")
-    override: dict[str, Value] = Field(default={}, description="signals held at a value instead of what they would be")
+    override: dict[str, Value] = Field(
+        default={}, description="signals held at a value instead of what they would be"
+    )
     bias: dict[str, Amount] = Field(default={}, description="values added to signals")
-    reset: ListOfNames = Field(default=[], description="signals that follow their source, or their start value, again")
+    reset: ListOfNames = Field(
+        default=[], description="signals that follow their source, or their start value, again"
+    )
 
     @model_validator(mode="after")
     def _does_something(self) -> Event:
@@ -121,8 +135,14 @@ class Event(Part):
     @property
     def changes(self) -> list[tuple[str, str, Value | None]]:
         """(override, bias or reset; signal; value) of each change."""
-        changes: list[tuple[str, str, Value | None]] = [("override", *item) for item in self.override.items()]
-        return changes + [("bias", *item) for item in self.bias.items()] + [("reset", s, None) for s in self.reset]
+        changes: list[tuple[str, str, Value | None]] = [
+            ("override", *item) for item in self.override.items()
+        ]
+        return (
+            changes
+            + [("bias", *item) for item in self.bias.items()]
+            + [("reset", s, None) for s in self.reset]
+        )
 
 
 class Expectation(Part):
@@ -143,7 +163,9 @@ class Expectation(Part):
     during: Annotated[list[Seconds], Field(min_length=2, max_length=2)] | None = Field(
         default=None, description="from, to in s"
     )
-    statistic: Literal["mean", "max", "min", "final"] | None = Field(default=None, description="instead of every row")
+    statistic: Literal["mean", "max", "min", "final"] | None = Field(
+        default=None, description="instead of every row"
+    )
 
     @model_validator(mode="after")
     def _is_one_claim(self) -> Expectation:
@@ -151,9 +173,13 @@ class Expectation(Part):
         if (self.near is None) != (self.within is None):
             raise ValueError("`near` and `within` come together.")
         if (self.near is not None) == limits:
-            raise ValueError("An expectation states either near and within, or at_least and/or at_most.")
+            raise ValueError(
+                "An expectation states either near and within, or at_least and/or at_most."
+            )
         if self.near is not None and len(self.near) != len(self.signal):
-            raise ValueError(f"{len(self.signal)} signals need {len(self.signal)} values in `near`.")
+            raise ValueError(
+                f"{len(self.signal)} signals need {len(self.signal)} values in `near`."
+            )
         if limits and len(self.signal) > 1:
             raise ValueError("at_least and at_most take one signal.")
         if self.during and not self.during[0] <= self.during[1]:
@@ -165,7 +191,9 @@ class Expectation(Part):
         claims = [f"{word} {_text(limit)}" for word, limit in limits.items() if limit is not None]
         if self.near is not None and self.within is not None:
             target = ", ".join(map(_text, self.near))
-            claims = [f"within {_text(self.within)} of {target if len(self.near) == 1 else f'({target})'}"]
+            claims = [
+                f"within {_text(self.within)} of {target if len(self.near) == 1 else f'({target})'}"
+            ]
         window = f" during {self.during[0]:g} to {self.during[1]:g} s" if self.during else ""
         return f"{self.subject} {' and '.join(claims)}{window}"
 
@@ -179,7 +207,8 @@ class Expectation(Part):
         elif self.is_heading:
             what = "heading"
         else:
-            owners, what = {""}, ", ".join(self.signal)
+            owners = {""}
+            what = ", ".join(self.signal)
             what = what if len(names) == 1 else f"({what})"
         of = f" of {owner}" if (owner := next(iter(owners))) else ""
         return (f"{self.statistic} of " if self.statistic else "") + what + of
@@ -192,7 +221,10 @@ class Expectation(Part):
     @property
     def signals(self) -> list[str]:
         """Every signal the expectation looks at."""
-        return [*self.signal, *(v for v in self.near or () if isinstance(v, str) and amount(v) is None)]
+        return [
+            *self.signal,
+            *(v for v in self.near or () if isinstance(v, str) and amount(v) is None),
+        ]
 
 
 def _text(value: float | str) -> str:
@@ -211,11 +243,14 @@ class Scenario(Part):
         default=[], description="names of parameter sets in the system's resources, or paths"
     )
     components: dict[str, str] = Field(
-        default={}, description="FMUs that components run in place of their own: names of FMUs, or paths"
+        default={},
+        description="FMUs that components run in place of their own: names of FMUs, or paths",
     )
     stop_time: Seconds = Field(gt=0.0, description="s")
     step_size: Seconds = Field(gt=0.0, description="s")
-    output_interval: Seconds | None = Field(default=None, gt=0.0, description="s; every step where it is not given")
+    output_interval: Seconds | None = Field(
+        default=None, gt=0.0, description="s; every step where it is not given"
+    )
     set: dict[str, Value] = Field(default={}, description="start values")
     events: list[Event] = []
     expect: list[Expectation] = []
@@ -246,7 +281,9 @@ class Scenario(Part):
         candidates = [beside / self.system, self.project / self.system]
         if found := next((c for c in candidates if self.system and c.exists()), None):
             return found
-        return library.named("system", self.system, self.project) or self.project / "ssp" / self.system
+        return (
+            library.named("system", self.system, self.project) or self.project / "ssp" / self.system
+        )
 
     @property
     def parameter_paths(self) -> list[Path]:
@@ -272,5 +309,7 @@ class Scenario(Part):
         found = {}
         for name, fmu in self.components.items():
             path = beside / fmu
-            found[name] = path if path.is_file() else library.find("fmu", fmu, near=self.project, build=build)
+            found[name] = (
+                path if path.is_file() else library.find("fmu", fmu, near=self.project, build=build)
+            )
         return found

@@ -23,7 +23,8 @@ KEYS = ("description", "defaults", "events", "end")
 EVENT_KEYS = ("time", "model", "variable", "action", "value")
 DEFAULTS = ("model", "variable", "action")
 ACTIONS = ("override", "bias", "reset")
-LARGEST, LARGEST_YAML = 16 << 20, 1 << 20  # bytes; YAML is read slowly
+LARGEST = 16 << 20  # bytes; YAML is read slowly
+LARGEST_YAML = 1 << 20
 DEEPEST = 100  # brackets in brackets
 FAST: Any = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 LARGEST_NUMBER = 1e300
@@ -81,7 +82,10 @@ def read_osp_scenario(
         raise ShipcosimError(problems)
     remarks += _doubts(path, due, end, step_size)
     due += _taken_back(due, end, step_size, stop_time - start_time)
-    events = [_event(start_time + count * step_size, action, signal, value) for count, action, signal, value in due]
+    events = [
+        _event(start_time + count * step_size, action, signal, value)
+        for count, action, signal, value in due
+    ]
     return OspScenario(str(content.get("description") or ""), events, remarks)
 
 
@@ -89,8 +93,10 @@ def _changes(
     path: Path, content: dict[str, Any], step_size: float
 ) -> tuple[list[Change], list[Problem], list[Problem]]:
     """Changes of all events in the order of the file, remarks, and problems of single events."""
-    remarks, problems = list(_unknown(str(path), content, KEYS)), []
-    defaults, listed = content.get("defaults") or {}, content.get("events") or []
+    remarks = list(_unknown(str(path), content, KEYS))
+    problems = []
+    defaults = content.get("defaults") or {}
+    listed = content.get("events") or []
     if not isinstance(defaults, dict) or not isinstance(listed, list):
         raise ShipcosimError(Problem(str(path), "'defaults' has to be an object, 'events' a list."))
     defaults = {name: value for name, value in defaults.items() if name in DEFAULTS}
@@ -98,7 +104,11 @@ def _changes(
     for number, given in enumerate(listed, start=1):
         place = f"{path}, event {number}"
         if not isinstance(given, dict):
-            problems.append(Problem(place, "An event has to be an object.", f"Its keys: {', '.join(EVENT_KEYS)}."))
+            problems.append(
+                Problem(
+                    place, "An event has to be an object.", f"Its keys: {', '.join(EVENT_KEYS)}."
+                )
+            )
             continue
         remarks += _unknown(place, given, EVENT_KEYS)
         try:
@@ -128,7 +138,9 @@ def scenario_text(description: str, events: list[dict], end: float, suffix: str 
     return yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
 
 
-def write_osp_scenario(path: str | os.PathLike, description: str, events: list[dict], end: float) -> None:
+def write_osp_scenario(
+    path: str | os.PathLike, description: str, events: list[dict], end: float
+) -> None:
     """Write a scenario file of OSP, complete or not at all; see `scenario_text`."""
     write_file(path, scenario_text(description, events, end, Path(path).suffix.lower()).encode())
 
@@ -141,10 +153,14 @@ def _content(path: Path) -> Any:
     except OSError as error:
         raise ShipcosimError(Problem(str(path), f"Cannot be read: {error.strerror}.")) from None
     except UnicodeDecodeError:
-        raise ShipcosimError(Problem(str(path), "It is not UTF-8 text.", "Save the file in UTF-8.")) from None
+        raise ShipcosimError(
+            Problem(str(path), "It is not UTF-8 text.", "Save the file in UTF-8.")
+        ) from None
     largest = LARGEST if path.suffix.lower() == ".json" else LARGEST_YAML
     if len(data) > largest:
-        raise ShipcosimError(Problem(str(path), "The file is too large.", f"At most {largest >> 20} MiB are read."))
+        raise ShipcosimError(
+            Problem(str(path), "The file is too large.", f"At most {largest >> 20} MiB are read.")
+        )
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text, object_pairs_hook=_once)
@@ -164,14 +180,19 @@ def _once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     content = dict(pairs)
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
-        raise ValueError(f"'{next(name for name in names if names.count(name) > 1)}' is there twice")
+        raise ValueError(
+            f"'{next(name for name in names if names.count(name) > 1)}' is there twice"
+        )
     return content
 
 
 class _Loader(FAST):
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
         return _once(
-            [(self.construct_object(k, deep=True), self.construct_object(v, deep=True)) for k, v in node.value]
+            [
+                (self.construct_object(k, deep=True), self.construct_object(v, deep=True))
+                for k, v in node.value
+            ]
         )
 
 
@@ -187,7 +208,9 @@ def _change(given: dict[str, Any], defaults: dict[str, Any], step_size: float) -
     if "time" not in given:
         raise ValueError("It has no time.", "Give it in seconds from the start of the run.")
     count = max(0, math.ceil(_seconds(given["time"], "time") / step_size - 1e-6))
-    model, variable, action = (_text(given.get(name, defaults.get(name)), name) for name in DEFAULTS)
+    model, variable, action = (
+        _text(given.get(name, defaults.get(name)), name) for name in DEFAULTS
+    )
     if action not in ACTIONS:
         raise ValueError(f"The action '{action}' is not known.", suggestion(action, ACTIONS))
     value = None if action == "reset" else _value(given.get("value"))
@@ -231,16 +254,22 @@ def _typed(text: str) -> Value:
 
 
 def _event(time: float, action: str, signal: str, value: Value | None) -> Event:
-    return Event.model_validate({"time": time, action: [signal] if action == "reset" else {signal: value}})
+    return Event.model_validate(
+        {"time": time, action: [signal] if action == "reset" else {signal: value}}
+    )
 
 
-def _doubts(path: Path, due: list[Change], end: float | None, step_size: float) -> Iterator[Problem]:
+def _doubts(
+    path: Path, due: list[Change], end: float | None, step_size: float
+) -> Iterator[Problem]:
     """Remarks on what libcosim does differently from what a reader would expect."""
     seen = set()
     for count, _, signal, _ in due:
         if (count, signal) in seen:
             found = f"{signal} is changed twice in the step at {count * step_size:g} s; the later one in the file acts."
-            yield Problem(str(path), found, "libcosim takes them in any order: keep one of them.", "remark")
+            yield Problem(
+                str(path), found, "libcosim takes them in any order: keep one of them.", "remark"
+            )
         seen.add((count, signal))
     if due and end is None:
         last = (max(count for count, *_ in due) + 1) * step_size
@@ -248,7 +277,9 @@ def _doubts(path: Path, due: list[Change], end: float | None, step_size: float) 
         yield Problem(str(path), found, 'Give "end", in seconds.', "remark")
 
 
-def _taken_back(due: list[Change], end: float | None, step_size: float, duration: float) -> Iterator[Change]:
+def _taken_back(
+    due: list[Change], end: float | None, step_size: float, duration: float
+) -> Iterator[Change]:
     """Changes at the end, of everything that was changed; none where the run is over by then."""
     if not due:
         return

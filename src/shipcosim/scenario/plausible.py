@@ -49,10 +49,23 @@ class Range:
 
 
 RANGES = (
-    Range("mass", "kg", 5.0, 1e9, "survey craft have 15 kg and more, the largest ship had 6.6e8 kg", of_ship=True),
+    Range(
+        "mass",
+        "kg",
+        5.0,
+        1e9,
+        "survey craft have 15 kg and more, the largest ship had 6.6e8 kg",
+        of_ship=True,
+    ),
     Range("(apparent_)?wind_speed", "m/s", 0.0, 60.0, "a hurricane of category 4 has 58 m/s"),
     Range("current_speed", "m/s", 0.0, 10.0, "the strongest tidal currents reach 10 m/s"),
-    Range("(significant_)?wave_height", "m", 0.0, 25.0, "the largest significant height ever measured is 19 m"),
+    Range(
+        "(significant_)?wave_height",
+        "m",
+        0.0,
+        25.0,
+        "the largest significant height ever measured is 19 m",
+    ),
 )
 
 
@@ -76,10 +89,18 @@ def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
         for verb, signal, value in event.changes:
             if verb == "override" and (said := _odd(system, *system.split(signal), value)):
                 found, remedy = said
-                yield problem_at(scenario, ("events", number, verb, signal), f"{signal}: {found}", remedy, "remark")
+                yield problem_at(
+                    scenario,
+                    ("events", number, verb, signal),
+                    f"{signal}: {found}",
+                    remedy,
+                    "remark",
+                )
 
 
-def _odd(system: System, component: str | None, name: str, value: Value | None) -> tuple[str, str] | None:
+def _odd(
+    system: System, component: str | None, name: str, value: Value | None
+) -> tuple[str, str] | None:
     """What is odd about a value in the unit of its variable, and what may be meant; None where nothing is."""
     unit = system.unit_of(component, name)
     if unit is None or isinstance(value, (bool, str)) or not isinstance(value, (int, float)):
@@ -88,12 +109,19 @@ def _odd(system: System, component: str | None, name: str, value: Value | None) 
     named = unit.name == "rad" or relation(unit, RADIAN) == "same"
     turns = abs(value) / (2.0 * math.pi) if named else 0.0
     if turns > 1.0:
-        return f"{value:g} {unit.name} is more than a whole turn.", f'If degrees are meant, write "{value:g} deg".'
+        return (
+            f"{value:g} {unit.name} is more than a whole turn.",
+            f'If degrees are meant, write "{value:g} deg".',
+        )
     variables = system.components[component].fmu.variables if component is not None else {}
     is_ship = all(one in variables for one in SHIP)
     for known in RANGES:
         bounds = spelled_unit(known.unit)
-        if bounds is None or relation(unit, bounds) not in ("same", "convertible") or (known.of_ship and not is_ship):
+        if (
+            bounds is None
+            or relation(unit, bounds) not in ("same", "convertible")
+            or (known.of_ship and not is_ship)
+        ):
             continue
         size = value * unit.factor / bounds.factor
         if re.fullmatch(known.name, name) and not known.low <= size <= known.high:

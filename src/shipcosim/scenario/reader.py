@@ -114,11 +114,17 @@ def _text(path: Path) -> str:
     try:
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror or error}.")) from error
+        raise ShipcosimError(
+            Problem(str(path), f"cannot be read: {error.strerror or error}.")
+        ) from error
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
-        found = f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
-        raise ShipcosimError(Problem(f"{path}, line {line}", found, "Save the file in UTF-8.")) from error
+        found = (
+            f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
+        )
+        raise ShipcosimError(
+            Problem(f"{path}, line {line}", found, "Save the file in UTF-8.")
+        ) from error
 
 
 def _no_toml(path: Path, message: str, kind: str) -> Problem:
@@ -126,7 +132,9 @@ def _no_toml(path: Path, message: str, kind: str) -> Problem:
     line = re.search(r" \(at line (\d+), column \d+\)", message)
     where = f"{path}, line {line[1]}" if line else str(path)
     found = f"is no TOML: {message.replace(line[0], '') if line else message}."
-    return Problem(where, found, f"{kind} are text files in TOML: keys, =, values, texts in quotes.")
+    return Problem(
+        where, found, f"{kind} are text files in TOML: keys, =, values, texts in quotes."
+    )
 
 
 def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]:
@@ -135,7 +143,9 @@ def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]
     for finding in error.errors():
         keys = finding["loc"]
         where = line_of(text, keys), keys[: 3 if keys[0] in ("events", "expect") else 2]
-        problems.setdefault(where, Problem(location_of(path, text, keys), *complaint_of(finding, Scenario)))
+        problems.setdefault(
+            where, Problem(location_of(path, text, keys), *complaint_of(finding, Scenario))
+        )
     return [problems[where] for where in sorted(problems, key=lambda where: where[0])]
 
 
@@ -150,27 +160,41 @@ def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, s
         Of the whole file.
     """
     part, keys = _part_at(record, finding["loc"])
-    kind, last = finding["type"], str(keys[-1]) if keys else ""
+    kind = finding["type"]
+    last = str(keys[-1]) if keys else ""
     label = ".".join(map(str, keys))
     if kind == "extra_forbidden":
-        return f"unknown key '{last}'.", suggestion(last, (field.alias or n for n, field in part.model_fields.items()))
+        return f"unknown key '{last}'.", suggestion(
+            last, (field.alias or n for n, field in part.model_fields.items())
+        )
     if kind == "missing":
         return f"'{last}' is missing.", ""
     if kind == "value_error":
         return str(finding.get("ctx", {})["error"]), ""
     remedy = _REMEDIES.get(kind) or finding["msg"].replace("Input", "It", 1) + "."
     value = finding["input"]
-    as_toml = json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)
+    as_toml = (
+        json.dumps(value, ensure_ascii=False) if isinstance(value, (bool, str)) else repr(value)
+    )
     return f"{label} = {as_toml}.", remedy
 
 
-def _part_at(record: type[BaseModel], keys: tuple[int | str, ...]) -> tuple[type[BaseModel], tuple[int | str, ...]]:
+def _part_at(
+    record: type[BaseModel], keys: tuple[int | str, ...]
+) -> tuple[type[BaseModel], tuple[int | str, ...]]:
     """The innermost record that keys lead to, and the keys within it."""
     for number, key in enumerate(keys[:-1]):
-        field = next((field for name, field in record.model_fields.items() if key in (name, field.alias)), None)
+        field = next(
+            (field for name, field in record.model_fields.items() if key in (name, field.alias)),
+            None,
+        )
         kinds = list(_kinds_in(field.annotation)) if field else []
-        part = next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)), None)
-        if part is not None and len(rest := keys[number + 1 :]) > (is_many := list in kinds or dict in kinds):
+        part = next(
+            (kind for kind in kinds if isinstance(kind, type) and issubclass(kind, BaseModel)), None
+        )
+        if part is not None and len(rest := keys[number + 1 :]) > (
+            is_many := list in kinds or dict in kinds
+        ):
             return _part_at(part, rest[is_many:])
     return record, keys
 

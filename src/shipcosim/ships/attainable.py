@@ -64,7 +64,11 @@ def largest_multiple(sets: Sequence[NDArray], left: NDArray, loads: NDArray) -> 
 def _normals(edges: list[NDArray]) -> NDArray:
     """Unit vectors, in both directions, on each edge of a set and one of another, or on two of one set."""
     groups = [*edges, np.eye(3)]
-    pairs = [np.cross(a[:, None], b[None]).reshape(-1, 3) for i, a in enumerate(groups) for b in groups[:i]]
+    pairs = [
+        np.cross(a[:, None], b[None]).reshape(-1, 3)
+        for i, a in enumerate(groups)
+        for b in groups[:i]
+    ]
     pairs += [np.cross(one[:1], one) for one in edges]
     found = np.concatenate([np.eye(3), *pairs])
     length = np.linalg.norm(found, axis=1, keepdims=True)

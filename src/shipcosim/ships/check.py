@@ -20,7 +20,8 @@ BLOCK = (0.2, 1.0)
 """Block coefficients of ships."""
 OWN_BLOCK = 0.05
 """Share by which the displacement may differ from the block coefficient's."""
-SLENDER, SHALLOW = (1.0, 20.0), (0.3, 15.0)
+SLENDER = (1.0, 20.0)
+SHALLOW = (0.3, 15.0)
 """Length over breadth, breadth over draught."""
 GYRADIUS = (0.15, 0.40)
 BEYOND = 0.6
@@ -79,14 +80,22 @@ def estimated(ship: Described) -> list[tuple[str, str, str, str]]:
     for component, entries in ship.entries.items():
         for name, entry in entries.items():
             if entry.origin.startswith(ESTIMATED):
-                value = f"{entry.value:.4g} {entry.unit}".removesuffix(" 1") if not entry.columns else "table"
+                value = (
+                    f"{entry.value:.4g} {entry.unit}".removesuffix(" 1")
+                    if not entry.columns
+                    else "table"
+                )
                 tolerance = f"{entry.tolerance:.2g}" if entry.tolerance else ""
-                rows.append((f"{component}.{name}", value, tolerance, entry.origin.removeprefix(ESTIMATED)))
+                rows.append(
+                    (f"{component}.{name}", value, tolerance, entry.origin.removeprefix(ESTIMATED))
+                )
     return rows
 
 
 def _hull(ship: Described) -> Iterator[Problem]:
-    form, p, m = ship.form, ship.file.particulars, ship.file.mass
+    form = ship.form
+    p = ship.file.particulars
+    m = ship.file.mass
     assert p is not None
     where = f"{ship.path}: particulars"
     box = form.density * form.hulls * form.length * form.breadth * form.draught
@@ -99,43 +108,71 @@ def _hull(ship: Described) -> Iterator[Problem]:
         yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
     elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
         found = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
-        yield Problem(f"{ship.path}: mass", found, f"The mass is that of {mass / box:.3f}; leave one of them out.")
+        yield Problem(
+            f"{ship.path}: mass",
+            found,
+            f"The mass is that of {mass / box:.3f}; leave one of them out.",
+        )
     if m.mass and p.displacement and abs(m.mass.value / p.displacement.value - 1.0) > OWN_BLOCK:
-        found = f"the mass is {_mass(m.mass.value)}, the displacement {_mass(p.displacement.value)}."
-        yield Problem(f"{ship.path}: mass", found, "A ship that floats displaces her mass; give one of them.")
+        found = (
+            f"the mass is {_mass(m.mass.value)}, the displacement {_mass(p.displacement.value)}."
+        )
+        yield Problem(
+            f"{ship.path}: mass", found, "A ship that floats displaces her mass; give one of them."
+        )
     breadth = number(p.breadth)
     for name, ratio, (low, high) in (
         ("length over breadth", form.length / breadth, SLENDER),
         ("breadth over draught", form.breadth / form.draught, SHALLOW),
     ):
         if not low <= ratio <= high:
-            yield Problem(where, f"{name} is {ratio:.3g}.", f"Ships have {low:g} to {high:g}; is a unit missing?")
+            yield Problem(
+                where,
+                f"{name} is {ratio:.3g}.",
+                f"Ships have {low:g} to {high:g}; is a unit missing?",
+            )
     if form.hulls > 1 and form.hulls * form.breadth > breadth:
-        found = f"{form.hulls} hulls of {form.breadth:g} m are broader than the ship, {breadth:g} m."
+        found = (
+            f"{form.hulls} hulls of {form.breadth:g} m are broader than the ship, {breadth:g} m."
+        )
         yield Problem(where, found, "hull_breadth is that of one hull.")
 
 
 def _matrix(ship: Described) -> Iterator[Problem]:
     value = {name: float(e.value) for name, e in ship.vessel.items() if not e.columns}
-    where, length, mass = f"{ship.path}: mass", ship.form.length, value["mass"]
+    where = f"{ship.path}: mass"
+    length = ship.form.length
+    mass = value["mass"]
     matrix = mass_matrix(ship)
     least = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min())
     diagonal = np.diag(matrix)
     if not (diagonal > 0.0).all() or least <= 0.0:
         names = [f"{n} {d:.3g}" for n, d in zip(("surge", "sway", "yaw"), diagonal, strict=True)]
-        remedy = "Mass with added mass must be positive, and sway_yaw squared less than sway times yaw: "
+        remedy = (
+            "Mass with added mass must be positive, and sway_yaw squared less than sway times yaw: "
+        )
         remedy += f"at most {np.sqrt(max(diagonal[1] * diagonal[2], 0.0)):.3g} kg.m."
-        found = f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}."
+        found = (
+            f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}."
+        )
         yield Problem(where, found, remedy)
     own = value["inertia_yaw"] - mass * value.get("centre_of_gravity_x", 0.0) ** 2
     gyradius = np.sqrt(max(own, 0.0) / mass) / length
     if not GYRADIUS[0] <= gyradius <= GYRADIUS[1]:
         low, high = (mass * (share * length) ** 2 for share in GYRADIUS)
         remedy = f"Ships have {GYRADIUS[0]:g} to {GYRADIUS[1]:g}, which is {low:.3g} to {high:.3g} kg.m2."
-        yield Problem(where, f"the yaw inertia is that of a gyration radius of {gyradius:.2g} lengths.", remedy)
+        yield Problem(
+            where,
+            f"the yaw inertia is that of a gyration radius of {gyradius:.2g} lengths.",
+            remedy,
+        )
     if abs(value.get("centre_of_gravity_x", 0.0)) > 0.2 * length:
-        found = f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
-        yield Problem(where, found, f"Of {length:g} m of length it lies within a tenth or so of them.")
+        found = (
+            f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
+        )
+        yield Problem(
+            where, found, f"Of {length:g} m of length it lies within a tenth or so of them."
+        )
     for name in DRIVING:
         if value.get(name, 0.0) > 0.0:
             found = f"{name} is {value[name]:g}: the water drives her."
@@ -145,15 +182,21 @@ def _matrix(ship: Described) -> Iterator[Problem]:
 def _thrusters(ship: Described) -> Iterator[Problem]:
     p = ship.file.particulars
     assert p is not None
-    length, breadth, draught = ship.form.length, number(p.breadth), ship.form.draught
+    length = ship.form.length
+    breadth = number(p.breadth)
+    draught = ship.form.draught
     for unit in ship.units:
         where = f"{ship.path}: thruster {unit.name}"
         if abs(unit.x) > BEYOND * length:
             found = f"x is {unit.x:g} m, outside of the hull of {length:g} m."
-            yield Problem(where, found, f"x is forward of midships: {-0.5 * length:g} to {0.5 * length:g} m.")
+            yield Problem(
+                where, found, f"x is forward of midships: {-0.5 * length:g} to {0.5 * length:g} m."
+            )
         if abs(unit.y) > BEYOND * breadth:
             found = f"y is {unit.y:g} m, outside of the hull of {breadth:g} m."
-            yield Problem(where, found, f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m.")
+            yield Problem(
+                where, found, f"y is to starboard: {-0.5 * breadth:g} to {0.5 * breadth:g} m."
+            )
         yield from _thrust(unit, where, draught)
 
 
@@ -164,19 +207,31 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
         return
     most = most_thrust(screw.kind, screw.diameter, screw.power, screw.density)
     if screw.thrust > 1.02 * most:
-        found = f"{screw.thrust / 1000:.4g} kN of {screw.power / 1000:.4g} kW and {screw.diameter:g} m."
-        yield Problem(where, found, f"No {screw.kind} propeller of that power gives more than {most / 1000:.4g} kN.")
+        found = (
+            f"{screw.thrust / 1000:.4g} kN of {screw.power / 1000:.4g} kW and {screw.diameter:g} m."
+        )
+        yield Problem(
+            where,
+            found,
+            f"No {screw.kind} propeller of that power gives more than {most / 1000:.4g} kN.",
+        )
     if screw.thrust_coefficient > MOST_KT:
         found = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
         found += f"{screw.thrust_coefficient:.2g}."
-        yield Problem(where, found, f"Propellers have at most {MOST_KT:g}: is the speed, or the diameter, right?")
+        yield Problem(
+            where,
+            found,
+            f"Propellers have at most {MOST_KT:g}: is the speed, or the diameter, right?",
+        )
     if screw.diameter > 1.2 * draught:
         found = f"the propeller of {screw.diameter:g} m does not fit under a ship of {draught:g} m of draught."
         yield Problem(where, found, "Diameter and draught are in m; is a unit missing?")
     tip = pi * screw.diameter * screw.rpm / 60.0
     if tip > 80.0:
         found = f"the tips run at {tip:.0f} m/s."
-        yield Problem(where, found, "Propellers stay below some 50 m/s: is rpm that of the motor?", "remark")
+        yield Problem(
+            where, found, "Propellers stay below some 50 m/s: is rpm that of the motor?", "remark"
+        )
 
 
 def _remarks(ship: Described) -> Iterator[Problem]:
@@ -186,16 +241,26 @@ def _remarks(ship: Described) -> Iterator[Problem]:
     count = len(estimated(ship))
     if count:
         found = f"{count} numbers are estimated."
-        yield Problem(str(ship.path), found, "Give what you know; the rest has the tolerance of its formula.", "remark")
+        yield Problem(
+            str(ship.path),
+            found,
+            "Give what you know; the rest has the tolerance of its formula.",
+            "remark",
+        )
 
 
 def _speed(ship: Described) -> Iterator[Problem]:
     """Whether she can run at her service speed, and whether the formulae hold there."""
-    form, p, entry = ship.form, ship.file.particulars, ship.vessel.get("X_uu")
+    form = ship.form
+    p = ship.file.particulars
+    entry = ship.vessel.get("X_uu")
     if entry is None or p is None or p.service_speed is None:
         return
-    where, drag = f"{ship.path}: resistance", -float(entry.value) * form.speed**2
-    ahead = sum(unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi)
+    where = f"{ship.path}: resistance"
+    drag = -float(entry.value) * form.speed**2
+    ahead = sum(
+        unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi
+    )
     if ahead and drag > ahead:
         found = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
         found += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."

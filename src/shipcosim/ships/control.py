@@ -57,8 +57,13 @@ def mass_matrix(ship: Described) -> np.ndarray:
     -------
     (3, 3) array
     """
-    value = {name: float(entry.value) for name, entry in ship.vessel.items() if isinstance(entry.value, (int, float))}
-    m, static = value["mass"], value["mass"] * value.get("centre_of_gravity_x", 0.0)
+    value = {
+        name: float(entry.value)
+        for name, entry in ship.vessel.items()
+        if isinstance(entry.value, (int, float))
+    }
+    m = value["mass"]
+    static = value["mass"] * value.get("centre_of_gravity_x", 0.0)
     return np.array(
         [
             [m + value["A11"], 0.0, 0.0],
@@ -82,7 +87,8 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Entry]]:
         By component and parameter.
     """
     used = units_for_dp(ship)
-    loop, length = _loop(ship, used), ship.form.length
+    loop = _loop(ship, used)
+    length = ship.form.length
     own = {name: _numbers(fmu, ship.path) for name, fmu in COMPONENTS.items()}
     own["sensors"].estimates(control.sensors(length))
     own["reference"].estimates(control.reference(loop))
@@ -104,10 +110,14 @@ def _numbers(fmu: str, path: Path) -> Numbers:
 
 def _loop(ship: Described, used: list[ShipThruster]) -> control.ControlledShip:
     effects = np.array([unit.effect for unit in used]).T
-    least, most = np.array([unit.least for unit in used]), np.array([unit.most for unit in used])
+    least = np.array([unit.least for unit in used])
+    most = np.array([unit.most for unit in used])
     reach = control.reach_of(effects, least, most)
     floor = WORTH * 0.01 * number(ship.file.mass.mass, ship.form.mass)
-    X, Y, N = (0.0 if load < least else load for load, least in zip(reach, (floor, floor, 0.1 * floor), strict=True))
+    X, Y, N = (
+        0.0 if load < least else load
+        for load, least in zip(reach, (floor, floor, 0.1 * floor), strict=True)
+    )
     return control.ControlledShip(length=ship.form.length, mass=mass_matrix(ship), reach=(X, Y, N))
 
 
@@ -117,6 +127,9 @@ def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
     for i, unit in enumerate(used, 1):
         places = {"x": unit.x, "y": unit.y, "azimuth": unit.direction, "thrust_rate": unit.rate}
         places |= {"thrust_min": unit.least, "thrust_max": unit.most}
-        found |= {f"{name}_{i}": EstimatedNumber(value, 0.0, f"thruster {unit.name}") for name, value in places.items()}
+        found |= {
+            f"{name}_{i}": EstimatedNumber(value, 0.0, f"thruster {unit.name}")
+            for name, value in places.items()
+        }
     lever = max(max(abs(unit.effect[2]) for unit in used), 0.1)
     return found | {"yaw_lever": EstimatedNumber(lever, 0.0, "largest lever of a thruster")}

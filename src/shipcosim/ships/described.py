@@ -101,16 +101,25 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
         With everything that is missing or cannot be read.
     """
     path = file_of(path)
-    said, problems = read_file(path) if file is None else file, []
+    said = read_file(path) if file is None else file
+    problems = []
     form = form_of(said, str(path), problems)
     names = [one.name for one in said.thrusters]
-    if twice := sorted({name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}):
+    if twice := sorted(
+        {name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}
+    ):
         problems.append(
-            Problem(f"{path}: thrusters", f"the name '{twice[0]}' is taken.", "Each has a name of its own.")
+            Problem(
+                f"{path}: thrusters",
+                f"the name '{twice[0]}' is taken.",
+                "Each has a name of its own.",
+            )
         )
     if len(names) > MOST_THRUSTERS:
         found = f"she has {len(names)}."
-        problems.append(Problem(f"{path}: thrusters", found, f"The model of a ship takes {MOST_THRUSTERS}."))
+        problems.append(
+            Problem(f"{path}: thrusters", found, f"The model of a ship takes {MOST_THRUSTERS}.")
+        )
     if not names:
         remedy = f"Add a [[thrusters]] with name, kind ({', '.join(KINDS)}), x and y."
         problems.append(Problem(f"{path}: thrusters", "she has none.", remedy))
@@ -130,9 +139,15 @@ def _text(path: Path) -> str:
     except OSError as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror}.")) from None
     except UnicodeDecodeError:
-        raise ShipcosimError(Problem(str(path), "is not UTF-8 text.", "Save the file in UTF-8.")) from None
+        raise ShipcosimError(
+            Problem(str(path), "is not UTF-8 text.", "Save the file in UTF-8.")
+        ) from None
     if len(text) > LONGEST:
-        raise ShipcosimError(Problem(str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."))
+        raise ShipcosimError(
+            Problem(
+                str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."
+            )
+        )
     return text
 
 
@@ -143,16 +158,24 @@ def _toml(text: str, path: Path) -> dict[str, Any]:
         line = re.search(r" \(at line (\d+), column \d+\)", str(error))
         where = f"{path}, line {line[1]}" if line else str(path)
         said = str(error).replace(line[0], "") if line else "brackets are nested too deep"
-        raise ShipcosimError(Problem(where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes.")) from None
+        raise ShipcosimError(
+            Problem(where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes.")
+        ) from None
 
 
 def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
     """A finding of pydantic in our words."""
-    keys, kind = list(finding["loc"]), finding["type"]
+    keys = list(finding["loc"])
+    kind = finding["type"]
     if keys[:1] == ["thrusters"] and len(keys) > 1:
         return _of_thruster(path, said, keys, finding)
-    last, record = str(keys[-1]), ShipFile.model_fields
-    where = f"{path}: {'.'.join(map(str, keys[:-1] if kind == 'extra_forbidden' else keys))}".rstrip(": ")
+    last = str(keys[-1])
+    record = ShipFile.model_fields
+    where = (
+        f"{path}: {'.'.join(map(str, keys[:-1] if kind == 'extra_forbidden' else keys))}".rstrip(
+            ": "
+        )
+    )
     if kind == "extra_forbidden":
         known = record if len(keys) == 1 else type(_default(keys[0])).model_fields
         return Problem(where, f"unknown key '{last}'.", suggestion(last, known))
@@ -163,15 +186,22 @@ def _default(section: Any) -> Any:
     """The record of a section, empty."""
     from shipcosim.ships.file import Particulars
 
-    return Particulars() if section == "particulars" else ShipFile.model_fields[str(section)].default
+    return (
+        Particulars() if section == "particulars" else ShipFile.model_fields[str(section)].default
+    )
 
 
 def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> Problem:
     """A finding in a thruster, which is called by its name."""
     listed = said["thrusters"] if isinstance(said.get("thrusters"), list) else []
     one = listed[keys[1]] if isinstance(keys[1], int) and keys[1] < len(listed) else {}
-    name = one.get("name", keys[1] + 1 if isinstance(keys[1], int) else "") if isinstance(one, dict) else ""
-    kind, where = finding["type"], f"{path}: thruster {name}"
+    name = (
+        one.get("name", keys[1] + 1 if isinstance(keys[1], int) else "")
+        if isinstance(one, dict)
+        else ""
+    )
+    kind = finding["type"]
+    where = f"{path}: thruster {name}"
     if kind.startswith("union_tag"):
         found = one.get("kind") if isinstance(one, dict) else None
         if found is None:
@@ -179,9 +209,15 @@ def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> 
         return Problem(where, f"kind = {found!r}.", suggestion(str(found), KINDS))
     last = str(keys[-1])
     if kind == "extra_forbidden":
-        return Problem(where, f"unknown key '{last}'.", suggestion(last, KINDS[str(keys[2])].model_fields))
+        return Problem(
+            where, f"unknown key '{last}'.", suggestion(last, KINDS[str(keys[2])].model_fields)
+        )
     if kind == "string_pattern_mismatch":
-        return Problem(where, f"the name is {finding['input']!r}.", "A name has letters, digits and _, a letter first.")
+        return Problem(
+            where,
+            f"the name is {finding['input']!r}.",
+            "A name has letters, digits and _, a letter first.",
+        )
     return Problem(f"{where}, {last}" if len(keys) > 3 else where, *_words(finding))
 
 

@@ -28,13 +28,30 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Entry | None
         problems.append(Problem(where, f"there is no file {file}."))
         return None
     lines = file.read_text(encoding="utf-8").splitlines()
-    source = next((line[1:].partition("source:")[2].strip() for line in lines if line.startswith("# source:")), "")
-    header, *rows = list(csv.reader(line for line in lines if line.strip() and not line.startswith("#"))) or [[]]
+    source = next(
+        (
+            line[1:].partition("source:")[2].strip()
+            for line in lines
+            if line.startswith("# source:")
+        ),
+        "",
+    )
+    header, *rows = list(
+        csv.reader(line for line in lines if line.strip() and not line.startswith("#"))
+    ) or [[]]
     if not source:
-        problems.append(Problem(str(file), "no line says where the table is from.", "Write '# source: ...' above it."))
+        problems.append(
+            Problem(
+                str(file),
+                "no line says where the table is from.",
+                "Write '# source: ...' above it.",
+            )
+        )
     for number, row in enumerate(rows, 1):
         if len(row) != len(header) or not all(_is_number_text(cell) for cell in row):
-            problems.append(Problem(f"{file}, row {number}", f"{row}.", f"A row has {len(header)} numbers."))
+            problems.append(
+                Problem(f"{file}, row {number}", f"{row}.", f"A row has {len(header)} numbers.")
+            )
     text = "; ".join(" ".join(cell.strip() for cell in row) for row in rows)
     return Entry(text, "1", 0.0, source, tuple(cell.strip() for cell in header), str(file))
 

@@ -160,7 +160,8 @@ class ThrustMap(_Thruster):
     kind: Literal["map"]
     direction: Angle = None
     table: Annotated[
-        list[list[float]] | str, BeforeValidator(lambda found: found if isinstance(found, str) else _rows(found))
+        list[list[float]] | str,
+        BeforeValidator(lambda found: found if isinstance(found, str) else _rows(found)),
     ]
     unit: str = "1"
     time_constant: Seconds = None
@@ -180,7 +181,9 @@ class PropellerWithRudder(_Thruster):
     rudder_span: Length = None
 
 
-Thruster = Annotated[FixedPropeller | Azimuth | Tunnel | ThrustMap | PropellerWithRudder, Field(discriminator="kind")]
+Thruster = Annotated[
+    FixedPropeller | Azimuth | Tunnel | ThrustMap | PropellerWithRudder, Field(discriminator="kind")
+]
 
 
 class ShipFile(_Part):
@@ -201,7 +204,13 @@ class ShipFile(_Part):
     thrusters: list[Thruster] = []
 
 
-KINDS = {"fixed": FixedPropeller, "azimuth": Azimuth, "tunnel": Tunnel, "map": ThrustMap, "rudder": PropellerWithRudder}
+KINDS = {
+    "fixed": FixedPropeller,
+    "azimuth": Azimuth,
+    "tunnel": Tunnel,
+    "map": ThrustMap,
+    "rudder": PropellerWithRudder,
+}
 """Kinds of thrusters."""
 
 
@@ -211,7 +220,9 @@ def number(found: Given | None, otherwise: float = 0.0) -> float:
 
 
 def _rows(found: Any) -> Any:
-    if not isinstance(found, list) or not all(isinstance(row, list) and len(row) == 2 for row in found):
+    if not isinstance(found, list) or not all(
+        isinstance(row, list) and len(row) == 2 for row in found
+    ):
         raise ValueError(
             "found no rows of two numbers. Write [[command, thrust in N], ...], or the name of a CSV file."
         )

@@ -67,7 +67,9 @@ class Ship:
     systems: tuple[str, ...]
     entries: Mapping[str, Mapping[str, Entry]]
 
-    def parameter_set(self, components: Mapping[str, Iterable[type]]) -> dict[str, dict[str, Quantity]]:
+    def parameter_set(
+        self, components: Mapping[str, Iterable[type]]
+    ) -> dict[str, dict[str, Quantity]]:
         """All parameters of components, checked: nothing missing, nothing unknown, units and bounds as declared.
 
         Parameters
@@ -86,7 +88,9 @@ class Ship:
             With everything that is wrong.
         """
         problems: list[Problem] = []
-        found = {name: self._values(name, tuple(kinds), problems) for name, kinds in components.items()}
+        found = {
+            name: self._values(name, tuple(kinds), problems) for name, kinds in components.items()
+        }
         for name, kinds in components.items():
             self._find_unknown(name, kinds, problems)
         if problems:
@@ -118,7 +122,9 @@ class Ship:
             raise ShipcosimError(problems)
         return kind(**{name: quantity.value for name, quantity in values.items()})
 
-    def _values(self, component: str, kinds: tuple[type, ...], problems: list[Problem]) -> dict[str, Quantity]:
+    def _values(
+        self, component: str, kinds: tuple[type, ...], problems: list[Problem]
+    ) -> dict[str, Quantity]:
         said = self.entries.get(component, {})
         declared = [field for kind in kinds for field in fields(kind) if field.init]
         missing = [f for f in declared if f.name not in said and f.default is MISSING]
@@ -126,16 +132,26 @@ class Ship:
             names = ", ".join(f"{f.name} [{f.metadata['unit']}]" for f in missing)
             where = str(self.folder / f"{component}.toml")
             problems.append(
-                Problem(where, f"nothing says {names}.", "They describe the ship, so they have no default.")
+                Problem(
+                    where,
+                    f"nothing says {names}.",
+                    "They describe the ship, so they have no default.",
+                )
             )
-        present = [field for field in declared if field.name in said or field.default is not MISSING]
+        present = [
+            field for field in declared if field.name in said or field.default is not MISSING
+        ]
         return {field.name: _quantity(field, said.get(field.name), problems) for field in present}
 
     def _find_unknown(self, component: str, kinds: Iterable[type], problems: list[Problem]) -> None:
         known = {field.name for kind in kinds for field in fields(kind)}
         for name, entry in self.entries.get(component, {}).items():
             if name not in known and not entry.inherited:
-                problems.append(Problem(entry.where, f"{component} has no such parameter.", suggestion(name, known)))
+                problems.append(
+                    Problem(
+                        entry.where, f"{component} has no such parameter.", suggestion(name, known)
+                    )
+                )
 
 
 def read_ship(folder: str | Path) -> Ship:
@@ -158,7 +174,12 @@ def read_ship(folder: str | Path) -> Ship:
     problems: list[Problem] = []
     folder = Path(folder)
     layers = _layers(folder, (), problems)
-    names = dict.fromkeys(file.stem for layer in layers for file in sorted(layer.glob("*.toml")) if file.stem != "ship")
+    names = dict.fromkeys(
+        file.stem
+        for layer in layers
+        for file in sorted(layer.glob("*.toml"))
+        if file.stem != "ship"
+    )
     files = {name: [_read(layer / f"{name}.toml", problems) for layer in layers] for name in names}
     entries = {name: _entries(name, files, (), problems) for name in names}
     about = [_about(layer, []) for layer in layers]
@@ -204,15 +225,24 @@ def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
     file = folder / "ship.toml"
     if not file.is_file():
         near = [path.parent.name for path in folder.parent.glob("*/ship.toml")]
-        problems.append(Problem(str(file), "there is no such file.", f"Ships: {suggestion(folder.name, near)}"))
+        problems.append(
+            Problem(str(file), "there is no such file.", f"Ships: {suggestion(folder.name, near)}")
+        )
         return {}
     said = _toml(file, problems)
-    known = {key: [value] if key == "based_on" and isinstance(value, str) else value for key, value in said.items()}
+    known = {
+        key: [value] if key == "based_on" and isinstance(value, str) else value
+        for key, value in said.items()
+    }
     known = {key: value for key, value in known.items() if key not in _SECTIONS}
     for key, value in known.items():
         if not isinstance(value, _SHIP_KEYS.get(key, ())):
-            problems.append(Problem(f"{file}: {key}", f"found {value!r}.", suggestion(key, _SHIP_KEYS)))
-    return {key: value for key, value in known.items() if isinstance(value, _SHIP_KEYS.get(key, ()))}
+            problems.append(
+                Problem(f"{file}: {key}", f"found {value!r}.", suggestion(key, _SHIP_KEYS))
+            )
+    return {
+        key: value for key, value in known.items() if isinstance(value, _SHIP_KEYS.get(key, ()))
+    }
 
 
 def _toml(file: Path, problems: list[Problem]) -> dict[str, Any]:
@@ -227,11 +257,19 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
     """Entries of a parameter file by name, and ``like`` as a list; nothing where there is no file."""
     if not file.is_file():
         return {}
-    found = {name: _entry(file, name, said, problems) for name, said in _toml(file, problems).items() if name != "like"}
+    found = {
+        name: _entry(file, name, said, problems)
+        for name, said in _toml(file, problems).items()
+        if name != "like"
+    }
     said = _toml(file, []).get("like", [])
     like = [said] if isinstance(said, str) else said
     if not isinstance(like, list) or not all(isinstance(one, str) for one in like):
-        problems.append(Problem(f"{file}: like", f"found {said!r}.", "Name the components that this one is like."))
+        problems.append(
+            Problem(
+                f"{file}: like", f"found {said!r}.", "Name the components that this one is like."
+            )
+        )
         like = []
     return {"like": like} | {name: entry for name, entry in found.items() if entry is not None}
 
@@ -247,7 +285,15 @@ def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry |
     if is_table:
         return table_entry(file.parent / said["table"], where, problems)
     uncertainty = tuple(map(float, said.get("uncertainty", ())))
-    return Entry(said["value"], said["unit"], float(said.get("tolerance", 0.0)), said["origin"], (), where, uncertainty)
+    return Entry(
+        said["value"],
+        said["unit"],
+        float(said.get("tolerance", 0.0)),
+        said["origin"],
+        (),
+        where,
+        uncertainty,
+    )
 
 
 def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
@@ -256,55 +302,98 @@ def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
         return [f"found {said!r}"]
     wrong = [f"'{key}' is no key" for key in said if key not in keys]
     wrong += [f"'{key}' is missing" for key in keys if key not in said and key not in _OPTIONAL]
-    wrong += [f"'{key}' is {said[key]!r}" for key, is_right in keys.items() if key in said and not is_right(said[key])]
+    wrong += [
+        f"'{key}' is {said[key]!r}"
+        for key, is_right in keys.items()
+        if key in said and not is_right(said[key])
+    ]
     return wrong
 
 
-def _entries(name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]) -> dict[str, Entry]:
+def _entries(
+    name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
+) -> dict[str, Entry]:
     """What a ship's files say of a component: of those that it is like, the first before the next, then of itself."""
-    layers, found = files.get(name, []), {}
+    layers = files.get(name, [])
+    found = {}
     likes = next((layer["like"] for layer in reversed(layers) if layer.get("like")), [])
     for like in reversed(likes):
         if like in (*above, name) or like not in files:
-            wrong = "like itself" if like in files else f"like '{like}', which this ship does not have"
-            problems.append(Problem(f"{name}.toml", f"{wrong}.", suggestion(like, set(files) - {name, *above})))
+            wrong = (
+                "like itself" if like in files else f"like '{like}', which this ship does not have"
+            )
+            problems.append(
+                Problem(f"{name}.toml", f"{wrong}.", suggestion(like, set(files) - {name, *above}))
+            )
             continue
         taken = _entries(like, files, (*above, name), problems)
         found |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
     for layer in layers:
         own = {key: entry for key, entry in layer.items() if key != "like"}
-        found |= own if layer is layers[-1] else {key: e._replace(inherited=True) for key, e in own.items()}
+        found |= (
+            own
+            if layer is layers[-1]
+            else {key: e._replace(inherited=True) for key, e in own.items()}
+        )
     return found
 
 
 def _quantity(field: Field, entry: Entry | None, problems: list[Problem]) -> Quantity:
     about = field.metadata
     if entry is None:
-        return Quantity(field.default, about["unit"], about["description"], about["origin"], about["tolerance"])
-    value = float(entry.value) if about["kind"] is float and _is_number(entry.value) else entry.value
+        return Quantity(
+            field.default, about["unit"], about["description"], about["origin"], about["tolerance"]
+        )
+    value = (
+        float(entry.value) if about["kind"] is float and _is_number(entry.value) else entry.value
+    )
     found, remedy = _wrong(value, entry, about)
     if found:
         problems.append(Problem(entry.where, found, remedy))
-    return Quantity(value, about["unit"], about["description"], entry.origin, entry.tolerance, entry.uncertainty)
+    return Quantity(
+        value, about["unit"], about["description"], entry.origin, entry.tolerance, entry.uncertainty
+    )
 
 
 def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str]:
     """What is wrong with a value, and what would be right; both empty where it is right."""
-    kind, low, high = about["kind"], about["minimum"], about["maximum"]
+    kind = about["kind"]
+    low = about["minimum"]
+    high = about["maximum"]
     if type(value) is not kind or (entry.columns and not about["columns"]):
-        wanted = f"a table with the columns {', '.join(about['columns'])}" if about["columns"] else kind.__name__
+        wanted = (
+            f"a table with the columns {', '.join(about['columns'])}"
+            if about["columns"]
+            else kind.__name__
+        )
         return f"found {str(value)[:60]!r}.", f"Give {wanted}."
     if entry.columns != about["columns"]:
-        return f"the columns are {', '.join(entry.columns)}.", f"They must be {', '.join(about['columns'])}."
+        return (
+            f"the columns are {', '.join(entry.columns)}.",
+            f"They must be {', '.join(about['columns'])}.",
+        )
     if entry.unit != about["unit"]:
         return f"the unit is '{entry.unit}'.", f"It must be '{about['unit']}'."
     if kind is float and not math.isfinite(value):
         return f"found {value}.", "Give a finite number."
     if kind is not str and (low is not None and value < low or high is not None and value > high):
-        bounds = [f"at least {low:g}" if low is not None else "", f"at most {high:g}" if high is not None else ""]
-        return f"found {value!r}.", f"It must be {' and '.join(filter(None, bounds))} {about['unit']}."
-    if kind is float and entry.uncertainty and not entry.uncertainty[0] <= value <= entry.uncertainty[1]:
-        return f"{value!r} is outside its uncertainty.", "Give the least and the largest value, with it in between."
+        bounds = [
+            f"at least {low:g}" if low is not None else "",
+            f"at most {high:g}" if high is not None else "",
+        ]
+        return (
+            f"found {value!r}.",
+            f"It must be {' and '.join(filter(None, bounds))} {about['unit']}.",
+        )
+    if (
+        kind is float
+        and entry.uncertainty
+        and not entry.uncertainty[0] <= value <= entry.uncertainty[1]
+    ):
+        return (
+            f"{value!r} is outside its uncertainty.",
+            "Give the least and the largest value, with it in between.",
+        )
     return "", ""
 
 
@@ -317,7 +406,12 @@ def _is_text(value: Any) -> bool:
 
 
 def _is_range(value: Any) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(map(_is_number, value)) and value[0] <= value[1]
+    return (
+        isinstance(value, list)
+        and len(value) == 2
+        and all(map(_is_number, value))
+        and value[0] <= value[1]
+    )
 
 
 _VALUE_KEYS: Mapping[str, Any] = {

@@ -34,7 +34,9 @@ class Given:
     uncertainty: tuple[float, ...] = ()
 
 
-def reader(unit: str, *, least: float | None = None, most: float | None = None) -> Callable[[Any], Given | None]:
+def reader(
+    unit: str, *, least: float | None = None, most: float | None = None
+) -> Callable[[Any], Given | None]:
     """Function that reads a number with a unit and bounds, for a pydantic record.
 
     Parameters
@@ -54,11 +56,17 @@ def reader(unit: str, *, least: float | None = None, most: float | None = None) 
         if found is None or isinstance(found, Given):
             return found
         given = given_in_unit(found, unit)
-        if least is not None and not (given.value > least if least == 0.0 else given.value >= least):
+        if least is not None and not (
+            given.value > least if least == 0.0 else given.value >= least
+        ):
             more = "greater than 0" if least == 0.0 else f"at least {least:g}"
-            raise ValueError(f"found {_text(found)}. It must be {more} {_shown(unit)}".rstrip() + ".")
+            raise ValueError(
+                f"found {_text(found)}. It must be {more} {_shown(unit)}".rstrip() + "."
+            )
         if most is not None and given.value > most:
-            raise ValueError(f"found {_text(found)}. It must be at most {most:g} {_shown(unit)}".rstrip() + ".")
+            raise ValueError(
+                f"found {_text(found)}. It must be at most {most:g} {_shown(unit)}".rstrip() + "."
+            )
         return given
 
     return read
@@ -95,7 +103,9 @@ def number_in(found: Any, unit: str) -> float:
     elif isinstance(found, (int, float, str)) and not isinstance(found, bool):
         value = float(found)
     else:
-        raise ValueError(f"found {_text(found)}. Write a number in {unit}, or a text such as '12.5 {unit}'.")
+        raise ValueError(
+            f"found {_text(found)}. Write a number in {unit}, or a text such as '12.5 {unit}'."
+        )
     if not math.isfinite(value) or abs(value) > 1e20:
         raise ValueError(f"found {_text(found)}. Give a finite number.")
     return value
@@ -114,8 +124,11 @@ def given_in_unit(found: Any, unit: str) -> Given:
     if wrong := [key for key in found if key not in _KEYS]:
         raise ValueError(f"'{wrong[0]}' is no key of a number. It has: {', '.join(_KEYS)}.")
     if "value" not in found:
-        raise ValueError("'value' is missing. Write { value = 1.0, tolerance = 0.1, origin = \"drawing\" }.")
-    own, origin = found.get("unit", unit), found.get("origin", "")
+        raise ValueError(
+            "'value' is missing. Write { value = 1.0, tolerance = 0.1, origin = \"drawing\" }."
+        )
+    own = found.get("unit", unit)
+    origin = found.get("origin", "")
     if not isinstance(own, str) or not isinstance(origin, str):
         raise ValueError("unit and origin are texts in quotes.")
 
@@ -125,7 +138,8 @@ def given_in_unit(found: Any, unit: str) -> Given:
     tolerance = None if "tolerance" not in found else number(found["tolerance"])
     if tolerance is not None and tolerance < 0.0:
         raise ValueError(f"the tolerance is {tolerance:g}. It is a standard deviation, at least 0.")
-    value, both = number(found["value"]), found.get("uncertainty", [])
+    value = number(found["value"])
+    both = found.get("uncertainty", [])
     if not isinstance(both, list) or len(both) not in (0, 2):
         raise ValueError("uncertainty is the least and the largest value, [0.6, 1.5].")
     return Given(value, tolerance, origin, tuple(map(number, both)))

@@ -27,7 +27,14 @@ PARAMETERS: dict[str, tuple[type, ...]] = {
     "propeller_rudder": (PropellerRudderParameters,),
     "sensors": (SensorParameters, MastParameters),
     "reference": (ReferenceParameters,),
-    "dp_controller": (DpShip, ObserverParameters, ControlParameters, WindParameters, MastParameters, VotingParameters),
+    "dp_controller": (
+        DpShip,
+        ObserverParameters,
+        ControlParameters,
+        WindParameters,
+        MastParameters,
+        VotingParameters,
+    ),
     "fixed_angle_allocator": (FixedAngleParameters,),
 }
 """FMU: its classes of parameters."""
@@ -43,9 +50,19 @@ FMU_OF = {
 
 def units_of(fmu: str) -> dict[str, str]:
     """Units of an FMU's parameters by name."""
-    return {field.name: field.metadata["unit"] for kind in PARAMETERS[fmu] for field in fields(kind) if field.init}
+    return {
+        field.name: field.metadata["unit"]
+        for kind in PARAMETERS[fmu]
+        for field in fields(kind)
+        if field.init
+    }
 
 
 def columns_of(fmu: str) -> dict[str, tuple[str, ...]]:
     """Columns of an FMU's tables by name; of a number none."""
-    return {field.name: field.metadata["columns"] for kind in PARAMETERS[fmu] for field in fields(kind) if field.init}
+    return {
+        field.name: field.metadata["columns"]
+        for kind in PARAMETERS[fmu]
+        for field in fields(kind)
+        if field.init
+    }

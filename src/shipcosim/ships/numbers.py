@@ -55,7 +55,8 @@ class Numbers:
         """Take what a formula gives, where nothing is known yet."""
         if name in self.entries:
             return
-        unit, columns = units_of(self.fmu)[name], columns_of(self.fmu)[name]
+        unit = units_of(self.fmu)[name]
+        columns = columns_of(self.fmu)[name]
         origin = f"{ESTIMATED}{estimate.source}"
         where = f"{self.where}: {name}"
         self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
@@ -77,7 +78,9 @@ class Numbers:
         for name, value in found.items():
             if name not in units:
                 self.problems.append(
-                    Problem(f"{self.where}.{name}", "There is no such number.", suggestion(name, units))
+                    Problem(
+                        f"{self.where}.{name}", "There is no such number.", suggestion(name, units)
+                    )
                 )
             elif isinstance(value, dict) and "table" in value:
                 self.table(name, str(value["table"]))

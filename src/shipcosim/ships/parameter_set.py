@@ -27,4 +27,6 @@ def parameter_values(ship: Ship, components: Mapping[str, tuple[type, ...]]) -> 
             text = f"{q.description}; {q.origin}"
             if q.uncertainty:
                 text += f"; sources from {q.uncertainty[0]:g} to {q.uncertainty[1]:g}"
-            yield parameter(f"{component}.{name}", q.value, unit, text, tolerance=q.tolerance or None)
+            yield parameter(
+                f"{component}.{name}", q.value, unit, text, tolerance=q.tolerance or None
+            )

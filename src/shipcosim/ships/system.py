@@ -14,7 +14,8 @@ from shipcosim.ships.parameter_set import parameter_values
 from shipcosim.ships.thrusters import ShipThruster
 from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
 
-STEP, LONG_RUN = 0.05, 600.0  # s
+STEP = 0.05  # s
+LONG_RUN = 600.0
 SAID = {
     "open": "without control, thrusters and weather from outside, for replays",
     "dp": "in a closed DP loop, gains by rule",
@@ -39,12 +40,17 @@ MEASURED = (
     *(f"{name}_time_meas" for name in ("position", "heading", "wind")),
 )
 DESIRED = ("x_d", "y_d", "psi_d", "x_d_dot", "y_d_dot", "r_d", "x_d_ddot", "y_d_ddot", "r_d_dot")
-TRUTH = (*("x", "y", "psi", "u", "v", "r"), *(f"{name}_wave" for name in ("x", "y", "psi", "u", "v", "r")))
+TRUTH = (
+    *("x", "y", "psi", "u", "v", "r"),
+    *(f"{name}_wave" for name in ("x", "y", "psi", "u", "v", "r")),
+)
 APPARENT = ("apparent_wind_speed", "apparent_wind_from")
 
 
 def make_systems(
-    ship: str | PathLike[str] | Described, out: str | PathLike[str], fmus: Iterable[str | PathLike[str]]
+    ship: str | PathLike[str] | Described,
+    out: str | PathLike[str],
+    fmus: Iterable[str | PathLike[str]],
 ) -> list[Path]:
     """Parameter sets and systems of a ship: ``NAME_open``, and ``NAME_dp`` where her thrusters allow a DP.
 
@@ -68,15 +74,22 @@ def make_systems(
         With everything that is missing.
     """
     known = ship if isinstance(ship, Described) else describe(Path(ship))
-    folders, made = [Path(folder) for folder in fmus], []
+    folders = [Path(folder) for folder in fmus]
+    made = []
     kinds = ["open"] if why_no_dp(known) else ["open", "dp"]
     for kind in kinds:
-        name, entries = f"{known.name}_{kind}", known.entries | (dp_entries(known) if kind == "dp" else {})
-        system, folder = structure(known, kind, folders), Path(out) / name
+        name = f"{known.name}_{kind}"
+        entries = known.entries | (dp_entries(known) if kind == "dp" else {})
+        system = structure(known, kind, folders)
+        folder = Path(out) / name
         values = list(parameter_values(_as_ship(known, entries), _kinds(known, kind)))
         if kind == "open":
             follow = "follows the inputs of the system, not a command"
-            values += [parameter(f"{u.name}.replay", True, None, follow) for u in known.units if u.fmu in REPLAYED]
+            values += [
+                parameter(f"{u.name}.replay", True, None, follow)
+                for u in known.units
+                if u.fmu in REPLAYED
+            ]
         system.write(folder, fmus=False)
         write_ssv(folder / "resources" / f"{known.name}.ssv", known.name, values)
         bound = read(folder, fmus=folders)
@@ -118,7 +131,9 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
     """
     folders = list(fmus)
     system = new(f"{ship.name}_{kind}")
-    components = {"environment": "environment", "vessel": "vessel"} | {unit.name: unit.fmu for unit in ship.units}
+    components = {"environment": "environment", "vessel": "vessel"} | {
+        unit.name: unit.fmu for unit in ship.units
+    }
     components |= COMPONENTS if kind == "dp" else {}
     with system.changes():
         for name, fmu in components.items():
@@ -130,7 +145,9 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
         if kind == "open":
             _open_to_outside(system, ship)
     system.description = f"{ship.file.description or ship.name}: {SAID[kind]}"
-    system.start_time, system.stop_time, system.step_size = 0.0, LONG_RUN, STEP
+    system.start_time = 0.0
+    system.stop_time = LONG_RUN
+    system.step_size = STEP
     return system
 
 
@@ -138,7 +155,9 @@ def _fmu(name: str, folders: list[Path]) -> Path:
     for folder in folders:
         if (folder / f"{name}.fmu").is_file():
             return folder / f"{name}.fmu"
-    raise ShipcosimError(Problem(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them."))
+    raise ShipcosimError(
+        Problem(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them.")
+    )
 
 
 def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:
@@ -163,17 +182,35 @@ def _open_to_outside(system: SystemStructure, ship: Described) -> None:
 
 def _commands(unit: ShipThruster, ship: Described) -> Iterable[tuple[str, str | None, str, str]]:
     """Inputs of a thruster from outside: name, unit, input of the FMU, meaning."""
-    by_thrust = any(one.name == unit.name and getattr(one, "command", "") == "thrust" for one in ship.file.thrusters)
+    by_thrust = any(
+        one.name == unit.name and getattr(one, "command", "") == "thrust"
+        for one in ship.file.thrusters
+    )
     if by_thrust:
         yield f"{unit.name}_thrust", "N", "thrust_in", f"force of thruster {unit.name}"
     elif unit.kind == "map":
-        yield f"{unit.name}_command", "1", "command_in", f"command of thruster {unit.name}, in the unit of its map"
+        yield (
+            f"{unit.name}_command",
+            "1",
+            "command_in",
+            f"command of thruster {unit.name}, in the unit of its map",
+        )
     else:
         yield f"{unit.name}_rpm", "rpm", "rpm_in", f"speed of thruster {unit.name}"
     if unit.kind == "azimuth":
-        yield f"{unit.name}_azimuth", "deg", "azimuth_in", "direction of positive thrust, clockwise from the bow"
+        yield (
+            f"{unit.name}_azimuth",
+            "deg",
+            "azimuth_in",
+            "direction of positive thrust, clockwise from the bow",
+        )
     if unit.kind == "rudder":
-        yield f"{unit.name}_azimuth", "deg", "azimuth_in", "rudder angle, positive to where it turns the ship to port"
+        yield (
+            f"{unit.name}_azimuth",
+            "deg",
+            "azimuth_in",
+            "rudder angle, positive to where it turns the ship to port",
+        )
 
 
 def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
@@ -195,8 +232,12 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
 
 def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:
     """Classes of parameters by component."""
-    found = {"vessel": PARAMETERS["vessel"]} | {unit.name: PARAMETERS[FMU_OF[unit.kind]] for unit in ship.units}
-    return found | ({name: PARAMETERS[fmu] for name, fmu in COMPONENTS.items()} if kind == "dp" else {})
+    found = {"vessel": PARAMETERS["vessel"]} | {
+        unit.name: PARAMETERS[FMU_OF[unit.kind]] for unit in ship.units
+    }
+    return found | (
+        {name: PARAMETERS[fmu] for name, fmu in COMPONENTS.items()} if kind == "dp" else {}
+    )
 
 
 def _as_ship(ship: Described, entries: Mapping[str, Mapping[str, Entry]]) -> Ship:

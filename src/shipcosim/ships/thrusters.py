@@ -20,12 +20,21 @@ from shipcosim.ships.estimates.propulsion import (
     shaft_speed,
 )
 from shipcosim.ships.estimates.rudder import propeller_and_rudder, rudder_area
-from shipcosim.ships.file import Azimuth, FixedPropeller, PropellerWithRudder, Thruster, ThrustMap, Tunnel, number
+from shipcosim.ships.file import (
+    Azimuth,
+    FixedPropeller,
+    PropellerWithRudder,
+    Thruster,
+    ThrustMap,
+    Tunnel,
+    number,
+)
 from shipcosim.ships.kinds import FMU_OF
 from shipcosim.ships.numbers import Numbers
 
 LARGE = 1e30
-RISE, TURNING = 10.0, 10.0 * pi / 180.0  # s; rad/s
+RISE = 10.0  # s; rad/s
+TURNING = 10.0 * pi / 180.0
 HALF_TURN = 0.25 * pi
 
 
@@ -62,12 +71,17 @@ class ShipThruster:
     @property
     def effect(self) -> tuple[float, float, float]:
         """Load of one newton: X, Y, N. [1, 1, m]"""
-        c, s = cos(self.direction), sin(self.direction)
+        c = cos(self.direction)
+        s = sin(self.direction)
         return c, s, self.x * s - self.y * c
 
 
 def units_of_ship(
-    thrusters: list[Thruster], form: HullDimensions, source: str, file: Path, problems: list[Problem]
+    thrusters: list[Thruster],
+    form: HullDimensions,
+    source: str,
+    file: Path,
+    problems: list[Problem],
 ) -> list[ShipThruster]:
     """Thrusters with all their parameters.
 
@@ -86,12 +100,16 @@ def units_of_ship(
     """
     units = []
     for one in thrusters:
-        own = Numbers(FMU_OF[one.kind], f"{file}: thruster {one.name}", file.parent, source, problems)
+        own = Numbers(
+            FMU_OF[one.kind], f"{file}: thruster {one.name}", file.parent, source, problems
+        )
         own.coefficients(one.coefficients)
         needed = ("x",) if isinstance(one, Tunnel) else ("x", "y")
         if missing := [name for name in needed if getattr(one, name) is None]:
             found = f"nothing says {' and '.join(missing)}."
-            problems.append(Problem(own.where, found, 'x is forward of midships, y to starboard: x = "-12 m".'))
+            problems.append(
+                Problem(own.where, found, 'x is forward of midships, y to starboard: x = "-12 m".')
+            )
             continue
         if one.kind == "rudder":
             own.give("propeller_x", one.x)
@@ -142,14 +160,17 @@ def _unit(
     )
 
 
-def _screw(one: FixedPropeller | Azimuth | Tunnel, own: Numbers, form: HullDimensions, kind: str) -> Screw | None:
+def _screw(
+    one: FixedPropeller | Azimuth | Tunnel, own: Numbers, form: HullDimensions, kind: str
+) -> Screw | None:
     """Propeller of a thruster, what is missing estimated; None, and a problem, where too little is known."""
     if one.diameter is None or (one.power is None and one.thrust is None):
         missing = "diameter" if one.diameter is None else "power or thrust"
         remedy = 'Give diameter and power, power = "500 kW"; thrust at the bollard and rpm where they are known.'
         own.problems.append(Problem(own.where, f"nothing says {missing}.", remedy))
         return None
-    D, density = one.diameter.value, form.density
+    D = one.diameter.value
+    density = form.density
     usual = bollard_thrust(kind, D, number(one.power)) if one.power else None
     thrust = one.thrust.value if one.thrust else float(usual.value if usual else 0.0)
     power = one.power.value if one.power else 1000.0 / D / 0.95 * (thrust / _dnv(kind)) ** 1.5
@@ -191,12 +212,16 @@ def _fixed(one: FixedPropeller, own: Numbers, form: HullDimensions) -> ShipThrus
         return None
     least = -number(one.thrust_astern, ASTERN["open"] * screw.thrust)
     speed = screw.rpm * pi / 30.0
-    source = f"thrust over squared speed at {screw.thrust:.4g} N, {screw.rpm:.4g} rpm; {_said(one)}".rstrip("; ")
+    source = f"thrust over squared speed at {screw.thrust:.4g} N, {screw.rpm:.4g} rpm; {_said(one)}".rstrip(
+        "; "
+    )
     own.estimate("coefficient_ahead", within(screw.thrust / speed**2, _share(one), source))
     astern = source if one.thrust_astern else f"0.7 of ahead; {source}"
     own.estimate("coefficient_astern", within(-least / speed**2, 0.1 + _share(one), astern))
     zero = ZERO_THRUST["open"] * screw.thrust_coefficient * screw.rpm / 60.0 * screw.diameter
-    own.estimate("speed_loss", within(1.0 / zero, 0.3, "no thrust at the advance ratio 2.4 KT of full speed"))
+    own.estimate(
+        "speed_loss", within(1.0 / zero, 0.3, "no thrust at the advance ratio 2.4 KT of full speed")
+    )
     return _unit(one, own, least, screw.thrust, screw.thrust / RISE, direction, screw)
 
 
@@ -210,18 +235,27 @@ def _azimuth(one: Azimuth, own: Numbers, form: HullDimensions) -> ShipThruster |
     least = -number(one.thrust_astern, ASTERN[kind] * screw.thrust)
     if not own.give("thrust_max", one.thrust):
         own.estimate("thrust_max", within(screw.thrust, 0.15, "DNV-ST-0111"))
-    own.estimate("thrust_min", within(least, 0.15, "as given" if one.thrust_astern else f"{ASTERN[kind]} of ahead"))
+    own.estimate(
+        "thrust_min",
+        within(least, 0.15, "as given" if one.thrust_astern else f"{ASTERN[kind]} of ahead"),
+    )
     own.estimates(curves(screw) | drive(screw, number(one.rise_time, RISE)))
     own.estimate(
-        "thrust_scale", EstimatedNumber(1.0, _share(one), f"1; {_said(one) or 'the curve through the bollard point'}")
+        "thrust_scale",
+        EstimatedNumber(
+            1.0, _share(one), f"1; {_said(one) or 'the curve through the bollard point'}"
+        ),
     )
     if not own.give("azimuth_rate", one.turning_rate):
         own.estimate("azimuth_rate", EstimatedNumber(TURNING, 0.0, "10 deg/s; assumed"))
     own.estimate(
-        "side_force_coefficient", EstimatedNumber(0.8, 0.3, "momentum drag of a ducted unit; assumed for others")
+        "side_force_coefficient",
+        EstimatedNumber(0.8, 0.3, "momentum drag of a ducted unit; assumed for others"),
     )
     outwards = HALF_TURN if number(one.y) > 0.0 else -HALF_TURN
-    return _unit(one, own, least, screw.thrust, screw.thrust / number(one.rise_time, RISE), outwards, screw)
+    return _unit(
+        one, own, least, screw.thrust, screw.thrust / number(one.rise_time, RISE), outwards, screw
+    )
 
 
 def _tunnel(one: Tunnel, own: Numbers, form: HullDimensions) -> ShipThruster | None:
@@ -230,8 +264,13 @@ def _tunnel(one: Tunnel, own: Numbers, form: HullDimensions) -> ShipThruster | N
         return None
     source = f"{screw.thrust:.4g} N at {screw.rpm:.4g} rpm; {_said(one)}".rstrip("; ")
     own.estimate("thrust_coefficient", within(screw.thrust / screw.rpm**2, _share(one), source))
-    own.estimate("torque_coefficient", within(screw.torque / screw.rpm**2, 0.1, f"{screw.power:.4g} W at that speed"))
-    own.estimate("speed_loss", EstimatedNumber(0.207, 0.1, "1/e left at 2.2 m/s, typical of bow tunnels"))
+    own.estimate(
+        "torque_coefficient",
+        within(screw.torque / screw.rpm**2, 0.1, f"{screw.power:.4g} W at that speed"),
+    )
+    own.estimate(
+        "speed_loss", EstimatedNumber(0.207, 0.1, "1/e left at 2.2 m/s, typical of bow tunnels")
+    )
     own.estimate("thrust_max", within(screw.thrust, 0.1, source))
     own.estimate("thrust_min", within(-screw.thrust, 0.1, source))
     own.estimates(drive(screw, number(one.rise_time, RISE)))
@@ -253,20 +292,28 @@ def _mapped(one: ThrustMap, own: Numbers) -> ShipThruster | None:
         return None
     try:
         made = MapParameters(x=0.0, y=0.0, thrust_table=str(own.entries["thrust_table"].value))
-        least, most = within_map(-LARGE, thruster=made), within_map(LARGE, thruster=made)
+        least = within_map(-LARGE, thruster=made)
+        most = within_map(LARGE, thruster=made)
     except (ValueError, IndexError) as error:
         remedy = "Rows of command and thrust in N, at least two, both increasing."
         own.problems.append(Problem(own.where, f"{error}", remedy))
         return None
-    least, most = min(float(least), 0.0), max(float(most), 0.0)
+    least = min(float(least), 0.0)
+    most = max(float(most), 0.0)
     return _unit(one, own, least, most, max(most, -least) / RISE, number(one.direction))
 
 
-def _rudder(one: PropellerWithRudder, own: Numbers, form: HullDimensions, alone: bool) -> ShipThruster | None:
+def _rudder(
+    one: PropellerWithRudder, own: Numbers, form: HullDimensions, alone: bool
+) -> ShipThruster | None:
     if one.diameter is None:
-        own.problems.append(Problem(own.where, "nothing says diameter.", 'Give that of the propeller: "5.8 m".'))
+        own.problems.append(
+            Problem(own.where, "nothing says diameter.", 'Give that of the propeller: "5.8 m".')
+        )
         return None
-    D, density, x = one.diameter.value, form.density, number(one.x)
+    D = one.diameter.value
+    density = form.density
+    x = number(one.x)
     own.give("diameter", one.diameter)
     own.estimate("water_density", EstimatedNumber(density, 0.0, "that of the ship's water"))
     KT = USUAL_KT["open"] - 0.05
@@ -274,12 +321,28 @@ def _rudder(one: PropellerWithRudder, own: Numbers, form: HullDimensions, alone:
         KT = one.thrust.value / (density * (one.rpm.value / 60.0) ** 2 * D**4)
     zero = ZERO_THRUST["open"] * KT
     for name, value in (("k0", KT), ("k1", -0.75 * KT / zero), ("k2", -0.25 * KT / zero**2)):
-        own.estimate(name, within(value, 0.2, "form of the Wageningen B series, KT 0.30 unless thrust and rpm say it"))
-    area = rudder_area(form) if one.rudder_area is None else EstimatedNumber(one.rudder_area.value, 0.0, "")
+        own.estimate(
+            name,
+            within(
+                value, 0.2, "form of the Wageningen B series, KT 0.30 unless thrust and rpm say it"
+            ),
+        )
+    area = (
+        rudder_area(form)
+        if one.rudder_area is None
+        else EstimatedNumber(one.rudder_area.value, 0.0, "")
+    )
     if not own.give("rudder_area", one.rudder_area):
         own.estimate("rudder_area", area)
     span = number(one.rudder_span, sqrt(1.8 * float(area.value)))
     if not own.give("rudder_x", one.rudder_x):
-        own.estimate("rudder_x", EstimatedNumber(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"))
-    own.estimates(propeller_and_rudder(form, single=alone, span=span, area=float(area.value), covered=D / span))
+        own.estimate(
+            "rudder_x",
+            EstimatedNumber(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"),
+        )
+    own.estimates(
+        propeller_and_rudder(
+            form, single=alone, span=span, area=float(area.value), covered=D / span
+        )
+    )
     return _unit(one, own, 0.0, 0.0, 0.0, 0.0)

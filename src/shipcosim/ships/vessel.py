@@ -15,12 +15,20 @@ from shipcosim.ships.estimates.hull import (
     manoeuvring_derivatives,
 )
 from shipcosim.ships.estimates.resistance import drag_coefficient
-from shipcosim.ships.estimates.weather import USUAL_KIND, drift_table, front_area, side_area, wind_table
+from shipcosim.ships.estimates.weather import (
+    USUAL_KIND,
+    drift_table,
+    front_area,
+    side_area,
+    wind_table,
+)
 from shipcosim.ships.file import Inertia, Particulars, ShipFile, number
 from shipcosim.ships.given import Given
 from shipcosim.ships.numbers import Numbers
 
-SEA_WATER, USUAL_FROUDE, GRAVITY = 1025.0, 0.2, 9.81
+SEA_WATER = 1025.0
+USUAL_FROUDE = 0.2
+GRAVITY = 9.81
 ALONG = ("X_u", "X_uu")
 """Coefficients of which one is enough for the resistance ahead."""
 NONE = "none"
@@ -38,28 +46,38 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
     problems : list of Problem
         Gets what is missing.
     """
-    p, m = ship.particulars or Particulars(), ship.mass
+    p = ship.particulars or Particulars()
+    m = ship.mass
     needed = ["length", "breadth", "draught"] + (["hull_breadth"] if p.hulls > 1 else [])
     missing = [name for name in needed if getattr(p, name) is None]
     if missing:
         found = f"nothing says {', '.join(missing)}."
-        problems.append(Problem(f"{where}: particulars", found, 'Write, for example, length = "28.9 m".'))
+        problems.append(
+            Problem(f"{where}: particulars", found, 'Write, for example, length = "28.9 m".')
+        )
     heavy = m.mass or p.displacement
     if heavy is None and p.block_coefficient is None:
         remedy = "Give mass.mass, particulars.displacement or particulars.block_coefficient."
         problems.append(Problem(f"{where}: mass", "nothing says how heavy she is.", remedy))
     if missing or (heavy is None and p.block_coefficient is None):
         return None
-    L, T = number(p.length), number(p.draught)
+    L = number(p.length)
+    T = number(p.draught)
     B = number(p.hull_breadth if p.hulls > 1 else p.breadth)
     density = number(p.water_density, SEA_WATER)
     filled = number(heavy) / (density * p.hulls * L * B * T)
-    block = min(max(number(p.block_coefficient, filled), 0.05), 1.0)  # what cannot be is said by the check
+    block = min(
+        max(number(p.block_coefficient, filled), 0.05), 1.0
+    )  # what cannot be is said by the check
     speed = number(p.service_speed, USUAL_FROUDE * sqrt(GRAVITY * L))
-    return HullDimensions(length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed)
+    return HullDimensions(
+        length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed
+    )
 
 
-def vessel_of(ship: ShipFile, form: HullDimensions, file: Path, problems: list[Problem]) -> dict[str, Entry]:
+def vessel_of(
+    ship: ShipFile, form: HullDimensions, file: Path, problems: list[Problem]
+) -> dict[str, Entry]:
     """Parameters of the vessel, given or estimated.
 
     Parameters
@@ -94,7 +112,11 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> 
     if not own.give("inertia_yaw", m.inertia_yaw):
         gyradius = m.yaw_gyradius
         if gyradius is not None:
-            tolerance = None if gyradius.tolerance is None else 2.0 * mass * gyradius.value * gyradius.tolerance
+            tolerance = (
+                None
+                if gyradius.tolerance is None
+                else 2.0 * mass * gyradius.value * gyradius.tolerance
+            )
             value = mass * (gyradius.value**2 + centre**2)
             own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
         else:
@@ -125,7 +147,10 @@ def _resistance(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
 def _across(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Drag across and manoeuvring derivatives, estimated where the file gives no coefficients at all across."""
     own.give("cross_flow_drag", ship.drag.cross_flow)
-    across = {name for _, names in CONTRIBUTIONS.values() for name in names} - {*ALONG, "added_mass_coriolis"}
+    across = {name for _, names in CONTRIBUTIONS.values() for name in names} - {
+        *ALONG,
+        "added_mass_coriolis",
+    }
     if across & set(ship.hull):
         return
     own.estimate("cross_flow_drag", cross_flow_drag(form))
@@ -139,7 +164,9 @@ def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     if w.table is not None and w.table != NONE:
         own.table("wind_table", w.table)
     elif w.table == NONE:
-        own.estimate("wind_table", EstimatedNumber("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file"))
+        own.estimate(
+            "wind_table", EstimatedNumber("0 0 0 0; 180 0 0 0", 0.0, "none, by the ship file")
+        )
     else:
         _wind(own, ship, form)
     if ship.waves.table is not None and ship.waves.table != NONE:
@@ -153,7 +180,8 @@ def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
 
 def _wind(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Blendermann's loads of areas that are given or estimated."""
-    w, breadth = ship.wind, number((ship.particulars or Particulars()).breadth)
+    w = ship.wind
+    breadth = number((ship.particulars or Particulars()).breadth)
     both = (w.front_area, front_area(breadth)), (w.side_area, side_area(form.length))
     front, side = (float(one.value) if given is None else given.value for given, one in both)
     found = wind_table(w.kind or USUAL_KIND, front, side, number(w.side_centre_x), form.length)
@@ -162,5 +190,6 @@ def _wind(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     own.estimate("wind_table", found._replace(source=source))
     share = 0.2 if not unknown else 0.45
     own.estimate(
-        "wind_load_scale", EstimatedNumber(1.0, share, "1; the tolerance is of the coefficients and the areas")
+        "wind_load_scale",
+        EstimatedNumber(1.0, share, "1; the tolerance is of the coefficients and the areas"),
     )

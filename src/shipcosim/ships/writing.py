@@ -16,7 +16,9 @@ LAYOUTS = {
 }
 """Usual thrusters."""
 ASSUMED = "assumed: usual of a ship of this size"
-EFFICIENCY, USUAL_BLOCK, GRAVITY = 0.5, 0.62, 9.81
+EFFICIENCY = 0.5
+USUAL_BLOCK = 0.62
+GRAVITY = 9.81
 
 
 class Usual(str):
@@ -78,14 +80,20 @@ def usual(answers: Answers, key: str) -> str:
     T = number_in(answers.draught, "m") if answers.draught else B / 3.0
     if key in ("breadth", "draught"):
         return Usual(f"{B if key == 'breadth' else T:.2g} m")
-    mass = number_in(answers.displacement, "kg") if answers.displacement else 1025.0 * USUAL_BLOCK * L * B * T
+    mass = (
+        number_in(answers.displacement, "kg")
+        if answers.displacement
+        else 1025.0 * USUAL_BLOCK * L * B * T
+    )
     speed = number_in(answers.speed, "m/s") if answers.speed else 0.25 * sqrt(GRAVITY * L)
     if key == "displacement":
         return Usual(f"{_round(mass / 1000.0)} t")
     if key == "speed":
         return Usual(f"{speed * 3600.0 / 1852.0:.2g} kn")
     block = min(max(mass / 1025.0 / (L * B * T), 0.2), 1.0)
-    form = HullDimensions(length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed)
+    form = HullDimensions(
+        length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed
+    )
     return Usual(f"{_round(resistance(form) * speed / EFFICIENCY / 1000.0)} kW")
 
 
@@ -109,12 +117,18 @@ def ship_text(answers: Answers) -> str:
     missing = [key for key in ("length", "breadth", "draught") if not getattr(answers, key)]
     if missing:
         found = f"nothing says {', '.join(missing)}."
-        raise ShipcosimError(Problem("new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'))
+        raise ShipcosimError(
+            Problem(
+                "new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'
+            )
+        )
     try:
         thrusters = answers.thrusters or _thrusters(answers)
     except ValueError as error:
         raise ShipcosimError(Problem("new ship", f"{error}")) from None
-    shown = "\n\n".join("[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters)
+    shown = "\n\n".join(
+        "[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters
+    )
     return _TEXT.format(
         description=_quoted(answers.description),
         length=_line("length", answers.length),
@@ -153,17 +167,23 @@ def _thrusters(answers: Answers) -> list[dict[str, str]]:
         raise ValueError(f"propulsion is {answers.layout!r}. {suggestion(answers.layout, LAYOUTS)}")
     L, B, T = (number_in(getattr(answers, key), "m") for key in ("length", "breadth", "draught"))
     power = number_in(answers.power or usual(answers, "power"), "W") / 1000.0
-    aft, side, wheel = _m(-0.45 * L), 0.25 * B, _m(0.55 * T)
+    aft = _m(-0.45 * L)
+    side = 0.25 * B
+    wheel = _m(0.55 * T)
     bow = {"kind": "tunnel", "x": _m(0.4 * L), "diameter": _m(0.35 * T), "power": _kW(0.35 * power)}
     if answers.layout == "rudder":
-        return [{"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m", "diameter": _m(0.65 * T)}]
+        return [
+            {"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m", "diameter": _m(0.65 * T)}
+        ]
     half = {"x": aft, "diameter": wheel, "power": _kW(0.5 * power)}
     pair = {"port": _m(-side), "starboard": _m(side)}
     if answers.layout == "screws":
         stern = bow | {"x": _m(-0.4 * L)}
         screws = [{"name": n, "kind": "fixed", "y": y} | half for n, y in pair.items()]
         return [*screws, {"name": "bow"} | bow, {"name": "stern"} | stern]
-    azimuths = [{"name": n, "kind": "azimuth", "y": y} | half | {"ducted": "true"} for n, y in pair.items()]
+    azimuths = [
+        {"name": n, "kind": "azimuth", "y": y} | half | {"ducted": "true"} for n, y in pair.items()
+    ]
     return [*azimuths, {"name": "bow"} | bow]
 
 

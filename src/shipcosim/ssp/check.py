@@ -11,7 +11,12 @@ from shipcosim.ssp.flatten.loops import loop_problems
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
-from shipcosim.ssp.read.parameters import ParameterSets, read_dictionary, read_mapping, read_parameter_set
+from shipcosim.ssp.read.parameters import (
+    ParameterSets,
+    read_dictionary,
+    read_mapping,
+    read_parameter_set,
+)
 from shipcosim.ssp.system_files import assemble
 from shipcosim.ssp.xml.document import Findings, read_document
 
@@ -19,7 +24,10 @@ READERS = {".ssv": read_parameter_set, ".ssm": read_mapping, ".ssb": read_dictio
 
 
 def check_system(
-    path: str | PathLike[str], parameters: ParameterSets = (), *, fmus: Iterable[str | PathLike[str]] = ()
+    path: str | PathLike[str],
+    parameters: ParameterSets = (),
+    *,
+    fmus: Iterable[str | PathLike[str]] = (),
 ) -> list[Problem]:
     """Problems of a system structure and all it refers to; no binary is loaded.
 
@@ -50,14 +58,18 @@ def problems_of(system: System | None, findings: Findings) -> list[Problem]:
     -------
     list of Problem
     """
-    described = {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
+    described = (
+        {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
+    )
     for fmu in described.values():
         _remark_platform(fmu, fmu.path.name, findings)
     loops = [] if system is None or findings.errors else loop_problems(system)
     return list(dict.fromkeys([*findings.problems, *loops]))
 
 
-def check_file(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> list[Problem]:
+def check_file(
+    path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()
+) -> list[Problem]:
     """Problems of a file by its ending: .ssp, .ssd, .ssv, .ssm, .ssb, .fmu, .xml (of OSP), or of a folder.
 
     Parameters
@@ -86,7 +98,9 @@ def check_file(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]]
     else:
         return [
             Problem(
-                str(path), f"Files ending in '{suffix}' are not known.", "Known: .ssp .ssd .ssv .ssm .ssb .fmu .xml."
+                str(path),
+                f"Files ending in '{suffix}' are not known.",
+                "Known: .ssp .ssd .ssv .ssm .ssb .fmu .xml.",
             )
         ]
     return list(dict.fromkeys(findings.problems))
@@ -96,7 +110,9 @@ def _remark_platform(fmu: FmuDescription, where: str, findings: Findings) -> Non
     names = this_platform()
     if not set(names) & set(fmu.platforms):
         there = ", ".join(fmu.platforms) or "none"
-        findings.remark(where, f"It has no binary for this platform ({names[0]}).", f"It has: {there}.")
+        findings.remark(
+            where, f"It has no binary for this platform ({names[0]}).", f"It has: {there}."
+        )
 
 
 def this_platform() -> tuple[str, str]:

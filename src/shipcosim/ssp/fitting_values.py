@@ -15,7 +15,9 @@ from shipcosim.units import conversion, spelled_unit
 __all__ = ["fitting_values"]
 
 
-def fitting_values(path: str | PathLike[str], system: System) -> tuple[dict[str, Value], list[Problem]]:
+def fitting_values(
+    path: str | PathLike[str], system: System
+) -> tuple[dict[str, Value], list[Problem]]:
     """Start values of a parameter set, as far as a system has what they are for.
 
     Parameters
@@ -37,7 +39,8 @@ def fitting_values(path: str | PathLike[str], system: System) -> tuple[dict[str,
     ShipcosimError
         If the file cannot be read, or nothing in it fits.
     """
-    values, remarks = {}, []
+    values = {}
+    remarks = []
     for one in _read(path).values:
         signal = _signal(one.name, system)
         converted = _converted(one, signal, system)
@@ -45,12 +48,14 @@ def fitting_values(path: str | PathLike[str], system: System) -> tuple[dict[str,
             with_values(system, {signal: converted}, str(path))
             values[signal] = converted
         except ShipcosimError as error:
-            remarks += [Problem(p.where, f"Left out: {p.found}", p.remedy, "remark") for p in error.problems]
+            remarks += [
+                Problem(p.where, f"Left out: {p.found}", p.remedy, "remark") for p in error.problems
+            ]
     if not values:
-        found = (
-            f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
+        found = f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
+        raise ShipcosimError(
+            Problem(str(path), found, f"Components: {', '.join(system.components)}.")
         )
-        raise ShipcosimError(Problem(str(path), found, f"Components: {', '.join(system.components)}."))
     return values, remarks
 
 
@@ -71,7 +76,9 @@ def _signal(name: str, system: System) -> str:
     owners = [
         component
         for component, part in system.components.items()
-        if name in part.fmu.variables and part.fmu.variables[name].causality == "input" and (component, name) not in fed
+        if name in part.fmu.variables
+        and part.fmu.variables[name].causality == "input"
+        and (component, name) not in fed
     ]
     return f"{owners[0]}.{name}" if len(owners) == 1 else name
 

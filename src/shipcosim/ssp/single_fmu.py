@@ -86,19 +86,30 @@ def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, 
 
 def _structure(path: Path, fmu: FmuDescription) -> etree._Element:
     """A system structure of one component, with a connector of its own for each input of the FMU."""
-    root = etree.Element(qualified("ssd:SystemStructureDescription"), {"version": "2.0", "name": path.stem})
+    root = etree.Element(
+        qualified("ssd:SystemStructureDescription"), {"version": "2.0", "name": path.stem}
+    )
     system = add(root, "ssd:System", name=path.stem)
-    inputs = [fmu.variables[name] for name in fmu.named("input") if fmu.variables[name].kind in IN_TABLES]
+    inputs = [
+        fmu.variables[name] for name in fmu.named("input") if fmu.variables[name].kind in IN_TABLES
+    ]
     connectors = add(system, "ssd:Connectors") if inputs else None
-    component = add(add(system, "ssd:Elements"), "ssd:Component", name=path.stem, source=quote(path.name))
+    component = add(
+        add(system, "ssd:Elements"), "ssd:Component", name=path.stem, source=quote(path.name)
+    )
     if connectors is not None:
-        owners, connections = (connectors, add(component, "ssd:Connectors")), add(system, "ssd:Connections")
+        owners = (connectors, add(component, "ssd:Connectors"))
+        connections = add(system, "ssd:Connections")
         for variable in inputs:
             for owner in owners:
                 connector = add(owner, "ssd:Connector", name=variable.name, kind="input")
                 for size in variable.dimensions:
                     add(connector, "ssc:Dimension", size=str(size))
-            ends = {"startConnector": variable.name, "endElement": path.stem, "endConnector": variable.name}
+            ends = {
+                "startConnector": variable.name,
+                "endElement": path.stem,
+                "endConnector": variable.name,
+            }
             add(connections, "ssd:Connection", **ends)
     _add_experiment(root, fmu.experiment)
     return root
@@ -106,10 +117,14 @@ def _structure(path: Path, fmu: FmuDescription) -> etree._Element:
 
 def _add_experiment(root: etree._Element, given: Mapping[str, float]) -> None:
     """Times of a run as the FMU proposes them."""
-    start, stop, step = given.get("startTime", 0.0), given.get("stopTime"), given.get("stepSize")
+    start = given.get("startTime", 0.0)
+    stop = given.get("stopTime")
+    step = given.get("stepSize")
     if stop is not None and stop > start:
         element = add(root, "ssd:DefaultExperiment", startTime=repr(start), stopTime=repr(stop))
-        annotation = add(add(element, "ssd:Annotations"), "ssc:Annotation", type="com.opensimulationplatform")
+        annotation = add(
+            add(element, "ssd:Annotations"), "ssc:Annotation", type="com.opensimulationplatform"
+        )
         fixed = etree.SubElement(annotation, "FixedStepAlgorithm")
         steps = round((stop - start) / step) if step is not None and step > 0.0 else STEPS
         fixed.set("baseStepSize", repr((stop - start) / max(1, steps)))

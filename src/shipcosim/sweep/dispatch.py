@@ -42,11 +42,16 @@ def rows_of(plan: Plan, numbers: Iterator[int], workers: Workers) -> Iterator[li
 
 class _Dispatch:
     def __init__(self, plan: Plan, numbers: Iterator[int], workers: Workers):
-        self._plan, self._numbers, self._workers = plan, numbers, workers
-        self._in_flight: dict[Future[Chunk], tuple[list[int], bool]] = {}  # numbers, whether they run alone
+        self._plan = plan
+        self._numbers = numbers
+        self._workers = workers
+        self._in_flight: dict[
+            Future[Chunk], tuple[list[int], bool]
+        ] = {}  # numbers, whether they run alone
         self._suspects: deque[list[int]] = deque()
         self._ends: Counter[int] = Counter()
-        self._size, self._n_done = 1, 0
+        self._size = 1
+        self._n_done = 0
 
     def rows(self) -> Iterator[list[Row]]:
         """See `rows_of`."""
@@ -116,5 +121,7 @@ class _Dispatch:
                 failed.append(Row(numbers[0], error=ENDED))
         if not self._n_done and len(failed) and self._ends.total() >= 3 * ENDS:
             remedy = "Run the scenario alone to see why: shipcosim run SCENARIO --engine native."
-            raise ShipcosimError(Problem("workers", "Each worker process ends in its first run.", remedy))
+            raise ShipcosimError(
+                Problem("workers", "Each worker process ends in its first run.", remedy)
+            )
         return failed

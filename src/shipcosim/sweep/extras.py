@@ -27,4 +27,6 @@ def imported(where: str, found: str, extra: str = "sweep") -> Iterator[None]:
     try:
         yield
     except ImportError:
-        raise ShipcosimError(Problem(where, found, f"Install it: pip install 'shipcosim[{extra}]'.")) from None
+        raise ShipcosimError(
+            Problem(where, found, f"Install it: pip install 'shipcosim[{extra}]'.")
+        ) from None

@@ -55,7 +55,8 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
 
     columns = [one.name for one in plan.samples.columns] if plan.samples else []
     factors = [one.name for one in plan.study.factor]
-    rows, said = [], []
+    rows = []
+    said = []
     for levels, part in _parts(runs, factors):
         for measure in plan.measures:
             values = _by_sample(plan, part, measure.name)
@@ -78,7 +79,9 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
                     f"{_of(measure.name, levels)}: no indices, it is the same in all runs, or too few are done."
                 )
     head = [*factors, "quantity", "parameter", "first_order", "first_order_low", "first_order_high"]
-    return pandas.DataFrame(rows, columns=[*head, "total", "total_low", "total_high", "blocks"]), said
+    return pandas.DataFrame(
+        rows, columns=[*head, "total", "total_low", "total_high", "blocks"]
+    ), said
 
 
 def _parts(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], Any]]:
@@ -102,7 +105,9 @@ def _done(plan: Plan, part: Any) -> np.ndarray:
     return done
 
 
-def _rows(levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarray, seed: int) -> list[dict[str, Any]]:
+def _rows(
+    levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarray, seed: int
+) -> list[dict[str, Any]]:
     """Rows of a quantity, the largest total index first."""
     from SALib.analyze import sobol
 
@@ -118,7 +123,8 @@ def _rows(levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarra
     for k in np.argsort(-found["ST"], kind="stable"):
         row = levels | {"quantity": quantity, "parameter": columns[k]}
         for name, short in (("first_order", "S1"), ("total", "ST")):
-            value, half = float(found[short][k]), float(found[f"{short}_conf"][k])
+            value = float(found[short][k])
+            half = float(found[f"{short}_conf"][k])
             row |= {name: value, f"{name}_low": value - half, f"{name}_high": value + half}
         rows.append(row | {"blocks": len(blocks)})
     return rows

@@ -10,7 +10,14 @@ from typing import Any
 from shipcosim import library
 from shipcosim.cosim import system_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import Scenario, check_files, check_scenario, read_scenario, time_complaints, whole_steps
+from shipcosim.scenario import (
+    Scenario,
+    check_files,
+    check_scenario,
+    read_scenario,
+    time_complaints,
+    whole_steps,
+)
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.sweep.levels import Level, Levels
@@ -39,8 +46,16 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         With everything that does not fit together.
     """
     scenario = _scenario(study)
-    read = _system(study, scenario, study.components, {name: ("components", name) for name in study.components}, build)
-    components = scenario.components | {name: str(_beside(study, fmu) or fmu) for name, fmu in study.components.items()}
+    read = _system(
+        study,
+        scenario,
+        study.components,
+        {name: ("components", name) for name in study.components},
+        build,
+    )
+    components = scenario.components | {
+        name: str(_beside(study, fmu) or fmu) for name, fmu in study.components.items()
+    }
     system = with_values(read, scenario.set, str(scenario.path))
     levels = Levels(study, scenario, system)
     levels.check_names()
@@ -51,7 +66,11 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     levels.check_events(events, ("events",))
     if levels.problems:
         raise ShipcosimError(levels.problems)
-    changed = {"components": components, "set": scenario.set | values, "events": [*scenario.events, *events]}
+    changed = {
+        "components": components,
+        "set": scenario.set | values,
+        "events": [*scenario.events, *events],
+    }
     scenario = scenario.model_copy(update=changed)
     system = with_values(system, values, "--set")
     levels = Levels(study, scenario, system)
@@ -63,7 +82,10 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
     if problems:
         raise ShipcosimError(problems)
-    systems = {swapped: _swapped(study, scenario, swapped, system, build) for swapped in _combinations(found)}
+    systems = {
+        swapped: _swapped(study, scenario, swapped, system, build)
+        for swapped in _combinations(found)
+    }
     return Plan(study, scenario, systems, found, measures, samples)
 
 
@@ -73,7 +95,9 @@ def _scenario(study: Study) -> Scenario:
         path = study.scenario_path
     except ShipcosimError as error:
         found = f"There is no scenario '{study.scenario}'."
-        raise ShipcosimError(problem_of(study, ("scenario",), found, error.problems[0].remedy)) from None
+        raise ShipcosimError(
+            problem_of(study, ("scenario",), found, error.problems[0].remedy)
+        ) from None
     scenario = read_scenario(path)
     times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
     changed = {name: time for name, time in times.items() if time is not None}
@@ -82,7 +106,9 @@ def _scenario(study: Study) -> Scenario:
         raise ShipcosimError(missing)
     if wrong := [one for one in time_complaints(scenario) if one[-1] == "error"]:
         keys = [keys if keys[0] in changed else tuple(changed)[:1] for keys, *_ in wrong]
-        raise ShipcosimError([problem_of(study, at, *one[1:3]) for at, one in zip(keys, wrong, strict=True)])
+        raise ShipcosimError(
+            [problem_of(study, at, *one[1:3]) for at, one in zip(keys, wrong, strict=True)]
+        )
     return scenario
 
 
@@ -94,10 +120,13 @@ def _system(
     build: bool,
 ) -> System:
     """The system of a scenario with other FMUs in place of components' own; `keys` say where the study names each."""
-    problems, paths = [], {}
+    problems = []
+    paths = {}
     for name, fmu in components.items():
         try:
-            paths[name] = _beside(study, fmu) or library.find("fmu", fmu, near=study.folder, build=build)
+            paths[name] = _beside(study, fmu) or library.find(
+                "fmu", fmu, near=study.folder, build=build
+            )
         except ShipcosimError as error:
             found = f"There is no FMU '{fmu}', by this name or beside the study."
             problems.append(problem_of(study, keys[name], found, error.problems[0].remedy))
@@ -107,11 +136,16 @@ def _system(
         return system_of(scenario, components=paths, build=build)
     except ShipcosimError as error:
         at = {f"{WHERE}, {name}": place for name, place in keys.items()}
-        located = [problem_of(study, at[p.where], p.found, p.remedy) if p.where in at else p for p in error.problems]
+        located = [
+            problem_of(study, at[p.where], p.found, p.remedy) if p.where in at else p
+            for p in error.problems
+        ]
         raise ShipcosimError(located) from None
 
 
-def _swapped(study: Study, scenario: Scenario, swapped: Swapped, system: System, build: bool) -> System:
+def _swapped(
+    study: Study, scenario: Scenario, swapped: Swapped, system: System, build: bool
+) -> System:
     """The system with the FMUs that some runs have in place of components' own."""
     if not swapped:
         return system
@@ -121,15 +155,23 @@ def _swapped(study: Study, scenario: Scenario, swapped: Swapped, system: System,
         for j, case in enumerate(factor.case or ())
     ]
     keys = {
-        name: (*place, name) for place, case in cases for name, fmu in case.components.items() if (name, fmu) in swapped
+        name: (*place, name)
+        for place, case in cases
+        for name, fmu in case.components.items()
+        if (name, fmu) in swapped
     }
-    return with_values(_system(study, scenario, dict(swapped), keys, build), scenario.set, str(study.path))
+    return with_values(
+        _system(study, scenario, dict(swapped), keys, build), scenario.set, str(study.path)
+    )
 
 
 def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
     """Sets of swapped components that runs have, none where there is one without first."""
     per_factor = [list({tuple(level.components.items()) for level in one}) for one in levels]
-    found = {tuple(sorted(dict(pair for part in parts for pair in part).items())) for parts in product(*per_factor)}
+    found = {
+        tuple(sorted(dict(pair for part in parts for pair in part).items()))
+        for parts in product(*per_factor)
+    }
     return sorted(found, key=lambda one: (len(one), one))
 
 
@@ -146,11 +188,14 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
     waiting += [("sample", "of", name, "at_fork") for name, one in sampled.items() if one.at_fork]
     if study.fork_at is None:
         for keys in waiting:
-            yield problem_of(study, keys, "The study has no fork.", 'Give its time: fork_at = "300 s".')
+            yield problem_of(
+                study, keys, "The study has no fork.", 'Give its time: fork_at = "300 s".'
+            )
         return
     count = whole_steps(study.fork_at, scenario.step_size)
     if count is None or study.fork_at >= scenario.stop_time:
-        step, stop = scenario.step_size, scenario.stop_time
+        step = scenario.step_size
+        stop = scenario.stop_time
         remedy = f"It is a multiple of the step size, {step:g} s, before the end at {stop:g} s."
         yield problem_of(study, ("fork_at",), f"fork_at = {study.fork_at:g} s.", remedy)
 
@@ -158,13 +203,19 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
 def _of_summaries(study: Study) -> Iterator[Problem]:
     """Summaries that name what is not there."""
     quantities = [one.name for one in study.quantity]
-    factors = [one.name for one in study.factor] + (["sample"] if study.sample or study.tune else [])
+    factors = [one.name for one in study.factor] + (
+        ["sample"] if study.sample or study.tune else []
+    )
     for number, one in enumerate(study.summary):
         if one.quantity not in quantities:
             found = f"There is no quantity '{one.quantity}'."
-            yield problem_of(study, ("summary", number, "quantity"), found, suggestion(one.quantity, quantities))
+            yield problem_of(
+                study, ("summary", number, "quantity"), found, suggestion(one.quantity, quantities)
+            )
         for key, names in (("over", one.over), ("along", [one.along] if one.along else [])):
             for name in names:
                 if name not in factors:
                     found = f"There is no factor '{name}'."
-                    yield problem_of(study, ("summary", number, key), found, suggestion(name, factors))
+                    yield problem_of(
+                        study, ("summary", number, key), found, suggestion(name, factors)
+                    )

@@ -67,7 +67,9 @@ class Levels:
     """
 
     def __init__(self, study: Study, scenario: Scenario, system: System):
-        self._study, self._scenario, self._system = study, scenario, system
+        self._study = study
+        self._scenario = scenario
+        self._system = system
         self.problems: list[Problem] = []
 
     def of(self, number: int) -> list[Level]:
@@ -76,7 +78,10 @@ class Levels:
         if cases := factor.cases:
             made_by = "directions" if factor.directions else "conditions"
             keys = [("case", i) if factor.case else (made_by,) for i in range(len(cases))]
-            return [self._of_case(one, ("factor", number, *key)) for one, key in zip(cases, keys, strict=True)]
+            return [
+                self._of_case(one, ("factor", number, *key))
+                for one, key in zip(cases, keys, strict=True)
+            ]
         if factor.seeds is not None:
             return self._of_seeds(factor, ("factor", number, "seeds"))
         key = "values" if factor.values is not None else "from"
@@ -86,7 +91,9 @@ class Levels:
         values = factor.values or self._spaced(factor, signals[0], number)
         if factor.at_fork:
             return [self.at_fork(signals, value, ("factor", number, key)) for value in values]
-        found = (self.checked(dict.fromkeys(signals, value), ("factor", number, key)) for value in values)
+        found = (
+            self.checked(dict.fromkeys(signals, value), ("factor", number, key)) for value in values
+        )
         return [Level(next(iter(one.values())), one) for one in found if one]
 
     def checked(self, values: Mapping[str, Value], keys: Sequence[str | int]) -> dict[str, Value]:
@@ -123,10 +130,13 @@ class Levels:
         for name, group in self._study.names.items():
             if name in components:
                 found = f"'{name}' is a component already."
-                self.problems.append(problem_of(self._study, ("names", name), found, "Give them another name."))
+                self.problems.append(
+                    problem_of(self._study, ("names", name), found, "Give them another name.")
+                )
             for one in group:
                 if one not in components:
-                    found, remedy = f"There is no component '{one}'.", suggestion(one, components)
+                    found = f"There is no component '{one}'."
+                    remedy = suggestion(one, components)
                     self.problems.append(problem_of(self._study, ("names", name), found, remedy))
 
     def at_fork(self, signals: Sequence[str], value: Value, keys: Sequence[str | int]) -> Level:
@@ -156,7 +166,9 @@ class Levels:
             try:
                 self._system.split(signal)
             except ShipcosimError as error:
-                problems.append(problem_of(self._study, keys, error.problems[0].found, error.problems[0].remedy))
+                problems.append(
+                    problem_of(self._study, keys, error.problems[0].found, error.problems[0].remedy)
+                )
         self.problems += problems
         return [] if problems else signals
 
@@ -174,12 +186,19 @@ class Levels:
         """An event whose signals are those of components."""
         reset = [signal for name in event.reset for signal in self.signals_of(name)]
         return event.model_copy(
-            update={"override": self.expanded(event.override), "bias": self.expanded(event.bias), "reset": reset}
+            update={
+                "override": self.expanded(event.override),
+                "bias": self.expanded(event.bias),
+                "reset": reset,
+            }
         )
 
     def fitting(self, name: str, keys: Sequence[str | int]) -> dict[str, Value]:
         """Start values of a parameter set that fit the system."""
-        paths = [Path(self._scenario.system_path) / "resources" / f"{name}.ssv", self._study.folder / name]
+        paths = [
+            Path(self._scenario.system_path) / "resources" / f"{name}.ssv",
+            self._study.folder / name,
+        ]
         path = next((one for one in paths if one.is_file()), None)
         if path is None:
             known = [file.stem for file in paths[0].parent.glob("*.ssv")]
@@ -197,10 +216,14 @@ class Levels:
         """Check the signals, values and times of events, which keys of the study name."""
         for number, event in enumerate(events):
             for verb, signal, found, remedy in event_complaints(event, self._system):
-                self.problems.append(problem_of(self._study, (*keys, number, verb, signal), found, remedy))
+                self.problems.append(
+                    problem_of(self._study, (*keys, number, verb, signal), found, remedy)
+                )
             self._check_time(event.time, (*keys, number, "time"), may_be_zero=True)
 
-    def _check_time(self, time: float | None, keys: Sequence[str | int], may_be_zero: bool = False) -> None:
+    def _check_time(
+        self, time: float | None, keys: Sequence[str | int], may_be_zero: bool = False
+    ) -> None:
         step = self._scenario.step_size
         if time is None:
             return
@@ -208,7 +231,9 @@ class Levels:
         if count is None or (count == 0 and not may_be_zero):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = max(1, round(time / step)) * step
-            self.problems.append(problem_of(self._study, keys, found, f"The nearest would be {nearest:g} s."))
+            self.problems.append(
+                problem_of(self._study, keys, found, f"The nearest would be {nearest:g} s.")
+            )
 
     def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:
         """Evenly spaced values of a factor, both ends included, in the unit of its signal."""
@@ -217,22 +242,32 @@ class Levels:
             first, last = (_number(value, unit) for value in (factor.start, factor.to))
             step = None if factor.step is None else _number(factor.step, unit, difference=True)
         except UnitError as error:
-            self.problems.append(problem_of(self._study, ("factor", number, "from"), error.found, error.remedy))
+            self.problems.append(
+                problem_of(self._study, ("factor", number, "from"), error.found, error.remedy)
+            )
             return []
         if step is None:
             return np.linspace(first, last, factor.count or 2).tolist()
         if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
             found = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
-            self.problems.append(problem_of(self._study, ("factor", number, "step"), found, "Give another step."))
+            self.problems.append(
+                problem_of(self._study, ("factor", number, "step"), found, "Give another step.")
+            )
             return []
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
 
     def _of_seeds(self, factor: Factor, keys: Sequence[str | int]) -> list[Level]:
         """Levels of seeds: each signal gets its own number, drawn from the study's seed, the level and its name."""
-        signals = self.existing(factor.signal, (*keys[:2], "signal")) if factor.signal else list(seeds_of(self._system))
+        signals = (
+            self.existing(factor.signal, (*keys[:2], "signal"))
+            if factor.signal
+            else list(seeds_of(self._system))
+        )
         if not signals and not self.problems:
             found = "Nothing in the system has a seed: it has no parameter named seed."
-            self.problems.append(problem_of(self._study, keys, found, "Name the signals: signal = [...]."))
+            self.problems.append(
+                problem_of(self._study, keys, found, "Name the signals: signal = [...].")
+            )
         levels = []
         for level in range(1, (factor.seeds or 0) + 1):
             values = {signal: _drawn(self._study.seed, level, signal) for signal in signals}
@@ -245,7 +280,11 @@ class Levels:
 def start_value(system: System, signal: str) -> Value:
     """Start value of a signal, in the unit of its variable."""
     component, name = system.split(signal)
-    value = system.inputs[name].start if component is None else system.components[component].start_value(name)
+    value = (
+        system.inputs[name].start
+        if component is None
+        else system.components[component].start_value(name)
+    )
     assert value is not None
     return value
 

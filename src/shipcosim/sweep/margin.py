@@ -47,7 +47,10 @@ class Margin:
 
     def of(self, values: Mapping[str, Any]) -> float:
         """The margin of a run by its start values. [rad, 1 or s]"""
-        own = tuple(float(values.get(f"{self.component}.{name}", value)) for name, value in self.values.items())
+        own = tuple(
+            float(values.get(f"{self.component}.{name}", value))
+            for name, value in self.values.items()
+        )
         return _least(tuple(self.values), own, self.wave_frequency)[self.kind]
 
 
@@ -55,18 +58,29 @@ def margin_of(quantity: Quantity, system: System) -> Margin:
     """Margin of a quantity, of a system that `complaint_of_margin` says nothing against."""
     component: Any = system.components[quantity.component]
     values = {name: float(component.start_value(name)) for name in _names()}
-    return Margin(str(quantity.margin), quantity.component, 2.0 * pi / float(quantity.peak_period or 0.0), values)
+    return Margin(
+        str(quantity.margin),
+        quantity.component,
+        2.0 * pi / float(quantity.peak_period or 0.0),
+        values,
+    )
 
 
 def complaint_of_margin(study: Study, number: int, system: System) -> Problem | None:
     """What is wrong with the component of a margin."""
     name = study.quantity[number].component
-    having = [c.name for c in system.components.values() if all(one in c.fmu.variables for one in _names())]
+    having = [
+        c.name
+        for c in system.components.values()
+        if all(one in c.fmu.variables for one in _names())
+    ]
     if name in having:
         return None
     found = f"'{name}' is no DP controller: it lacks parameters of observer and control law."
     known = f"Those of {', '.join(having)} are there." if having else "The system has none."
-    return problem_of(study, ("quantity", number, "component" if name != "controller" else "margin"), found, known)
+    return problem_of(
+        study, ("quantity", number, "component" if name != "controller" else "margin"), found, known
+    )
 
 
 def _names() -> list[str]:
@@ -74,10 +88,14 @@ def _names() -> list[str]:
 
 
 @lru_cache(maxsize=64)
-def _least(names: tuple[str, ...], values: tuple[float, ...], wave_frequency: float) -> dict[str, float]:
+def _least(
+    names: tuple[str, ...], values: tuple[float, ...], wave_frequency: float
+) -> dict[str, float]:
     """Least margins over the axes; kept, since runs differ in seeds more often than in gains."""
     given = dict(zip(names, values, strict=True))
-    ship, noise, law = (part(**{one.name: given[one.name] for one in fields(part)}) for part in PARTS)
+    ship, noise, law = (
+        part(**{one.name: given[one.name] for one in fields(part)}) for part in PARTS
+    )
     loop = loops.linear_loop(ship, noise, law, loops.Delays(), wave_frequency)
     if not loops.is_stable(loop):
         return NONE

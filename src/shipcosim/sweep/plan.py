@@ -112,7 +112,9 @@ class Plan:
 
     def run(self, number: int) -> PlannedRun:
         """The run with a number."""
-        places = [int(place) for place in np.unravel_index(number, self.shape)] if self.shape else []
+        places = (
+            [int(place) for place in np.unravel_index(number, self.shape)] if self.shape else []
+        )
         values: dict[str, Value] = {}
         columns: dict[str, Value] = {}
         events: list[Event] = []
@@ -128,9 +130,13 @@ class Plan:
         if self.samples is not None:
             columns["sample"] = places[-1]
             self._take_sample(self.samples, places[-1], columns, values, events)
-        return PlannedRun(number, columns, values, tuple(events), tuple(sorted(swapped.items())), stop_time)
+        return PlannedRun(
+            number, columns, values, tuple(events), tuple(sorted(swapped.items())), stop_time
+        )
 
-    def _take_sample(self, samples: Samples, number: int, columns: dict, values: dict, events: list[Event]) -> None:
+    def _take_sample(
+        self, samples: Samples, number: int, columns: dict, values: dict, events: list[Event]
+    ) -> None:
         """Add what a sample changes."""
         at_fork = {}
         for column, value in zip(samples.columns, samples.values(number), strict=True):
@@ -152,7 +158,10 @@ class Plan:
         """The scenario of a run with all that it has of its own, and what the scenario expects."""
         run = self.run(number)
         scenario = self.scenario_of(run)
-        changed = {"set": {**scenario.set, **run.values}, "components": scenario.components | dict(run.swapped)}
+        changed = {
+            "set": {**scenario.set, **run.values},
+            "components": scenario.components | dict(run.swapped),
+        }
         return scenario.model_copy(update=changed)
 
     def input_of(self, run: PlannedRun) -> dict[str, Any]:
@@ -162,7 +171,10 @@ class Plan:
             found["components"] = self._portable_components(dict(run.swapped))
         found["set"] = {**self.scenario.set, **run.values}
         if run.events:
-            found["events"] = [*found["events"], *(event.model_dump(exclude_defaults=True) for event in run.events)]
+            found["events"] = [
+                *found["events"],
+                *(event.model_dump(exclude_defaults=True) for event in run.events),
+            ]
         if run.stop_time is not None:
             found["stop_time"] = run.stop_time
         return {name: value for name, value in found.items() if value not in ({}, [], None)}
@@ -191,7 +203,9 @@ class Plan:
         unit_of = units_of(self.system)
         found = []
         for factor, levels in zip(self.study.factor, self.levels, strict=True):
-            signals = list(levels[0].values) or [name for event in levels[0].events for name in event.override]
+            signals = list(levels[0].values) or [
+                name for event in levels[0].events for name in event.override
+            ]
             unit = None if factor.cases or factor.seeds else unit_of(signals[0])
             labels = [level.label for level in levels] if factor.cases else None
             name = "deg" if factor.directions else unit.name if unit else None
@@ -200,7 +214,9 @@ class Plan:
             found.append(ColumnOf("sample", "sample", description="number of the sample"))
             signals = [(one, ", ".join(one.signals)) for one in self.samples.columns]
             found += [ColumnOf(one.name, "sample", one.unit, text) for one, text in signals]
-        return found + [ColumnOf(one.name, "quantity", one.unit, one.description) for one in self.measures]
+        return found + [
+            ColumnOf(one.name, "quantity", one.unit, one.description) for one in self.measures
+        ]
 
     @cached_property
     def duration(self) -> float:
@@ -218,7 +234,8 @@ class Plan:
         """Hash of all that the table of runs follows from."""
         ignored = {"description", "summary", "view"}
         of_systems = [
-            (key, fingerprint(system), hashes(system), start_values(system)) for key, system in self.systems.items()
+            (key, fingerprint(system), hashes(system), start_values(system))
+            for key, system in self.systems.items()
         ]
         of_inputs = {name: signal.start for name, signal in self.system.inputs.items()}
         facts = [
@@ -231,7 +248,9 @@ class Plan:
             of_systems,
             of_inputs,
         ]
-        return hashlib.sha256(json.dumps(facts, default=_plain, sort_keys=True).encode()).hexdigest()
+        return hashlib.sha256(
+            json.dumps(facts, default=_plain, sort_keys=True).encode()
+        ).hexdigest()
 
     @property
     def rows_per_track_row(self) -> int:

@@ -79,7 +79,9 @@ class Measure:
         if len(rows) == 0:
             return np.nan
         values = values_of(table, self.expect[0], rows, self.units.__getitem__)
-        single: Any = values[:, 0] if self.expect[0].near is None else np.linalg.norm(values, axis=1)
+        single: Any = (
+            values[:, 0] if self.expect[0].near is None else np.linalg.norm(values, axis=1)
+        )
         value = float(REDUCED[self.reduce](table["time"].values[rows], single, self.argument))
         return value - self.since if self.since else value
 
@@ -126,19 +128,28 @@ def measures_of(
     """
     changed = {signal for event in [*scenario.events, *events] for _, signal, _ in event.changes}
     problems = [
-        problem_of(study, ("quantity", number, *((key,) if one.signal else ("expect", i, key))), found, remedy)
+        problem_of(
+            study,
+            ("quantity", number, *((key,) if one.signal else ("expect", i, key))),
+            found,
+            remedy,
+        )
         for number, one in enumerate(study.quantity)
         for i, expect in enumerate(_claims(one, scenario))
         for key, found, remedy in expectation_complaints(expect, system, changed)
     ]
     tracked = study.tracks.signals if study.tracks else []
     for signal in tracked:
-        for _, found, remedy in expectation_complaints(Expectation(signal=[signal], at_most=0.0), system, changed):
+        for _, found, remedy in expectation_complaints(
+            Expectation(signal=[signal], at_most=0.0), system, changed
+        ):
             problems.append(problem_of(study, ("tracks", "signals"), found, remedy))
     margins = [i for i, one in enumerate(study.quantity) if one.margin]
     problems += filter(None, (complaint_of_margin(study, number, system) for number in margins))
     problems += _outside(study, scenario)
-    return () if problems else tuple(_measure(one, scenario, system) for one in study.quantity), problems
+    return () if problems else tuple(
+        _measure(one, scenario, system) for one in study.quantity
+    ), problems
 
 
 def _claims(quantity: Quantity, scenario: Scenario) -> list[Expectation]:
@@ -146,7 +157,9 @@ def _claims(quantity: Quantity, scenario: Scenario) -> list[Expectation]:
         return []
     if not quantity.judges:
         return [quantity.claim]
-    within = [one for one in scenario.expect if not one.during or one.during[1] <= scenario.stop_time]
+    within = [
+        one for one in scenario.expect if not one.during or one.during[1] <= scenario.stop_time
+    ]
     return [*quantity.expect, *(within if quantity.scenario_expectations else ())]
 
 
@@ -155,20 +168,31 @@ def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
     ends = [case.stop_time or 0.0 for factor in study.factor for case in factor.case or ()]
     end = max(scenario.stop_time, *ends, 0.0)
     for number, one in enumerate(study.quantity):
-        starts = ("during", one.during[0] if one.during else None), ("time", one.time), ("since", one.since)
+        starts = (
+            ("during", one.during[0] if one.during else None),
+            ("time", one.time),
+            ("since", one.since),
+        )
         for key, time in starts:
             if time is not None and time > end:
                 found = f"{key} lies beyond the end of the runs at {end:g} s."
-                yield problem_of(study, ("quantity", number, key), found, "Take a time within them.")
+                yield problem_of(
+                    study, ("quantity", number, key), found, "Take a time within them."
+                )
         if one.scenario_expectations and len(_claims(one, scenario)) == len(one.expect):
-            found = f"The scenario {study.scenario} expects nothing within {scenario.stop_time:g} s."
+            found = (
+                f"The scenario {study.scenario} expects nothing within {scenario.stop_time:g} s."
+            )
             keys = "quantity", number, "scenario_expectations"
             yield problem_of(study, keys, found, "Write expect = [...] here.")
 
 
 def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     if quantity.margin:
-        text = quantity.description or f"{quantity.margin} margin of {quantity.component}, the least of its axes"
+        text = (
+            quantity.description
+            or f"{quantity.margin} margin of {quantity.component}, the least of its axes"
+        )
         margin = margin_of(quantity, system)
         return Measure(quantity.name, text, UNITS[quantity.margin], (), {}, margin=margin)
     unit_of = units_of(system)
@@ -177,9 +201,13 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     if quantity.reduce is None:
         return Measure(quantity.name, quantity.description, None, expect, units)
     first = units[quantity.signal[0]]
-    unit = {"time_beyond": "s", "share_beyond": "1"}.get(quantity.reduce, first.name if first else "1")
+    unit = {"time_beyond": "s", "share_beyond": "1"}.get(
+        quantity.reduce, first.name if first else "1"
+    )
     limit = expect[0].within if quantity.near is not None else expect[0].at_most
     argument = {"at": quantity.time, "percentile": quantity.percentile}.get(quantity.reduce, limit)
     text = quantity.description or f"{quantity.reduce} of {expect[0].subject}"
     since = quantity.since or 0.0
-    return Measure(quantity.name, text, unit, expect, units, quantity.reduce, float(argument or 0.0), since)
+    return Measure(
+        quantity.name, text, unit, expect, units, quantity.reduce, float(argument or 0.0), since
+    )

@@ -40,8 +40,14 @@ class Source:
 
     def location(self, keys: Sequence[str | int]) -> str:
         """File and line of a key."""
-        first, rest = (str(keys[0]) if keys else ""), tuple(keys[1:])
-        if first in self.origins and rest and isinstance(rest[0], int) and rest[0] < len(self.origins[first]):
+        first = str(keys[0]) if keys else ""
+        rest = tuple(keys[1:])
+        if (
+            first in self.origins
+            and rest
+            and isinstance(rest[0], int)
+            and rest[0] < len(self.origins[first])
+        ):
             number, position = self.origins[first][rest[0]]
             return location_of(*self.files[number], (first, position, *rest[1:]))
         for length in range(len(keys), 0, -1):
@@ -76,11 +82,16 @@ def study_of(source: Source) -> Study:
         study = Study.model_validate(source.content)
     except ValidationError as error:
         problems = {}
-        for finding in sorted(error.errors(), key=lambda one: one["type"] == "missing"):  # perhaps it is misspelt
+        for finding in sorted(
+            error.errors(), key=lambda one: one["type"] == "missing"
+        ):  # perhaps it is misspelt
             keys = finding["loc"]
-            problems.setdefault(keys[:3], Problem(source.location(keys), *complaint_of(finding, Study)))
+            problems.setdefault(
+                keys[:3], Problem(source.location(keys), *complaint_of(finding, Study))
+            )
         raise ShipcosimError(list(problems.values())) from None
-    study._path, study._source = source.files[0][0], source
+    study._path = source.files[0][0]
+    study._source = source
     if problems := [*_repeated(study), *_drawn_twice(study)]:
         raise ShipcosimError(problems)
     return study
@@ -94,25 +105,40 @@ def problem_of(study: Study, keys: Sequence[str | int], found: str, remedy: str 
 def _read(path: Path, before: tuple[Path, ...]) -> Source:
     text, content = read_toml(path, "Studies")
     source = Source(content, [(path, text)])
-    source.origins = {name: [(0, i) for i in range(len(content[name]))] for name in LISTS if _is_list(content, name)}
+    source.origins = {
+        name: [(0, i) for i in range(len(content[name]))]
+        for name in LISTS
+        if _is_list(content, name)
+    }
     base = content.pop("extends", None)
     if base is None:
         return source
-    where, resolved = source.location(("extends",)), path.resolve()
+    where = source.location(("extends",))
+    resolved = path.resolve()
     if not isinstance(base, str):
-        raise ShipcosimError(Problem(where, f"extends = {base!r}.", "Give the name or path of a study, in quotes."))
+        raise ShipcosimError(
+            Problem(where, f"extends = {base!r}.", "Give the name or path of a study, in quotes.")
+        )
     beside = path.resolve().parent / base
     try:
-        found = beside if beside.is_file() else library.find("study", base, near=path.resolve().parent)
+        found = (
+            beside if beside.is_file() else library.find("study", base, near=path.resolve().parent)
+        )
     except ShipcosimError as error:
-        raise ShipcosimError(Problem(where, f"There is no study '{base}'.", error.problems[0].remedy)) from None
+        raise ShipcosimError(
+            Problem(where, f"There is no study '{base}'.", error.problems[0].remedy)
+        ) from None
     if found.resolve() in (resolved, *before):
-        raise ShipcosimError(Problem(where, f"'{base}' extends this study in turn.", "Extend a study that does not."))
+        raise ShipcosimError(
+            Problem(where, f"'{base}' extends this study in turn.", "Extend a study that does not.")
+        )
     return _over(_read(found, (*before, resolved)), source)
 
 
 def _is_list(content: dict[str, Any], name: str) -> bool:
-    return isinstance(content.get(name), list) and all(isinstance(one, dict) for one in content[name])
+    return isinstance(content.get(name), list) and all(
+        isinstance(one, dict) for one in content[name]
+    )
 
 
 def _over(base: Source, own: Source) -> Source:
@@ -122,15 +148,21 @@ def _over(base: Source, own: Source) -> Source:
     # What the other study says, with the scenario that lies beside it by its path.
     scenario = base.content.get("scenario")
     beside = base.files[0][0].resolve().parent / scenario if isinstance(scenario, str) else None
-    anchored = base.content | ({"scenario": str(beside)} if beside is not None and beside.is_file() else {})
-    content, origins = _merged(anchored, own.content), {}
+    anchored = base.content | (
+        {"scenario": str(beside)} if beside is not None and beside.is_file() else {}
+    )
+    content = _merged(anchored, own.content)
+    origins = {}
     for name in LISTS:
         if not any(_is_list(one.content, name) for one in (base, own)):
             continue
         items = [(item, (n + shift, i)) for item, (n, i) in _items(base, name)]
         for item, origin in _items(own, name):
             label = item.get(LISTS[name])
-            same = next((i for i, (old, _) in enumerate(items) if label and old.get(LISTS[name]) == label), None)
+            same = next(
+                (i for i, (old, _) in enumerate(items) if label and old.get(LISTS[name]) == label),
+                None,
+            )
             if same is None:
                 items.append((item, origin))
             else:
@@ -145,7 +177,11 @@ def _items(source: Source, name: str) -> list[tuple[dict[str, Any], tuple[int, i
 
 def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
     """Tables merged key by key; what is no table is that of `own`."""
-    both = {n: _merged(base[n], own[n]) for n in base.keys() & own.keys() if _are_tables(base[n], own[n])}
+    both = {
+        n: _merged(base[n], own[n])
+        for n in base.keys() & own.keys()
+        if _are_tables(base[n], own[n])
+    }
     return {**base, **own, **both}
 
 
@@ -156,12 +192,15 @@ def _are_tables(*values: Any) -> bool:
 def _drawn_twice(study: Study) -> Iterator[Problem]:
     """A study that samples and searches."""
     if study.sample is not None and study.tune is not None:
-        yield problem_of(study, ("tune",), "A study has either [sample] or [tune].", "Take one out.")
+        yield problem_of(
+            study, ("tune",), "A study has either [sample] or [tune].", "Take one out."
+        )
 
 
 def _repeated(study: Study) -> list[Problem]:
     """Columns of the same name, and cases of the same label."""
-    seen, problems = {}, []
+    seen = {}
+    problems = []
     of_sample = [] if study.sample is None else list(study.sample.of.items())
     columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
     columns += [(("sample", "of", signal), one.name or signal) for signal, one in of_sample]
@@ -172,12 +211,16 @@ def _repeated(study: Study) -> list[Problem]:
     for keys, name in columns:
         if name in seen:
             found = f"'{name}' is a {seen[name]} already."
-            problems.append(problem_of(study, keys, found, "Give each column of the tables a name of its own."))
+            problems.append(
+                problem_of(study, keys, found, "Give each column of the tables a name of its own.")
+            )
         seen.setdefault(name, str(keys[0]))
     for i, factor in enumerate(study.factor):
         labels = [one.label for one in factor.case or ()]
         for j, label in enumerate(labels):
             if label in labels[:j]:
                 keys = ("factor", i, "case", j, "label")
-                problems.append(problem_of(study, keys, "Two cases have the same label.", "Give each its own."))
+                problems.append(
+                    problem_of(study, keys, "Two cases have the same label.", "Give each its own.")
+                )
     return problems

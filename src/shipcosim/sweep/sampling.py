@@ -75,7 +75,9 @@ class Samples:
     @property
     def facts(self) -> Any:
         """What the values follow from, beside the study."""
-        return self.numbers.tolist() if self.bounds is None else [self.bounds.tolist(), self.library]
+        return (
+            self.numbers.tolist() if self.bounds is None else [self.bounds.tolist(), self.library]
+        )
 
     def values(self, number: int) -> list[float | int]:
         """Values of a sample, in the order of the columns.
@@ -88,8 +90,12 @@ class Samples:
         row = self.numbers[number].tolist()
         if any(map(isnan, row)):
             remedy = "Run the study so far: each generation follows from the one before."
-            raise ShipcosimError(Problem(f"trial {number}", "It has not been proposed yet.", remedy))
-        return [round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)]
+            raise ShipcosimError(
+                Problem(f"trial {number}", "It has not been proposed yet.", remedy)
+            )
+        return [
+            round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)
+        ]
 
 
 def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
@@ -105,7 +111,9 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
         return None
     with imported("sample", "Samples come from SciPy, which is missing."):
         import scipy  # noqa: F401
-    lines = [line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)]
+    lines = [
+        line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)
+    ]
     quantiles = [_quantiles(study, levels, system, *line) for line in lines]
     usable = [one for one in quantiles if one is not None]
     if len(usable) < len(quantiles) or not usable:
@@ -124,10 +132,13 @@ def _lines(
     if not key.endswith(EVERY):
         yield key, key, one
         return
-    keys, group = ("sample", "of", key), key.removesuffix(EVERY)
+    keys = ("sample", "of", key)
+    group = key.removesuffix(EVERY)
     if not one.tolerance or one.name or one.also:
         found = f"'{key}' stands for each parameter with a tolerance."
-        levels.problems.append(problem_of(study, keys, found, "It takes tolerance = true, and neither name nor also."))
+        levels.problems.append(
+            problem_of(study, keys, found, "It takes tolerance = true, and neither name nor also.")
+        )
         return
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
     names = [f"{group}.{name}" for name in component.tolerances] if component else []
@@ -136,7 +147,12 @@ def _lines(
         found = f"No parameter set states a tolerance of {key}."
         levels.problems.append(problem_of(study, keys, found, suggestion(key, known)))
     of = study.sample.of if study.sample else {}
-    own = {signal for line, said in of.items() for name in (line, *said.also) for signal in levels.signals_of(name)}
+    own = {
+        signal
+        for line, said in of.items()
+        for name in (line, *said.also)
+        for signal in levels.signals_of(name)
+    }
     yield from ((key, name, one) for name in names if own.isdisjoint(levels.signals_of(name)))
 
 
@@ -156,11 +172,19 @@ def _quantiles(
     except UnitError as error:
         levels.problems.append(problem_of(study, keys, error.found, error.remedy))
     except ShipcosimError as error:
-        levels.problems += [problem_of(study, keys, problem.found, problem.remedy) for problem in error.problems]
+        levels.problems += [
+            problem_of(study, keys, problem.found, problem.remedy) for problem in error.problems
+        ]
     else:
-        kind = "Real" if component is None else system.components[component].fmu.variables[variable].kind
+        kind = (
+            "Real"
+            if component is None
+            else system.components[component].fmu.variables[variable].kind
+        )
         is_whole = kind == "Integer"
-        column = SampledColumn(one.name or name, tuple(signals), unit.name if unit else None, is_whole, one.at_fork)
+        column = SampledColumn(
+            one.name or name, tuple(signals), unit.name if unit else None, is_whole, one.at_fork
+        )
         return column, lambda shares: scale * of(shares) + shift
     return None
 
@@ -186,13 +210,17 @@ def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     needed = (distribution.shapes or "").replace(",", " ").split()
     allowed = [*needed, "loc"] + ([] if isinstance(distribution, stats.rv_discrete) else ["scale"])
     if unknown := [name for name in one.shape if name not in allowed]:
-        raise ShipcosimError(Problem("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed)))
+        raise ShipcosimError(
+            Problem("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
+        )
     if missing := [name for name in needed if name not in one.shape]:
         found = f"'{missing[0]}' is missing."
         raise ShipcosimError(Problem("", found, f"{one.distribution} has: {', '.join(allowed)}."))
     if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **one.shape)).all():
         found = f"{one.distribution} with {', '.join(f'{n} = {v:g}' for n, v in one.shape.items()) or 'no numbers'}."
-        raise ShipcosimError(Problem("", found, "These numbers make no distribution, or one without finite values."))
+        raise ShipcosimError(
+            Problem("", found, "These numbers make no distribution, or one without finite values.")
+        )
     return lambda shares: distribution.ppf(shares, **one.shape)
 
 
@@ -213,7 +241,8 @@ def _check_ends(study: Study, levels: Levels, found: Samples, lines: Sequence[st
     """Check the least and the largest value of each column against bounds and types."""
     for i, (key, column) in enumerate(zip(lines, found.columns, strict=True)):
         for row in (int(np.argmin(found.numbers[:, i])), int(np.argmax(found.numbers[:, i]))):
-            value, keys = found.values(row)[i], ("sample", "of", key)
+            value = found.values(row)[i]
+            keys = ("sample", "of", key)
             if column.at_fork:
                 levels.at_fork(column.signals, value, keys)
             else:
@@ -224,7 +253,9 @@ def _sobol(runs: int, parameters: int, seed: int) -> np.ndarray:
     from scipy.stats import qmc
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a number of runs that is no power of two: less even, not wrong
+        warnings.simplefilter(
+            "ignore"
+        )  # of a number of runs that is no power of two: less even, not wrong
         return qmc.Sobol(parameters, rng=seed).random(runs)
 
 
@@ -248,7 +279,9 @@ def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
     with imported("sample.method", "saltelli comes from SALib, which is missing."):
         from SALib.sample import sobol
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a number of runs that is no power of two: less even, not wrong
+        warnings.simplefilter(
+            "ignore"
+        )  # of a number of runs that is no power of two: less even, not wrong
         return sobol.sample(salib_problem(parameters), runs, calc_second_order=False, seed=seed)
 
 

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     import pyarrow
 
 SCHEMA = "shipcosim-study/1"
-BETWEEN_PARTS, LARGEST_PART = 5.0, 10_000
+BETWEEN_PARTS = 5.0
+LARGEST_PART = 10_000
 """How long rows wait until they are written [s], and how many of them."""
 GROUP = 10_000
 """Rows of the table that are made and written together."""
@@ -62,7 +63,9 @@ class Store:
     """
 
     def __init__(self, folder: Path, plan: Plan, engine: str, force: bool = False):
-        self.folder, self._plan, self._engine = Path(folder), plan, engine
+        self.folder = Path(folder)
+        self._plan = plan
+        self._engine = engine
         self._digest = plan.digest(engine)
         self._rows: list[Row] = []
         self._written = monotonic()
@@ -94,7 +97,9 @@ class Store:
             self._rows.append(row)
             self.done[row.number] = True
             self.failed += bool(row.error)
-        if self._rows and (monotonic() - self._written > BETWEEN_PARTS or len(self._rows) >= LARGEST_PART):
+        if self._rows and (
+            monotonic() - self._written > BETWEEN_PARTS or len(self._rows) >= LARGEST_PART
+        ):
             self.flush()
 
     def flush(self) -> None:
@@ -103,7 +108,8 @@ class Store:
             return
         import pyarrow.parquet as parquet
 
-        rows, self._rows = self._rows, []
+        rows = self._rows
+        self._rows = []
         name = f"{min(row.number for row in rows)}-{len(rows)}-{max(row.number for row in rows)}.parquet"
         written = {f"tracks-{name}": self._tracks(rows)} if self._plan.study.tracks else {}
         for file, table in (written | {f"runs-{name}": self._part(rows)}).items():
@@ -153,7 +159,11 @@ class Store:
             "plan": self._digest,
             "engine": self._engine,
             "seed": self._plan.study.seed,
-            "versions": {"shipcosim": __version__, "python": platform.python_version(), "numpy": np.__version__},
+            "versions": {
+                "shipcosim": __version__,
+                "python": platform.python_version(),
+                "numpy": np.__version__,
+            },
         }
 
     def _about_there(self) -> dict[str, Any] | None:
@@ -166,7 +176,9 @@ class Store:
     def write_about(self, **more: Any) -> dict[str, Any]:
         """Write study.json, with more of what is known; what it holds."""
         about = self.about() | {name: value for name, value in more.items() if value}
-        write_file(self.folder / "study.json", json.dumps(about, indent=1, ensure_ascii=False).encode())
+        write_file(
+            self.folder / "study.json", json.dumps(about, indent=1, ensure_ascii=False).encode()
+        )
         return about
 
     def _pages(self) -> list[str]:
@@ -182,7 +194,9 @@ class Store:
         }
         for measure in self._plan.measures:
             kind = pyarrow.bool_() if measure.is_truth else pyarrow.float64()
-            columns[measure.name] = pyarrow.array([row.quantities.get(measure.name) for row in rows], kind)
+            columns[measure.name] = pyarrow.array(
+                [row.quantities.get(measure.name) for row in rows], kind
+            )
         return pyarrow.table(columns)
 
     def _tracks(self, rows: list[Row]) -> pyarrow.Table:
@@ -208,7 +222,11 @@ class Store:
             return
         table = pyarrow.concat_tables([parquet.read_table(path) for path in parts])
         content = io.BytesIO()
-        parquet.write_table(table.sort_by([("run", "ascending"), ("time", "ascending")]), content, compression="zstd")
+        parquet.write_table(
+            table.sort_by([("run", "ascending"), ("time", "ascending")]),
+            content,
+            compression="zstd",
+        )
         write_file(self.folder / "tracks.parquet", content.getvalue())
 
     def _collected(self) -> pyarrow.Table:
@@ -223,7 +241,9 @@ class Store:
                 tables.append(parquet.read_table(path, columns=names).select(names))
             except (OSError, pyarrow.ArrowException, KeyError):
                 continue  # not there, or cut off: its runs are done again
-        table = pyarrow.concat_tables([one.select(names).cast(tables[0].select(names).schema) for one in tables])
+        table = pyarrow.concat_tables(
+            [one.select(names).cast(tables[0].select(names).schema) for one in tables]
+        )
         _, first = np.unique(table["run"].to_numpy(), return_index=True)
         return table.take(first)
 
@@ -238,8 +258,12 @@ class Store:
         try:
             first = self._group(table.slice(0, 0), kinds)
             with (
-                parquet.ParquetWriter(new["runs.parquet"], first.schema, compression="zstd") as whole,
-                pyarrow.csv.CSVWriter(new["runs.csv"], first.drop_columns(["input"]).schema) as plain,
+                parquet.ParquetWriter(
+                    new["runs.parquet"], first.schema, compression="zstd"
+                ) as whole,
+                pyarrow.csv.CSVWriter(
+                    new["runs.csv"], first.drop_columns(["input"]).schema
+                ) as plain,
             ):
                 for start in range(0, len(numbers), GROUP):
                     group = self._group(table.slice(start, GROUP), kinds)
@@ -260,7 +284,10 @@ class Store:
         if self._plan.samples is not None:
             found["sample"] = pyarrow.int64()
             whole = {one.name: one.is_whole for one in self._plan.samples.columns}
-            found |= {name: pyarrow.int64() if is_whole else pyarrow.float64() for name, is_whole in whole.items()}
+            found |= {
+                name: pyarrow.int64() if is_whole else pyarrow.float64()
+                for name, is_whole in whole.items()
+            }
         return found
 
     def _group(self, done: pyarrow.Table, kinds: dict[str, Any]) -> pyarrow.Table:
@@ -272,7 +299,9 @@ class Store:
         columns: dict[str, Any] = {"run": done["run"]}
         for name, kind in kinds.items():
             values = [run.columns[name] for run in runs]
-            columns[name] = pyarrow.array([str(v) for v in values] if kind == pyarrow.string() else values, kind)
+            columns[name] = pyarrow.array(
+                [str(v) for v in values] if kind == pyarrow.string() else values, kind
+            )
         columns |= {measure.name: done[measure.name] for measure in self._plan.measures}
         columns |= {"error": done["error"], "input": pyarrow.array(inputs, pyarrow.string())}
         return pyarrow.table(columns)
@@ -310,5 +339,9 @@ def _of_summaries(plan: Plan) -> list[ColumnOf]:
     found = []
     for one in plan.study.summary:
         unit = {"share": "1", "last_held": None}.get(one.statistic, units.get(one.quantity))
-        found.append(ColumnOf(one.name, "summary", unit, one.description or f"{one.statistic} of {one.quantity}"))
+        found.append(
+            ColumnOf(
+                one.name, "summary", unit, one.description or f"{one.statistic} of {one.quantity}"
+            )
+        )
     return found

@@ -76,14 +76,21 @@ class Factor(Part):
         default=None, description="how many, that wind, waves and current come from"
     )
     conditions: list[Literal[weather.NUMBERS]] | None = Field(  # pyright: ignore[reportInvalidTypeForm]
-        default=None, min_length=1, description="DP capability numbers whose wind, waves and current are set"
+        default=None,
+        min_length=1,
+        description="DP capability numbers whose wind, waves and current are set",
     )
     seeds: Count | None = None
     at_fork: bool = Field(default=False, description="acts at fork_at, as an event that overrides")
 
     @model_validator(mode="after")
     def _has_values(self) -> Factor:
-        kinds = {"values": self.values, "from": self.start, "case": self.case, "directions": self.directions}
+        kinds = {
+            "values": self.values,
+            "from": self.start,
+            "case": self.case,
+            "directions": self.directions,
+        }
         kinds |= {"conditions": self.conditions, "seeds": self.seeds}
         given = [name for name, value in kinds.items() if value is not None]
         if len(given) != 1:
@@ -91,19 +98,27 @@ class Factor(Part):
             raise ValueError(f"{found} A factor has one of {', '.join(KINDS)}.")
         if self.start is None and (self.to, self.count, self.step) != (None, None, None):
             raise ValueError("to, count and step belong to from. Give from, too.")
-        if self.start is not None and (self.to is None or (self.count is None) == (self.step is None)):
+        if self.start is not None and (
+            self.to is None or (self.count is None) == (self.step is None)
+        ):
             raise ValueError("from needs to, and either count or step.")
         if given[0] in ("values", "from") and not self.signal:
             raise ValueError("signal is missing. Name the signal that gets the values.")
         if self.cases and (self.signal or self.at_fork):
             which = "Cases" if self.case else given[0].capitalize()
-            raise ValueError(f"{which} say themselves what they set: signal and at_fork are not used with them.")
+            raise ValueError(
+                f"{which} say themselves what they set: signal and at_fork are not used with them."
+            )
         return self
 
     @property
     def cases(self) -> list[Case]:
         """Cases that are listed, or that directions and conditions stand for; empty where it has none."""
-        made = weather.directions(self.directions) if self.directions else weather.conditions(self.conditions or ())
+        made = (
+            weather.directions(self.directions)
+            if self.directions
+            else weather.conditions(self.conditions or ())
+        )
         return self.case or [Case(label=label, set=dict(values)) for label, values in made.items()]
 
 
@@ -114,9 +129,15 @@ class Distribution(Part):
     __pydantic_extra__: dict[str, float] = Field(init=False)
 
     distribution: str | None = None
-    tolerance: bool = Field(default=False, description="normal, with the tolerance that the parameter set states")
-    unit: str | None = Field(default=None, description="of the samples; that of the variable where it is not given")
-    name: Column | None = Field(default=None, description="column; the name of the signal where it is not given")
+    tolerance: bool = Field(
+        default=False, description="normal, with the tolerance that the parameter set states"
+    )
+    unit: str | None = Field(
+        default=None, description="of the samples; that of the variable where it is not given"
+    )
+    name: Column | None = Field(
+        default=None, description="column; the name of the signal where it is not given"
+    )
     also: ListOfNames = Field(default=[], description="further signals that get the same value")
     at_fork: bool = False
 
@@ -125,7 +146,9 @@ class Distribution(Part):
         if (self.distribution is None) == (not self.tolerance):
             raise ValueError("It needs either distribution or tolerance = true.")
         if self.tolerance and (self.shape or self.unit):
-            raise ValueError("tolerance = true takes its numbers from the parameter set: no others are given.")
+            raise ValueError(
+                "tolerance = true takes its numbers from the parameter set: no others are given."
+            )
         return self
 
     @property
@@ -170,28 +193,48 @@ class Quantity(Part):
     time: Seconds | None = Field(default=None, ge=0.0)
     percentile: Annotated[float, Field(gt=0.0, lt=100.0)] | None = None
     limit: Amount | None = None
-    since: Seconds | None = Field(default=None, ge=0.0, description="from which the time beyond a limit is counted")
+    since: Seconds | None = Field(
+        default=None, ge=0.0, description="from which the time beyond a limit is counted"
+    )
     expect: list[Expectation] = []
     scenario_expectations: bool = False
-    margin: Literal["phase", "gain", "delay"] | None = Field(default=None, description="of the DP loop, the least axis")
+    margin: Literal["phase", "gain", "delay"] | None = Field(
+        default=None, description="of the DP loop, the least axis"
+    )
     component: str = Field(default="controller", description="whose margin it is")
-    peak_period: Seconds | None = Field(default=None, gt=0.0, description="of the waves that its filter has adapted to")
+    peak_period: Seconds | None = Field(
+        default=None, gt=0.0, description="of the waves that its filter has adapted to"
+    )
 
     @model_validator(mode="after")
     def _is_one(self) -> Quantity:
         if self.margin is not None:
-            if self.model_fields_set - {"name", "description", "margin", "component", "peak_period"}:
-                raise ValueError("margin follows from start values: beside it there are component and peak_period.")
+            if self.model_fields_set - {
+                "name",
+                "description",
+                "margin",
+                "component",
+                "peak_period",
+            }:
+                raise ValueError(
+                    "margin follows from start values: beside it there are component and peak_period."
+                )
             if self.peak_period is None:
-                raise ValueError('peak_period is missing. Give that of the waves: peak_period = "6 s".')
+                raise ValueError(
+                    'peak_period is missing. Give that of the waves: peak_period = "6 s".'
+                )
             return self
         if self.peak_period is not None or "component" in self.model_fields_set:
             raise ValueError("component and peak_period belong to margin. Give margin, too.")
         if self.judges == bool(self.signal):
-            raise ValueError("A quantity has either signal and reduce, or expect or scenario_expectations = true.")
+            raise ValueError(
+                "A quantity has either signal and reduce, or expect or scenario_expectations = true."
+            )
         others = ("near", "reduce", "during", "time", "percentile", "limit", "since")
         if self.judges and (beside := [name for name in others if getattr(self, name) is not None]):
-            raise ValueError(f"{', '.join(beside)}: not used beside expect; an expectation has its own keys.")
+            raise ValueError(
+                f"{', '.join(beside)}: not used beside expect; an expectation has its own keys."
+            )
         if self.judges:
             return self
         if self.reduce is None:
@@ -199,11 +242,15 @@ class Quantity(Part):
         for name in dict.fromkeys(_NEEDS.values()):
             is_needed = _NEEDS.get(self.reduce) == name
             if is_needed != (getattr(self, name) is not None):
-                raise ValueError(f'reduce = "{self.reduce}" {"needs" if is_needed else "does not use"} {name}.')
+                raise ValueError(
+                    f'reduce = "{self.reduce}" {"needs" if is_needed else "does not use"} {name}.'
+                )
         if self.since is not None and (self.reduce != "time_beyond" or self.during):
             raise ValueError('since belongs to reduce = "time_beyond", without during.')
         if len(self.signal) > 1 and self.near is None:
-            raise ValueError("Several signals span a distance: near is missing. Give a value for each signal.")
+            raise ValueError(
+                "Several signals span a distance: near is missing. Give a value for each signal."
+            )
         self.claim  # noqa: B018  says what is wrong with near and during
         return self
 
@@ -230,7 +277,9 @@ class Summary(Part):
     statistic: Literal["percentile", "mean", "std", "maximum", "minimum", "share", "last_held"]
     description: str = ""
     percentile: Annotated[float, Field(gt=0.0, lt=100.0)] | None = None
-    along: str | None = Field(default=None, description="factor whose cases come in the order of their weight")
+    along: str | None = Field(
+        default=None, description="factor whose cases come in the order of their weight"
+    )
     share: Annotated[float, Field(gt=0.0, le=1.0)] | None = None
     none: Label | None = Field(default=None, description="where not even the first case is held")
 
@@ -252,7 +301,9 @@ class Range(Part):
     low: Amount
     high: Amount
     log: bool = Field(default=False, description="evenly spread in the logarithm")
-    name: Column | None = Field(default=None, description="column; the name of the signal where it is not given")
+    name: Column | None = Field(
+        default=None, description="column; the name of the signal where it is not given"
+    )
     also: ListOfNames = Field(default=[], description="further signals that get the same value")
 
 
@@ -339,7 +390,11 @@ class Study(Part):
             If there is none.
         """
         beside = self.folder / self.scenario
-        return beside if beside.is_file() else library.find("scenario", self.scenario, near=self.folder)
+        return (
+            beside
+            if beside.is_file()
+            else library.find("scenario", self.scenario, near=self.folder)
+        )
 
 
 def is_name(value: float | str) -> bool:

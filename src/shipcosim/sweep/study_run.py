@@ -91,11 +91,18 @@ def run_study(
     """
     check_installed()
     if engine not in ENGINES:
-        raise ShipcosimError(Problem("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'."))
+        raise ShipcosimError(
+            Problem("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'.")
+        )
     store = Store(folder, plan, engine, force)
     search = Search(plan) if plan.study.tune else None
     _run(
-        plan, _parts(plan, store, search), store, lambda: _workers(plan, engine, scheduler, workers), at_most, progress
+        plan,
+        _parts(plan, store, search),
+        store,
+        lambda: _workers(plan, engine, scheduler, workers),
+        at_most,
+        progress,
     )
     store.finish()
     runs = store.runs()
@@ -141,7 +148,8 @@ def _run(
     at_most: int | None,
     progress: Progress | None,
 ) -> None:
-    workers, room = None, at_most
+    workers = None
+    room = at_most
     try:
         for numbers in parts:
             now = numbers[:room]

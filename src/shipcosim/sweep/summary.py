@@ -39,7 +39,9 @@ def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
     """
     import pandas
 
-    factors = [one.name for one in plan.study.factor] + (["sample"] if plan.samples is not None else [])
+    factors = [one.name for one in plan.study.factor] + (
+        ["sample"] if plan.samples is not None else []
+    )
     groups: dict[tuple[str, ...], list[Summary]] = {}
     for one in plan.study.summary:
         gone = {*one.over, one.along}
@@ -48,7 +50,9 @@ def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
     return pandas.DataFrame(rows, columns=list(dict.fromkeys(name for row in rows for name in row)))
 
 
-def _rows(plan: Plan, runs: Any, remaining: tuple[str, ...], summaries: list[Summary]) -> list[dict]:
+def _rows(
+    plan: Plan, runs: Any, remaining: tuple[str, ...], summaries: list[Summary]
+) -> list[dict]:
     grouped = runs.groupby(list(remaining), sort=False, dropna=False) if remaining else [((), runs)]
     rows = []
     for key, part in grouped:
@@ -74,9 +78,12 @@ def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
 def _last_held(plan: Plan, one: Summary, part: Any) -> Any:
     """Label of the last case up to which all are held."""
     factor = next(i for i, factor in enumerate(plan.study.factor) if factor.name == one.along)
-    found, share = one.none, one.share if one.share is not None else SHARE
+    found = one.none
+    share = one.share if one.share is not None else SHARE
     for level in plan.levels[factor]:
-        held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(dtype=float)
+        held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(
+            dtype=float
+        )
         if not len(held) or held.mean() < share - 1e-12:
             break
         found = level.label
@@ -97,8 +104,10 @@ def wilson(held: int, n: int) -> Interval:
     """
     if n == 0:
         return np.nan, np.nan, np.nan
-    share, z2 = held / n, _NORMAL**2
-    middle, half = share + z2 / (2 * n), _NORMAL * sqrt(share * (1 - share) / n + z2 / (4 * n * n))
+    share = held / n
+    z2 = _NORMAL**2
+    middle = share + z2 / (2 * n)
+    half = _NORMAL * sqrt(share * (1 - share) / n + z2 / (4 * n * n))
     return share, max((middle - half) / (1 + z2 / n), 0.0), min((middle + half) / (1 + z2 / n), 1.0)
 
 
@@ -130,14 +139,19 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     """
     from scipy.stats import binom
 
-    n, ordered, each = len(values), np.sort(values), (1.0 - CONFIDENCE) / 2.0
+    n = len(values)
+    ordered = np.sort(values)
+    each = (1.0 - CONFIDENCE) / 2.0
     if n == 0:
         return np.nan, np.nan, np.nan
     low = int(binom.ppf(each, n, percent / 100.0))
     if binom.cdf(low, n, percent / 100.0) > each:
         low -= 1
     high = int(binom.ppf(1.0 - each, n, percent / 100.0)) + 1
-    limits = (float(ordered[low]) if low >= 0 else np.nan, float(ordered[high - 1]) if high <= n else np.nan)
+    limits = (
+        float(ordered[low]) if low >= 0 else np.nan,
+        float(ordered[high - 1]) if high <= n else np.nan,
+    )
     after = ordered[int(np.ceil(percent / 100.0 * (n - 1) - 1e-9))]
     return float(np.percentile(values, percent) if np.isfinite(after) else after), *limits
 
@@ -157,7 +171,11 @@ def _mean(values: np.ndarray) -> Interval:
 
 
 def _plain(reduce: Any, least: int = 1) -> Any:
-    return lambda values, one: (float(reduce(values)) if len(values) >= least else np.nan, np.nan, np.nan)
+    return lambda values, one: (
+        float(reduce(values)) if len(values) >= least else np.nan,
+        np.nan,
+        np.nan,
+    )
 
 
 WITH_LIMITS = ("percentile", "mean", "share")

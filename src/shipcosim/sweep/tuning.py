@@ -49,19 +49,28 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
     names = [one.name for one in study.quantity]
     for number, one in enumerate(study.tune.objective):
         if one.quantity not in names:
-            keys, found = ("tune", "objective", number, "quantity"), f"There is no quantity '{one.quantity}'."
+            keys = ("tune", "objective", number, "quantity")
+            found = f"There is no quantity '{one.quantity}'."
             levels.problems.append(problem_of(study, keys, found, suggestion(one.quantity, names)))
     if len(columns) < len(made):
         return None
-    bounds = np.array([one[1] for one in made if one is not None])  # proposals depend on the version of Optuna, too
-    return Samples(tuple(columns), np.full((study.tune.trials, len(columns)), np.nan), bounds, optuna.__version__)
+    bounds = np.array(
+        [one[1] for one in made if one is not None]
+    )  # proposals depend on the version of Optuna, too
+    return Samples(
+        tuple(columns),
+        np.full((study.tune.trials, len(columns)), np.nan),
+        bounds,
+        optuna.__version__,
+    )
 
 
 def _range(
     study: Study, levels: Levels, system: System, key: str, one: Range
 ) -> tuple[SampledColumn, tuple[float, float, float]] | None:
     """Column of a line of [tune.of], with its least, largest and present value; None where something is wrong."""
-    signals, ends = levels.existing([key], ("tune", "of", key)), {}
+    signals = levels.existing([key], ("tune", "of", key))
+    ends = {}
     others = levels.existing(one.also, ("tune", "of", key, "also"))
     if not signals:
         return None
@@ -71,15 +80,21 @@ def _range(
         levels.checked(dict.fromkeys(others, value), ("tune", "of", key, "also"))
     if None in ends.values():
         return None
-    low, high, now = (float(value) for value in (ends["low"], ends["high"], start_value(system, signals[0])))
+    low, high, now = (
+        float(value) for value in (ends["low"], ends["high"], start_value(system, signals[0]))
+    )
     if not low < high or (one.log and low <= 0.0):
         found = f"low = {low:g} and high = {high:g}."
         remedy = "low is the smaller one, and with log above 0."
     elif not low <= now <= high:
-        found, remedy = f"{signals[0]} is {now:g} now, which is not among them.", "Take a range that has it in."
+        found = f"{signals[0]} is {now:g} now, which is not among them."
+        remedy = "Take a range that has it in."
     else:
-        unit, is_whole = units_of(system)(signals[0]), isinstance(start_value(system, signals[0]), int)
-        column = SampledColumn(one.name or key, (*signals, *others), unit.name if unit else None, is_whole, False)
+        unit = units_of(system)(signals[0])
+        is_whole = isinstance(start_value(system, signals[0]), int)
+        column = SampledColumn(
+            one.name or key, (*signals, *others), unit.name if unit else None, is_whole, False
+        )
         return column, (low, high, now)
     levels.problems.append(problem_of(study, ("tune", "of", key), found, remedy))
     return None
@@ -101,12 +116,30 @@ class Search:
         import optuna
         from optuna.distributions import FloatDistribution, IntDistribution
 
-        assert plan.study.tune is not None and plan.samples is not None and plan.samples.bounds is not None
-        self._plan, self._tune, self._samples = plan, plan.study.tune, plan.samples
-        kinds = [IntDistribution if one.is_whole else FloatDistribution for one in plan.samples.columns]
-        every = zip(plan.samples.columns, kinds, plan.samples.bounds.tolist(), self._tune.of.values(), strict=True)
-        self._among: dict[str, Any] = {c.name: kind(low, high, log=one.log) for c, kind, (low, high, _), one in every}
-        sampler = optuna.samplers.NSGAIISampler(population_size=self._tune.population, seed=plan.study.seed)
+        assert (
+            plan.study.tune is not None
+            and plan.samples is not None
+            and plan.samples.bounds is not None
+        )
+        self._plan = plan
+        self._tune = plan.study.tune
+        self._samples = plan.samples
+        kinds = [
+            IntDistribution if one.is_whole else FloatDistribution for one in plan.samples.columns
+        ]
+        every = zip(
+            plan.samples.columns,
+            kinds,
+            plan.samples.bounds.tolist(),
+            self._tune.of.values(),
+            strict=True,
+        )
+        self._among: dict[str, Any] = {
+            c.name: kind(low, high, log=one.log) for c, kind, (low, high, _), one in every
+        }
+        sampler = optuna.samplers.NSGAIISampler(
+            population_size=self._tune.population, seed=plan.study.seed
+        )
         verbosity = optuna.logging.get_verbosity()
         optuna.logging.set_verbosity(optuna.logging.WARNING)
         try:
@@ -116,11 +149,14 @@ class Search:
         finally:
             optuna.logging.set_verbosity(verbosity)
         now = zip(plan.samples.columns, plan.samples.bounds[:, 2].tolist(), strict=True)
-        self._search.enqueue_trial({one.name: round(value) if one.is_whole else value for one, value in now})
+        self._search.enqueue_trial(
+            {one.name: round(value) if one.is_whole else value for one, value in now}
+        )
 
     def generations(self) -> Iterator[range]:
         """Numbers of the trials of each generation, proposed; it has to be told before the next one."""
-        size, trials = self._tune.population, self._tune.trials
+        size = self._tune.population
+        trials = self._tune.trials
         for first in range(0, trials, size):
             numbers = range(first, min(first + size, trials))
             self._asked = [self._search.ask(self._among) for _ in numbers]
@@ -140,7 +176,9 @@ class Search:
         for trial in self._asked:
             samples_of = np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
             found = _objectives(self._tune.objective, runs[samples_of == trial.number])
-            worst = [-np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective]
+            worst = [
+                -np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective
+            ]
             self._search.tell(trial, worst if found is None else found)
 
     def table(self, runs: Any) -> pandas.DataFrame:
@@ -169,9 +207,16 @@ class Search:
             for measure in self._plan.measures:
                 values = sound[measure.name].to_numpy(float)
                 is_whole = len(sound) == len(part) and np.isfinite(values).all()
-                row[measure.name] = float(statistics.get(measure.name, np.mean)(values)) if is_whole else np.nan
+                row[measure.name] = (
+                    float(statistics.get(measure.name, np.mean)(values)) if is_whole else np.nan
+                )
             is_best = number in best and not any(np.isnan(row[name]) for name in statistics)
-            row |= {"runs": len(part), "failed": len(part) - len(sound), "pareto": is_best, "as_shipped": number == 0}
+            row |= {
+                "runs": len(part),
+                "failed": len(part) - len(sound),
+                "pareto": is_best,
+                "as_shipped": number == 0,
+            }
             rows.append(row)
         return pandas.DataFrame(rows)
 
@@ -180,5 +225,7 @@ def _objectives(objectives: list[Objective], runs: Any) -> list[float] | None:
     """Objectives of a trial; None where one of its runs failed or has no value."""
     if (runs["error"] != "").any():
         return None
-    found = [float(STATISTICS[one.statistic](runs[one.quantity].to_numpy(float))) for one in objectives]
+    found = [
+        float(STATISTICS[one.statistic](runs[one.quantity].to_numpy(float))) for one in objectives
+    ]
     return found if np.isfinite(found).all() else None

@@ -33,7 +33,11 @@ def directions(count: int) -> dict[float, StartValues]:
 
 def _from(angle: float) -> StartValues:
     towards = (angle + math.pi) % (2.0 * math.pi)
-    return {f"{COMPONENT}.wind_from": angle, f"{COMPONENT}.waves_from": angle, f"{COMPONENT}.current_to": towards}
+    return {
+        f"{COMPONENT}.wind_from": angle,
+        f"{COMPONENT}.waves_from": angle,
+        f"{COMPONENT}.current_to": towards,
+    }
 
 
 def conditions(numbers: Iterable[int]) -> dict[int, StartValues]:

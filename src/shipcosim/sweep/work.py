@@ -24,7 +24,8 @@ from shipcosim.ssp import System
 from shipcosim.sweep.plan import Plan, PlannedRun, Swapped
 from shipcosim.sweep.quantities import Measure
 
-MOST_JOBS, MOST_SYSTEMS = 2, 4
+MOST_JOBS = 2
+MOST_SYSTEMS = 4
 """Jobs, and systems of each, that a worker keeps ready."""
 
 
@@ -99,7 +100,11 @@ def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
         Whether FMUs travel along: to workers on other machines.
     """
     systems = {key: replace(system, _packages=()) for key, system in plan.systems.items()}
-    files = {str(c.fmu.path): c.fmu.path for system in systems.values() for c in system.components.values()}
+    files = {
+        str(c.fmu.path): c.fmu.path
+        for system in systems.values()
+        for c in system.components.values()
+    }
     contents = {path: file.read_bytes() for path, file in files.items()}
     paths = {path: hashlib.sha256(content).hexdigest() for path, content in contents.items()}
     fmus = {paths[path]: content for path, content in contents.items()} if with_fmus else {}
@@ -113,7 +118,9 @@ class Column(NamedTuple):
     values: np.ndarray
 
 
-def table_of(times: np.ndarray, columns: Iterable[tuple[str, np.ndarray, str, str]]) -> dict[str, Column]:
+def table_of(
+    times: np.ndarray, columns: Iterable[tuple[str, np.ndarray, str, str]]
+) -> dict[str, Column]:
     """Columns by name: what quantities need of a table."""
     return {"time": Column(times)} | {name: Column(values) for name, values, *_ in columns}
 
@@ -132,7 +139,8 @@ def run_chunk(job: PackedJob | str, runs: Sequence[PlannedRun]) -> Chunk:
     Chunk
     """
     with _ONE_AT_A_TIME:
-        bench, began = _bench(job), perf_counter()
+        bench = _bench(job)
+        began = perf_counter()
         return Chunk([bench.row(run) for run in runs], perf_counter() - began)
 
 
@@ -141,8 +149,11 @@ class _Bench:
 
     def __init__(self, packed: PackedJob):
         job: Job = pickle.loads(packed.content)
-        self._job, self._plan = job, job.plan
-        self._folder = tempfile.TemporaryDirectory(prefix="shipcosim-fmus-", ignore_cleanup_errors=True)
+        self._job = job
+        self._plan = job.plan
+        self._folder = tempfile.TemporaryDirectory(
+            prefix="shipcosim-fmus-", ignore_cleanup_errors=True
+        )
         self._at: dict[str, Path] = {}
         self._ready: OrderedDict[Swapped, OneAfterAnother] = OrderedDict()
         measures: Sequence[Measure] = job.plan.measures
@@ -156,8 +167,11 @@ class _Bench:
         if key not in self._ready:
             while len(self._ready) >= MOST_SYSTEMS:
                 self._ready.popitem(last=False)[1].close()
-            system, options = self._system(self._plan.systems[key]), RunOptions(engine=self._job.engine)
-            self._ready[key] = OneAfterAnother(system, options, self._chosen, self._reduced, table_of)
+            system = self._system(self._plan.systems[key])
+            options = RunOptions(engine=self._job.engine)
+            self._ready[key] = OneAfterAnother(
+                system, options, self._chosen, self._reduced, table_of
+            )
         self._ready.move_to_end(key)
         return self._ready[key]
 
@@ -166,12 +180,19 @@ class _Bench:
         try:
             done = self._ready_for(run).run(Variation(run.values, self._plan.scenario_of(run)))
         except Exception as error:
-            return Row(run.number, error=str(error) if isinstance(error, ShipcosimError) else repr(error))
+            return Row(
+                run.number, error=str(error) if isinstance(error, ShipcosimError) else repr(error)
+            )
         if done.error:
             return Row(run.number, error=done.error)
-        tracks = {name: done.kept[f"track {name}"][1] for name in ("time", *self._tracked) if self._tracked}
+        tracks = {
+            name: done.kept[f"track {name}"][1]
+            for name in ("time", *self._tracked)
+            if self._tracked
+        }
         quantities = {
-            m.name: m.margin.of(run.values) if m.margin else done.kept[m.name][1].item() for m in self._plan.measures
+            m.name: m.margin.of(run.values) if m.margin else done.kept[m.name][1].item()
+            for m in self._plan.measures
         }
         return Row(run.number, quantities, tracks=tracks)
 
@@ -185,15 +206,25 @@ class _Bench:
         return [name for name in names if name in self._signals]
 
     def _reduced(self, table: Any) -> dict[str, Any]:
-        found = {measure.name: measure.of(table) for measure in self._plan.measures if measure.margin is None}
+        found = {
+            measure.name: measure.of(table)
+            for measure in self._plan.measures
+            if measure.margin is None
+        }
         every = slice(None, None, self._plan.rows_per_track_row)
-        tracks = {f"track {name}": table[name].values[every] for name in ("time", *self._tracked) if self._tracked}
+        tracks = {
+            f"track {name}": table[name].values[every]
+            for name in ("time", *self._tracked)
+            if self._tracked
+        }
         return found | tracks
 
     def _system(self, system: System) -> System:
         """The system with its FMUs where this worker has them."""
         components = {
-            name: replace(component, fmu=replace(component.fmu, path=self._path(component.fmu.path)))
+            name: replace(
+                component, fmu=replace(component.fmu, path=self._path(component.fmu.path))
+            )
             for name, component in system.components.items()
         }
         return replace(system, components=components)

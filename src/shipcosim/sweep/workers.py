@@ -129,13 +129,16 @@ class Cluster(Workers):
         try:
             self._client = Client(address, timeout=10, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
-            remedy = "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
+            remedy = (
+                "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
+            )
             found = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
             raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy)) from None
         self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.n:
             self._client.close()
-            found, remedy = "It has no worker.", f"Start some: dask worker {address} --nthreads 1."
+            found = "It has no worker."
+            remedy = f"Start some: dask worker {address} --nthreads 1."
             raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy))
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)

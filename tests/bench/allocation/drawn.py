@@ -46,13 +46,26 @@ def _corners(random):
 
 
 def _round(random):
-    angle = random.uniform(0.0, 2.0 * np.pi) + random.choice([-1, 1]) * np.linspace(0.0, 2.0 * np.pi, HELD)
+    angle = random.uniform(0.0, 2.0 * np.pi) + random.choice([-1, 1]) * np.linspace(
+        0.0, 2.0 * np.pi, HELD
+    )
     size = random.uniform(1e3, 60e3)
-    return np.stack([size * np.cos(angle), size * np.sin(angle), random.uniform(-SPAN[2], SPAN[2]) * np.sin(angle)], -1)
+    return np.stack(
+        [
+            size * np.cos(angle),
+            size * np.sin(angle),
+            random.uniform(-SPAN[2], SPAN[2]) * np.sin(angle),
+        ],
+        -1,
+    )
 
 
 def _around_zero(random):
-    return 10.0 ** random.uniform(-6.0, 3.0) * random.choice([-1.0, 0.0, 1.0], (HELD, 3)) * [1.0, 1.0, 10.0]
+    return (
+        10.0 ** random.uniform(-6.0, 3.0)
+        * random.choice([-1.0, 0.0, 1.0], (HELD, 3))
+        * [1.0, 1.0, 10.0]
+    )
 
 
 def _walk(random):

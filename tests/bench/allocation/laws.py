@@ -112,4 +112,6 @@ def _fmu_class(name):
     spec = importlib.util.spec_from_file_location(f"fmu_{name}", path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return next(c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name)
+    return next(
+        c for c in vars(module).values() if isinstance(c, type) and c.__module__ == spec.name
+    )

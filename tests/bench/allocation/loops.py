@@ -62,7 +62,13 @@ def loads(thrusts, azimuths):
     return X, Y, N
 
 
-def run(scenario: str, seeds, law: str | None = None, lost: Sequence[str | None] = (None,), until: float = np.inf):
+def run(
+    scenario: str,
+    seeds,
+    law: str | None = None,
+    lost: Sequence[str | None] = (None,),
+    until: float = np.inf,
+):
     """A scenario with a law in the loop.
 
     Parameters
@@ -89,7 +95,9 @@ def run(scenario: str, seeds, law: str | None = None, lost: Sequence[str | None]
     for unit in UNITS:
         which = np.repeat([name == unit for name in lost], len(seeds))
         events += [(LOST_AT, {f"{unit}.failed": which})] if which.any() else []
-    values = {name: value for name, value in _in_si(asked.set).items() if not name.endswith(".seed")}
+    values = {
+        name: value for name, value in _in_si(asked.set).items() if not name.endswith(".seed")
+    }
     component, _, variant = (law or "").partition(", ")
     swapped = {"allocator": component} if law else None
     if variant:
@@ -98,7 +106,13 @@ def run(scenario: str, seeds, law: str | None = None, lost: Sequence[str | None]
         values["allocator.measure_solve_time"] = True
     shown = ["vessel", "reference", *UNITS, "controller", "allocator"]
     found = dp_runs.simulate(
-        variations, values, events, stop_time=min(asked.stop_time, until), h=STEP, record=shown, components=swapped
+        variations,
+        values,
+        events,
+        stop_time=min(asked.stop_time, until),
+        h=STEP,
+        record=shown,
+        components=swapped,
     )
     return {name: column[::2] for name, column in found.items()}, _commanded(found) if law else None
 
@@ -131,21 +145,32 @@ def requests(scenario: str, seeds) -> np.ndarray:
     return np.stack([signals[f"controller.tau_{axis}_cmd"] for axis in "XYN"], -1)
 
 
-def replay(law: str, asked: np.ndarray, available: np.ndarray | None = None, step: float = 0.1) -> Commanded:
+def replay(
+    law: str, asked: np.ndarray, available: np.ndarray | None = None, step: float = 0.1
+) -> Commanded:
     """What a law commands on requests, (n, m, 3), at rest before each seed; all units can be used by default."""
     usable = np.ones(asked.shape, bool) if available is None else available
     thrusts, azimuths = np.zeros(asked.shape), np.zeros((*asked.shape[:2], 2))
     seconds, proposed = np.zeros(asked.shape[:2]), np.zeros((*asked.shape[:2], 2, 3))
     for seed in range(asked.shape[1]):
         one = LAWS[law]()
-        for k, (tau, units) in enumerate(zip(asked[:, seed].tolist(), usable[:, seed].tolist(), strict=True)):
-            thrusts[k, seed], azimuths[k, seed], seconds[k, seed], before = one.step(tau, units, step)
+        for k, (tau, units) in enumerate(
+            zip(asked[:, seed].tolist(), usable[:, seed].tolist(), strict=True)
+        ):
+            thrusts[k, seed], azimuths[k, seed], seconds[k, seed], before = one.step(
+                tau, units, step
+            )
             if before is not None:
                 proposed[k, seed] = before
-    return Commanded(step, asked, thrusts, azimuths, seconds, usable, proposed if proposed.any() else None)
+    return Commanded(
+        step, asked, thrusts, azimuths, seconds, usable, proposed if proposed.any() else None
+    )
 
 
 def _in_si(given):
     """Values in SI units; radians are the only unit that these scenarios write."""
     radians = spelled_unit("rad")
-    return {name: number_in(value, radians) if isinstance(value, str) else value for name, value in given.items()}
+    return {
+        name: number_in(value, radians) if isinstance(value, str) else value
+        for name, value in given.items()
+    }

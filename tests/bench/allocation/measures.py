@@ -34,7 +34,11 @@ def spread(values) -> Spread:
     """Mean, half width of the 95 % interval of the mean, and largest value, of one value a seed."""
     values = np.asarray(values, float)
     n = len(values)
-    half = float(student.ppf(0.975, n - 1) * values.std(ddof=1) / np.sqrt(n)) if n > 1 else float("nan")
+    half = (
+        float(student.ppf(0.975, n - 1) * values.std(ddof=1) / np.sqrt(n))
+        if n > 1
+        else float("nan")
+    )
     return Spread(float(values.mean()), half, float(values.max()))
 
 
@@ -45,11 +49,18 @@ def violations(commanded: Commanded) -> dict[str, np.ndarray]:
     that turns through it without thrust disturbs nobody. A unit that cannot be used goes to zero at once: its rate
     does not count.
     """
-    ship, f, a, h = parameters(AllocationParameters), commanded.thrusts, commanded.azimuths, commanded.step
+    ship, f, a, h = (
+        parameters(AllocationParameters),
+        commanded.thrusts,
+        commanded.azimuths,
+        commanded.step,
+    )
     most = np.array([ship.azimuth_thrust_max, ship.azimuth_thrust_max, ship.tunnel_thrust_max])
     least = np.array([ship.azimuth_thrust_min, ship.azimuth_thrust_min, -ship.tunnel_thrust_max])
     reach, turn = ship.thrust_rate_max * h, AZIMUTH_RATE * h
-    quick = ((np.abs(np.diff(f, axis=0)) > reach * (1.0 + ALMOST)) & commanded.available[1:]).any(-1)
+    quick = ((np.abs(np.diff(f, axis=0)) > reach * (1.0 + ALMOST)) & commanded.available[1:]).any(
+        -1
+    )
     turned = (np.abs(wrap(np.diff(a, axis=0))) > turn * (1.0 + ALMOST)).any(-1)
     beside = np.abs(wrap(a))
     inside = (beside > SECTOR[0] * (1.0 + ALMOST)) & (beside < SECTOR[1] * (1.0 - ALMOST))
@@ -117,7 +128,11 @@ def _steps(ship, f, a, h):
     right = np.where(ahead, front, np.maximum(2.0 * np.pi - SECTOR[1] - astern, 0.0))
     little = 1e-9  # the solver wants bounds that differ
     least = np.concatenate([np.maximum(lowest - f, -reach), -np.minimum(left, turn)]) - little
-    return slopes, least, np.concatenate([np.minimum(highest - f, reach), np.minimum(right, turn)]) + little
+    return (
+        slopes,
+        least,
+        np.concatenate([np.minimum(highest - f, reach), np.minimum(right, turn)]) + little,
+    )
 
 
 def reversals(thrusts: np.ndarray) -> np.ndarray:

@@ -66,7 +66,14 @@ def least(scenario: str, seeds, folder: Path = FOLDER) -> tuple[np.ndarray, np.n
 
 
 def _measure(law, seeds, random_steps, folder):
-    found = {"law": law, "seeds": [int(seed) for seed in seeds], "steps": 0, "replayed": {}, "loop": {}, "lost": {}}
+    found = {
+        "law": law,
+        "seeds": [int(seed) for seed in seeds],
+        "steps": 0,
+        "replayed": {},
+        "loop": {},
+        "lost": {},
+    }
     for scenario in loops.SCENARIOS:
         commanded = loops.replay(law, requests(scenario, seeds, folder))
         found["replayed"][scenario] = _of_requests(commanded, *least(scenario, seeds, folder))
@@ -74,11 +81,14 @@ def _measure(law, seeds, random_steps, folder):
     if law in RIVALS:
         return found
     asked, available = drawn.requests(random_steps, seeds[0])
-    found["random"] = {"steps": random_steps} | _listed(measures.violations(loops.replay(law, asked, available)))
+    found["random"] = {"steps": random_steps} | _listed(
+        measures.violations(loops.replay(law, asked, available))
+    )
     signals, commanded = loops.run("stationkeeping", seeds, law, (None, *UNITS))
     found["loop"] = _of_loop(signals, commanded, len(seeds))
     found["lost"] = {
-        unit: _of_loss(signals, slice(k * len(seeds), (k + 1) * len(seeds))) for k, unit in enumerate(UNITS, 1)
+        unit: _of_loss(signals, slice(k * len(seeds), (k + 1) * len(seeds)))
+        for k, unit in enumerate(UNITS, 1)
     }
     return found
 
@@ -98,7 +108,10 @@ def _of_requests(commanded, best, met):
         thrusts, azimuths = commanded.proposed[:, :, 0], commanded.proposed[:, :, 1, :2]
         early = measures.missed(replace(commanded, thrusts=thrusts, azimuths=azimuths))
         names = "force_error_before", "moment_error_before"
-        before = {name: mean(values[::SPARSE], within_rates) for name, values in zip(names, early, strict=True)}
+        before = {
+            name: mean(values[::SPARSE], within_rates)
+            for name, values in zip(names, early, strict=True)
+        }
     return _listed(
         {
             **measures.violations(commanded),
@@ -130,7 +143,9 @@ def _seconds(law, asked):
 def _of_loop(signals, commanded, seeds):
     """Measures of stationkeeping with the law in the loop, one value a seed each: first columns: no failure."""
     rows, thrusts = measures.settled(commanded), commanded.thrusts[:, :seeds]
-    distance = np.hypot(*(signals[f"vessel.{a}"] - signals[f"reference.{a}_d"] for a in "xy"))[:, :seeds]
+    distance = np.hypot(*(signals[f"vessel.{a}"] - signals[f"reference.{a}_d"] for a in "xy"))[
+        :, :seeds
+    ]
     turns = measures.reversals(thrusts)
     return _listed(
         {
@@ -147,7 +162,12 @@ def _of_loss(signals, columns):
     """Largest distance and turn from the loss of a unit on, one value a seed each. [m, deg]"""
     after = signals["time"] >= loops.LOST_AT
     distance = np.hypot(signals["vessel.x"], signals["vessel.y"])[after, columns].max(0)
-    return _listed({"distance": distance, "turn": np.degrees(np.abs(signals["vessel.psi"][after, columns])).max(0)})
+    return _listed(
+        {
+            "distance": distance,
+            "turn": np.degrees(np.abs(signals["vessel.psi"][after, columns])).max(0),
+        }
+    )
 
 
 def _listed(values):

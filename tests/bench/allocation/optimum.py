@@ -19,14 +19,20 @@ TURNS = np.radians(10.0)  # rad/s; the static optimum asks only whether a unit t
 def best(tau: np.ndarray, without: str | None = None) -> Optimum:
     """Optimum for loads, (n, 3), of the ship's thrusters; astern force comes from a unit turned astern."""
     ship, full = parameters(AllocationParameters), parameters(PowerParameters)
-    turning = dict(least=0.0, least_degraded=0.0, most=ship.azimuth_thrust_max, first=-np.pi, last=np.pi)
-    turning |= dict(azimuth_rate=TURNS, price=full.azimuth_full_power / ship.azimuth_thrust_max**1.5)
+    turning = dict(
+        least=0.0, least_degraded=0.0, most=ship.azimuth_thrust_max, first=-np.pi, last=np.pi
+    )
+    turning |= dict(
+        azimuth_rate=TURNS, price=full.azimuth_full_power / ship.azimuth_thrust_max**1.5
+    )
     most, beam = ship.tunnel_thrust_max, 0.5 * np.pi
     reversing = dict(least=-most, least_degraded=-most, most=most, first=beam, last=beam)
     reversing |= dict(azimuth_rate=0.0, price=full.tunnel_full_power / most**1.5)
     units = {
         "port": AllocatedThruster(x=ship.port_x, y=ship.port_y, thrust_rate=np.inf, **turning),
-        "starboard": AllocatedThruster(x=ship.starboard_x, y=ship.starboard_y, thrust_rate=np.inf, **turning),
+        "starboard": AllocatedThruster(
+            x=ship.starboard_x, y=ship.starboard_y, thrust_rate=np.inf, **turning
+        ),
         "tunnel": AllocatedThruster(x=ship.tunnel_x, y=0.0, thrust_rate=np.inf, **reversing),
     }
     left = [units[name] for name in UNITS if name != without]

@@ -8,7 +8,10 @@ import warnings
 
 import numpy as np
 
-AZIMUTH_LIMITS = 80.0, 100.0  # deg from the bow and the stern's side: the sector between is forbidden (paper V)
+AZIMUTH_LIMITS = (
+    80.0,
+    100.0,
+)  # deg from the bow and the stern's side: the sector between is forbidden (paper V)
 
 
 def quta_with_sectors(ship):
@@ -48,7 +51,10 @@ def skadipy_quadratic_programme(ship):
         return {"limits": [least, most]}
 
     azimuths = [
-        Azimuth(position=Point(x, y, 0.0), extra_attributes=limits(-ship.azimuth_thrust_max, ship.azimuth_thrust_max))
+        Azimuth(
+            position=Point(x, y, 0.0),
+            extra_attributes=limits(-ship.azimuth_thrust_max, ship.azimuth_thrust_max),
+        )
         for x, y in ((ship.port_x, ship.port_y), (ship.starboard_x, ship.starboard_y))
     ]
     tunnel = Fixed(

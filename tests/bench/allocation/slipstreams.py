@@ -43,12 +43,25 @@ class Law(NamedTuple):
 
 def quadratic_program(units, first, last, start):
     """The optimal allocator with an interval of angles for each unit."""
-    rows = zip(units.x, units.y, units.least, units.most, units.rate, units.turn, units.full_power, strict=True)
+    rows = zip(
+        units.x,
+        units.y,
+        units.least,
+        units.most,
+        units.rate,
+        units.turn,
+        units.full_power,
+        strict=True,
+    )
     made = []
     for k, (x, y, least, most, rate, turn, power) in enumerate(rows):
         interval = (first[k], last[k]) if turn > 0.0 else (units.azimuth[k],) * 2
         degraded = ASTERN if turn > 0.0 else least
-        made.append(sqp.AllocatedThruster(x, y, least, most, degraded, rate, *interval, turn, power / most**1.5))
+        made.append(
+            sqp.AllocatedThruster(
+                x, y, least, most, degraded, rate, *interval, turn, power / most**1.5
+            )
+        )
     design = sqp.designed(tuple(made), 10.0, units.lever, _degraded(units))
     return Law(
         lambda m: sqp.resting((np.zeros(m),) * 3, start),
@@ -78,13 +91,17 @@ def laws_of(kind):
     fmu = FMUS.get(kind, "neural_units_allocator")
     arrays = read_arrays(ROOT / "fmus" / fmu / "weights" / f"{kind}.npz")
     start = NUMBERED if len(units.x) == 4 else NAMED
-    beside = (4.0, 4.0, 3.0, 3.0) if len(units.x) == 4 else (4.0, 4.0, 1.0)  # m to the unit beside it
+    beside = (
+        (4.0, 4.0, 3.0, 3.0) if len(units.x) == 4 else (4.0, 4.0, 1.0)
+    )  # m to the unit beside it
     half = [np.arctan(0.1 + 1.9 / distance) for distance in beside]  # DNV-ST-0111
     first = [side + h for side, h in zip((-0.5 * pi, -1.5 * pi) * 2, half, strict=False)]
     last = [side - h for side, h in zip((1.5 * pi, 0.5 * pi) * 2, half, strict=False)]
     if len(units.x) == 3:
         first[1], last[1] = 0.5 * pi + half[1], 2.5 * pi - half[1]
-    found = {"quadratic program, sectors of DNV-ST-0111": quadratic_program(units, first, last, start)}
+    found = {
+        "quadratic program, sectors of DNV-ST-0111": quadratic_program(units, first, last, start)
+    }
     if len(units.x) == 3:
         cones = np.radians((-80.0, 100.0, 0.0)), np.radians((80.0, 260.0, 0.0))
         found["quadratic program, cones of the thesis"] = quadratic_program(units, *cones, start)
@@ -100,7 +117,9 @@ def run(law, units, asked, lost):
     state, more, rows = law.rest(m), np.zeros((m, 3)), []
     for tau in asked:
         state = law.step(state, tuple((tau + more).T), on)
-        thrusts, azimuths = (np.stack([values + np.zeros(m) for values in of], -1) for of in state[:2])
+        thrusts, azimuths = (
+            np.stack([values + np.zeros(m) for values in of], -1) for of in state[:2]
+        )
         effect = neural.effects(thrusts, azimuths, units=units)
         given = (effect @ thrusts[..., None])[..., 0] * (1.0, 1.0, units.lever)
         more = more + STEP / CORRECTION * (tau - given)
@@ -116,7 +135,9 @@ def measured(kind, seeds, lost=-1, folder=FOLDER):
     name = kind if lost < 0 else f"{kind}-without-{lost + 1}"
     path = folder / f"slipstreams-{name}-{seeds[0]}-{seeds[-1]}.json"
     if not path.exists():
-        found = {scenario: dict(_measure(kind, scenario, seeds, lost, folder)) for scenario in SCENARIOS}
+        found = {
+            scenario: dict(_measure(kind, scenario, seeds, lost, folder)) for scenario in SCENARIOS
+        }
         path.write_text(json.dumps(found, indent=1), encoding="utf-8")
     return json.loads(path.read_text(encoding="utf-8"))
 
@@ -135,14 +156,19 @@ def _measure(kind, scenario, seeds, lost, folder):
 
 def lines(kind, found):
     """The table in Markdown: power of each law against the first one, and what it misses."""
-    said = [f"| {kind} | power [kW] | against the first [%] | missed [N] | missed [N m] |", "|---|---|---|---|---|"]
+    said = [
+        f"| {kind} | power [kW] | against the first [%] | missed [N] | missed [N m] |",
+        "|---|---|---|---|---|",
+    ]
     for scenario, laws in found.items():
         first = np.array(next(iter(laws.values()))["power"])
         for name, one in laws.items():
             more = spread(100.0 * (np.array(one["power"]) / first - 1.0))
             power, force, moment = (np.mean(one[key]) for key in ("power", "force", "moment"))
             change = f"{more.mean:+.1f} ± {more.half:.1f}"
-            said.append(f"| {scenario}: {name} | {power:.2f} | {change} | {force:.0f} | {moment:.0f} |")
+            said.append(
+                f"| {scenario}: {name} | {power:.2f} | {change} | {force:.0f} | {moment:.0f} |"
+            )
     return said
 
 
@@ -157,4 +183,8 @@ if __name__ == "__main__":
     parser.add_argument("--seeds", default="1:9", help="FROM:TO of the wind; 7200:7208 to report")
     options = parser.parse_args()
     first, last = map(int, options.seeds.split(":"))
-    print("\n".join(lines(options.kind, measured(options.kind, range(first, last), (options.lost or 0) - 1))))
+    print(
+        "\n".join(
+            lines(options.kind, measured(options.kind, range(first, last), (options.lost or 0) - 1))
+        )
+    )

@@ -65,7 +65,9 @@ def broken_share(*kinds: str):
     def measure(one, laws):
         steps = one["steps"] / len(one["seeds"])
         runs = one["replayed"].values()
-        return [100.0 * sum(run[kind][k] for run in runs for kind in kinds) / steps for k in _seeds(one)]
+        return [
+            100.0 * sum(run[kind][k] for run in runs for kind in kinds) / steps for k in _seeds(one)
+        ]
 
     return measure
 
@@ -137,12 +139,28 @@ OPEN_LOOP = (
     Row("steps that break a rate [%]", broken_share("rate")),
     Row("steps that break a limit of force [%]", broken_share("force")),
     Row("power over the exact static optimum", against_optimum, beside(1.06), ".3f"),
-    Row("power against the generalised inverse [%]", against_base("replayed"), beside(-16.0), ".1f"),
+    Row(
+        "power against the generalised inverse [%]", against_base("replayed"), beside(-16.0), ".1f"
+    ),
     Row("in four corners [%]", of_scenario("four_corner"), {}, ".1f"),
-    Row("in four corners, what the exact optimum gives [%]", of_scenario("four_corner", "optimum"), {}, ".1f"),
+    Row(
+        "in four corners, what the exact optimum gives [%]",
+        of_scenario("four_corner", "optimum"),
+        {},
+        ".1f",
+    ),
     Row("in stationkeeping [%]", of_scenario("stationkeeping"), {}, ".1f"),
-    Row("in stationkeeping, what the exact optimum gives [%]", of_scenario("stationkeeping", "optimum"), {}, ".1f"),
-    Row("force missed where limits and rates allow [N]", over_requests("force_error_within_rates"), beside(5.0)),
+    Row(
+        "in stationkeeping, what the exact optimum gives [%]",
+        of_scenario("stationkeeping", "optimum"),
+        {},
+        ".1f",
+    ),
+    Row(
+        "force missed where limits and rates allow [N]",
+        over_requests("force_error_within_rates"),
+        beside(5.0),
+    ),
     Row("moment missed there [N m]", over_requests("moment_error_within_rates"), beside(10.0)),
     Row(
         "force before the safety layer, where limits and rates allow [N]",
@@ -154,12 +172,19 @@ OPEN_LOOP = (
     Row("force missed where limits allow [N]", over_requests("force_error")),
     Row("moment missed there [N m]", over_requests("moment_error")),
     Row("time, median [us]", microseconds(0), {OPTIMAL: 60.0, OURS: 200.0, PAPER_V: 100.0}),
-    Row("time, 99th percentile [us]", microseconds(1), {OPTIMAL: 150.0, OURS: 500.0, PAPER_V: 200.0}),
+    Row(
+        "time, 99th percentile [us]", microseconds(1), {OPTIMAL: 150.0, OURS: 500.0, PAPER_V: 200.0}
+    ),
 )
 CLOSED_LOOP = (
     Row("steps with a violation, recorded requests and loops", broken, beside(0.0), ".0f", True),
     Row("the same, random and adversarial requests", broken_random, beside(0.0), ".0f", True),
-    Row("power against the generalised inverse, each in its loop [%]", against_base("loop"), {}, ".1f"),
+    Row(
+        "power against the generalised inverse, each in its loop [%]",
+        against_base("loop"),
+        {},
+        ".1f",
+    ),
     Row(
         "reversals of an azimuth's propeller in 10 min",
         in_stationkeeping("azimuth_reversals"),
@@ -168,7 +193,12 @@ CLOSED_LOOP = (
         True,
     ),
     Row("reversals of the tunnel in 10 min", in_stationkeeping("tunnel_reversals"), {}, ".1f"),
-    Row("distance from the reference, stationkeeping, rms [m]", in_stationkeeping("distance"), {}, ".2f"),
+    Row(
+        "distance from the reference, stationkeeping, rms [m]",
+        in_stationkeeping("distance"),
+        {},
+        ".2f",
+    ),
 )
 ROWS = CLOSED_LOOP[:2] + OPEN_LOOP + CLOSED_LOOP[2:]
 
@@ -210,7 +240,9 @@ def not_met(laws: dict[str, dict], rows: Sequence[Row]) -> list[str]:
         for law, one in laws.items():
             values = row.measure(one, laws)
             if values is not None and row.met(law, values) is False:
-                said.append(f"{row.what}, {law}: {_number(row, values)}, to reach {row.to_reach[law]:g}")
+                said.append(
+                    f"{row.what}, {law}: {_number(row, values)}, to reach {row.to_reach[law]:g}"
+                )
     return said
 
 

@@ -24,4 +24,6 @@ def test_limits_are_never_broken_and_the_table_is_printed():
         one["seconds"] = measuring.times(law, seeds)
     print("\n" + pages.page(found))
     for law in table.KEEPING:
-        assert table.broken(found[law], found) == [0] * 8 and table.broken_random(found[law], found) == [0]
+        assert table.broken(found[law], found) == [0] * 8 and table.broken_random(
+            found[law], found
+        ) == [0]

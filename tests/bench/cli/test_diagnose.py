@@ -13,7 +13,11 @@ def rounded_like(shown, found):
         return {key: rounded_like(shown.get(key), value) for key, value in found.items()}
     if isinstance(shown, list) and len(shown) == len(found):
         return [rounded_like(*pair) for pair in zip(shown, found, strict=True)]
-    return float(f"{found:.{len(f'{shown:g}'.replace('.', '').lstrip('0'))}g}") if isinstance(shown, float) else found
+    return (
+        float(f"{found:.{len(f'{shown:g}'.replace('.', '').lstrip('0'))}g}")
+        if isinstance(shown, float)
+        else found
+    )
 
 
 def test_the_page_of_the_docs_shows_the_answer_to_its_example(root, tmp_path, monkeypatch):

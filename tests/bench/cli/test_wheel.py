@@ -27,5 +27,7 @@ def test_quickstart_runs_word_for_word_with_everything_installed(fresh):
     said |= follow(others, folder, run)
     check_first(said)
     assert "2 passed" in said["pytest"]
-    assert all("PASS" in said[f"shipcosim run {name}"] for name in ("four_corner", "squall", "tern"))
+    assert all(
+        "PASS" in said[f"shipcosim run {name}"] for name in ("four_corner", "squall", "tern")
+    )
     assert seconds < FIRST_RESULT

@@ -72,7 +72,9 @@ class SimulatedCluster(Workers):
     def __init__(self, n: int, run: float, first: float, costs: Costs):
         self.n, self._run, self._costs = n, run, costs
         self.now, self.busy_here, self.busy_there, self.tasks = 0.0, 0.0, 0.0, 0
-        self._free = [(0.0, first) for _ in range(n)]  # when each worker is free, what it needs before it begins
+        self._free = [
+            (0.0, first) for _ in range(n)
+        ]  # when each worker is free, what it needs before it begins
         self._ends: list[tuple[float, int, Future]] = []
 
     def submit(self, runs):
@@ -136,7 +138,9 @@ def of_a_task(tasks: int = 500) -> float:
     from distributed import Client, LocalCluster
 
     with (
-        LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster,
+        LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+        ) as cluster,
         Client(cluster) as client,
     ):
         client.gather(client.map(abs, range(20), pure=False))
@@ -151,7 +155,9 @@ def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--workers", type=int, nargs="+", default=[100, 1000])
     arguments.add_argument("--run-times", type=float, nargs="+", default=[0.03, 0.1, 0.3, 1.0])
-    arguments.add_argument("--first", type=float, default=15.0, help="first run of a worker: it loads and compiles [s]")
+    arguments.add_argument(
+        "--first", type=float, default=15.0, help="first run of a worker: it loads and compiles [s]"
+    )
     given = arguments.parse_args()
     with TemporaryDirectory() as folder:
         path = Path(folder) / "million.toml"
@@ -160,22 +166,34 @@ def main() -> None:
         plan = plan_of(read_study(path))
         planned = time.process_time() - start
         costs = measured(plan, Path(folder) / "out")
-    print(f"{len(plan)} runs, laid out in {planned:.1f} s. Here: {1e6 * costs.sent:.0f} us a run sent, ", end="")
+    print(
+        f"{len(plan)} runs, laid out in {planned:.1f} s. Here: {1e6 * costs.sent:.0f} us a run sent, ",
+        end="",
+    )
     print(
         f"{1e6 * costs.row:.0f} us a row, {1e6 * costs.end:.0f} us a row at the end, {1e3 * costs.task:.1f} ms a task\n"
     )
-    print("| workers | a run takes | whole study | workers busy | dispatching busy | tasks | then the table |")
+    print(
+        "| workers | a run takes | whole study | workers busy | dispatching busy | tasks | then the table |"
+    )
     print("|---|---|---|---|---|---|---|")
     for n in given.workers:
         for run in given.run_times:
             simulated = SimulatedCluster(n, run, given.first, costs)
             running.wait = simulated.wait
-            done = sum(len(rows) for rows in running.rows_of(plan, iter(range(len(plan))), simulated))
+            done = sum(
+                len(rows) for rows in running.rows_of(plan, iter(range(len(plan))), simulated)
+            )
             assert done == len(plan)
-            shares = [simulated.busy_there / (n * simulated.now), simulated.busy_here / simulated.now]
+            shares = [
+                simulated.busy_there / (n * simulated.now),
+                simulated.busy_here / simulated.now,
+            ]
             shown = " | ".join(f"{100 * share:.0f} %" for share in shares)
             end = costs.end * len(plan)
-            print(f"| {n} | {run:g} s | {simulated.now / 60:.1f} min | {shown} | {simulated.tasks} | {end:.0f} s |")
+            print(
+                f"| {n} | {run:g} s | {simulated.now / 60:.1f} min | {shown} | {simulated.tasks} | {end:.0f} s |"
+            )
 
 
 if __name__ == "__main__":

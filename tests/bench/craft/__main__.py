@@ -8,7 +8,11 @@ from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[2]
 if __name__ == "__main__":
-    sys.path[:0] = [str(TESTS / "bench"), str(TESTS / "system"), str(TESTS)]  # craft; diagnose; ships
+    sys.path[:0] = [
+        str(TESTS / "bench"),
+        str(TESTS / "system"),
+        str(TESTS),
+    ]  # craft; diagnose; ships
 
 from craft import CHANGES, FAULTS, draw  # noqa: E402
 from craft.scoring import answer, counted, score  # noqa: E402

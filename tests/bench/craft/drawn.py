@@ -15,7 +15,16 @@ from shipcosim.series import make_table
 GRAVITY = 9.81
 STYLES = ("spin", "circles", "straight", "zig-zag", "mixed", "hold")
 FAULTS = ("none", "exchanged", "one reversed", "all reversed")
-CHANGES = ("none", "ratio", "one weak", "late", "dead band", "weak astern", "damping", "ratio and damping")
+CHANGES = (
+    "none",
+    "ratio",
+    "one weak",
+    "late",
+    "dead band",
+    "weak astern",
+    "damping",
+    "ratio and damping",
+)
 SIZES = {
     "ratio": (0.35, 0.5, 2.0),
     "one weak": (0.2, 0.4),
@@ -24,7 +33,13 @@ SIZES = {
     "weak astern": (0.2, 0.4),
     "damping": (0.35, 2.5),
 }
-BOTH = ((0.5, 0.25), (0.4, 0.5), (0.6, 2.0), (2.0, 3.0), (1.8, 0.4))  # thrust and damping over the model's
+BOTH = (
+    (0.5, 0.25),
+    (0.4, 0.5),
+    (0.6, 2.0),
+    (2.0, 3.0),
+    (1.8, 0.4),
+)  # thrust and damping over the model's
 
 
 @dataclass(frozen=True)
@@ -139,7 +154,11 @@ def _craft(rng):
     length = _within(rng, 0.8, 60.0)
     mass = _within(rng, 4.0, 20.0) * length**3
     inertia = mass * (rng.uniform(0.2, 0.32) * length) ** 2
-    added = (rng.uniform(0.02, 0.2) * mass, rng.uniform(0.4, 1.5) * mass, rng.uniform(0.2, 1.0) * inertia)
+    added = (
+        rng.uniform(0.02, 0.2) * mass,
+        rng.uniform(0.4, 1.5) * mass,
+        rng.uniform(0.2, 1.0) * inertia,
+    )
     scale = sqrt(GRAVITY / length)
     thrust, aside = _within(rng, 0.01, 0.4) * mass * GRAVITY, rng.uniform(0.08, 0.3) * length
     speed, turn = rng.uniform(0.2, 0.7) * sqrt(GRAVITY * length), _within(rng, 0.06, 0.4) * scale
@@ -155,15 +174,36 @@ def _craft(rng):
     names = {"left": -1.0, "right": 1.0}
     if rng.random() < 0.25:
         names = {f"{end}_{side}": y for end in ("fore", "aft") for side, y in names.items()}
-    astern, toe = rng.uniform(0.4, 1.0), rng.uniform(-0.5, 0.5) if len(names) > 2 else rng.uniform(-0.05, 0.05)
+    astern, toe = (
+        rng.uniform(0.4, 1.0),
+        rng.uniform(-0.5, 0.5) if len(names) > 2 else rng.uniform(-0.05, 0.05),
+    )
     each, most = thrust / len(names), speed / (rng.uniform(0.2, 0.7) * diameter)
     units, reach = {}, rng.uniform(0.3, 0.45) * length
     for name, side in names.items():
         x = reach if name.startswith("fore") else -reach
         ahead = each / most**2
-        units[name] = (x, side * aside, side * toe * (1.0 if x > 0 else -1.0), ahead, astern * ahead, diameter)
+        units[name] = (
+            x,
+            side * aside,
+            side * toe * (1.0 if x > 0 else -1.0),
+            ahead,
+            astern * ahead,
+            diameter,
+        )
     return Craft(
-        length, mass, inertia, added, damping, 1.0, (0.0,) * 4, units, rng.uniform(0.8, 1.5), most, speed, turn
+        length,
+        mass,
+        inertia,
+        added,
+        damping,
+        1.0,
+        (0.0,) * 4,
+        units,
+        rng.uniform(0.8, 1.5),
+        most,
+        speed,
+        turn,
     )
 
 
@@ -188,7 +228,13 @@ def _real(craft, rng, rough):
         for name, (x, y, toe, ahead, astern, diameter) in craft.thrusters.items()
     }
     power = 1.0 + 0.5 * rough * rng.uniform(-1.0, 1.0)
-    own = {"damping": damping, "coupled": coupled, "inertia": inertia, "added": added, "power": power}
+    own = {
+        "damping": damping,
+        "coupled": coupled,
+        "inertia": inertia,
+        "added": added,
+        "power": power,
+    }
     return replace(craft, thrusters=units, advance=craft.advance * off(0.5), **own)
 
 
@@ -203,11 +249,31 @@ def _model(craft):
     hull, unit = model.parts["hull"], model.parts["left"]
     (X_u, X_uu), (Y_v, across), (N_r, N_rr) = craft.damping
     draught = 0.06 * craft.length
-    numbers = {"mass": craft.mass, "inertia_yaw": craft.inertia, "length": craft.length, "draught": draught}
-    numbers |= {"breadth": 0.35 * craft.length, "A26": 0.0, "A62": 0.0, "lift": 0.0, "N_modrr": -N_rr}
+    numbers = {
+        "mass": craft.mass,
+        "inertia_yaw": craft.inertia,
+        "length": craft.length,
+        "draught": draught,
+    }
+    numbers |= {
+        "breadth": 0.35 * craft.length,
+        "A26": 0.0,
+        "A62": 0.0,
+        "lift": 0.0,
+        "N_modrr": -N_rr,
+    }
     numbers |= dict(zip(("A11", "A22", "A66"), craft.added, strict=True))
-    numbers |= {"X_u": -X_u, "X_uu": -X_uu, "Y_v": -Y_v, "N_r": -N_r, "cross_flow_drag": 0.0, "Y_modvv": -across}
-    parts = {name: part for name, part in model.parts.items() if not name.startswith(("left", "right"))}
+    numbers |= {
+        "X_u": -X_u,
+        "X_uu": -X_uu,
+        "Y_v": -Y_v,
+        "N_r": -N_r,
+        "cross_flow_drag": 0.0,
+        "Y_modvv": -across,
+    }
+    parts = {
+        name: part for name, part in model.parts.items() if not name.startswith(("left", "right"))
+    }
     parts["hull"] = replace(hull, **numbers)
     fixed, speed = {}, 60.0 * craft.most
     for name, (x, y, toe, ahead, astern, diameter) in craft.thrusters.items():
@@ -217,7 +283,11 @@ def _model(craft):
         parts[name] = replace(made, thrust_loss=loss, reverse_loss=astern_loss)
         parts[form_of(name)] = model.parts[form_of("left")]
         fixed[name] = toe
-    wanted = {path: size for path, size in model.tolerances.items() if not path.startswith(("left", "right"))}
+    wanted = {
+        path: size
+        for path, size in model.tolerances.items()
+        if not path.startswith(("left", "right"))
+    }
     return replace(model, parts=parts, fixed=fixed, neighbours={}, tolerances=wanted)
 
 
@@ -244,7 +314,9 @@ def _log(craft, rng, style, change, size, one, damping):
         ("sway", v + level[2] * craft.speed * noise[4], "m/s", ""),
         ("yaw_rate", np.degrees(r + level[3] * craft.turn * noise[5]), "deg/s", ""),
     ]
-    columns += [(f"{name}_rpm", 60.0 * told[rows, i], "rpm", "") for i, name in enumerate(craft.thrusters)]
+    columns += [
+        (f"{name}_rpm", 60.0 * told[rows, i], "rpm", "") for i, name in enumerate(craft.thrusters)
+    ]
     return make_table(time[rows], columns)
 
 
@@ -267,14 +339,24 @@ def _orders(rng, style, time, craft):
             orders[:, rows] = _orders(rng, kind, time, craft)[:, rows]
         return orders
     if style == "spin":
-        turn = rng.choice([-1.0, 1.0]) * rng.uniform(0.4, 1.0) * (1.0 + 0.3 * _levels(rng, time, hold))
+        turn = (
+            rng.choice([-1.0, 1.0]) * rng.uniform(0.4, 1.0) * (1.0 + 0.3 * _levels(rng, time, hold))
+        )
         ahead = np.full(n, rng.uniform(-0.05, 0.05))
     elif style == "circles":
-        turn, ahead = _levels(rng, time, 4.0 * hold, -0.6, 0.6), _levels(rng, time, 3.0 * hold, 0.2, 0.9)
+        turn, ahead = (
+            _levels(rng, time, 4.0 * hold, -0.6, 0.6),
+            _levels(rng, time, 3.0 * hold, 0.2, 0.9),
+        )
     elif style == "straight":
-        heading, ahead = np.full(n, rng.uniform(0.0, 6.28)), _levels(rng, time, 2.0 * hold, 0.1, 1.0)
+        heading, ahead = (
+            np.full(n, rng.uniform(0.0, 6.28)),
+            _levels(rng, time, 2.0 * hold, 0.1, 1.0),
+        )
     elif style == "zig-zag":
-        heading = rng.uniform(0.0, 6.28) + np.where((time / hold).astype(int) % 2, -1.0, 1.0) * rng.uniform(0.2, 0.7)
+        heading = rng.uniform(0.0, 6.28) + np.where(
+            (time / hold).astype(int) % 2, -1.0, 1.0
+        ) * rng.uniform(0.2, 0.7)
         ahead = np.full(n, rng.uniform(0.3, 0.9))
     else:
         ahead = np.full(n, np.nan)
@@ -297,10 +379,17 @@ def _sailed(craft, orders, weather, h, change):
     """Motion, (n, 6) array, and what the thrusters are told, (n, k) array [rev/s], step by step."""
     what, size, one, damped = change
     names, units = list(craft.thrusters), list(craft.thrusters.values())
-    factor = [size if what.startswith("ratio") or (what == "one weak" and name == one) else 1.0 for name in names]
+    factor = [
+        size if what.startswith("ratio") or (what == "one weak" and name == one) else 1.0
+        for name in names
+    ]
     delay = int(size * craft.unit / h) if what == "late" else 0
     dead = size * craft.most if what == "dead band" else 0.0
-    m11, m22, m66 = craft.mass + craft.added[0], craft.mass + craft.added[1], craft.inertia + craft.added[2]
+    m11, m22, m66 = (
+        craft.mass + craft.added[0],
+        craft.mass + craft.added[1],
+        craft.inertia + craft.added[2],
+    )
     (d1, d2), (e1, e2), (f1, f2) = craft.damping
     c1, c2, c3, c4 = craft.coupled
     path, told = np.zeros((orders.shape[1], 6)), np.zeros((orders.shape[1], len(names)))
@@ -329,13 +418,22 @@ def _sailed(craft, orders, weather, h, change):
             if what == "weak astern" and n < 0.0:
                 ka = size * ka
             force = factor[i] * (
-                (kf if n > 0.0 else ka) * n * abs(n) - kf * abs(n) * inflow / (craft.advance * diameter)
+                (kf if n > 0.0 else ka) * n * abs(n)
+                - kf * abs(n) * inflow / (craft.advance * diameter)
             )
             X, Y, N = X + ct * force, Y + st * force, N + (px * st - py * ct) * force
         U, V, R = abs(u) ** craft.power, abs(v) ** craft.power, abs(r) ** craft.power
         X -= damped * (d1 * u + d2 * U * u * craft.speed ** (1.0 - craft.power))
-        Y -= damped * (e1 * v + e2 * V * v * craft.speed ** (1.0 - craft.power)) + c1 * abs(u) * v + c3 * u * r
-        N -= damped * (f1 * r + f2 * R * r * craft.turn ** (1.0 - craft.power)) + c2 * abs(u) * r + c4 * u * v
+        Y -= (
+            damped * (e1 * v + e2 * V * v * craft.speed ** (1.0 - craft.power))
+            + c1 * abs(u) * v
+            + c3 * u * r
+        )
+        N -= (
+            damped * (f1 * r + f2 * R * r * craft.turn ** (1.0 - craft.power))
+            + c2 * abs(u) * r
+            + c4 * u * v
+        )
         u_dot = (X + m22 * v * r) / m11
         v_dot = (Y - m11 * u * r) / m22
         r_dot = (N - (m22 - m11) * u * v) / m66
@@ -350,7 +448,9 @@ def _relabelled(log, fault, one):
     roles = [str(name) for name in log if str(name).endswith("_rpm")]
     if fault == "exchanged":
         pairs = [(role, role.replace("left", "right")) for role in roles if "left" in role]
-        left, right = next((pair for pair in pairs if one.replace("right", "left") in pair[0]), pairs[0])
+        left, right = next(
+            (pair for pair in pairs if one.replace("right", "left") in pair[0]), pairs[0]
+        )
         return log.assign({left: log[right].copy(), right: log[left].copy()})
     if fault == "one reversed":
         return log.assign({f"{one}_rpm": -log[f"{one}_rpm"]})

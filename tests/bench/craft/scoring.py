@@ -22,11 +22,18 @@ def score(drawn, found):
     comparison = found.comparison
     labels = sorted((fault.cause, *fault.channels) for fault in found.faults)
     ratio = [finding.parameters["ratio"].estimate for finding in comparison.findings]
-    is_open = comparison.labels is not None and comparison.labels.is_wrong and not comparison.labels.is_sure
+    is_open = (
+        comparison.labels is not None
+        and comparison.labels.is_wrong
+        and not comparison.labels.is_sure
+    )
     row = {"style": drawn.style, "fault": drawn.fault, "change": drawn.change, "size": drawn.size}
     row |= {"length": round(drawn.craft.length, 1), "labels": labels, "ratio": ratio}
     row |= {"said": [one.what for one in comparison.discrepancies]}
-    return row | {"of labels": _of_labels(drawn, labels, is_open), "of ratio": _of_ratio(drawn, ratio)}
+    return row | {
+        "of labels": _of_labels(drawn, labels, is_open),
+        "of ratio": _of_ratio(drawn, ratio),
+    }
 
 
 def _of_labels(drawn, labels, is_open):
@@ -57,5 +64,7 @@ def counted(rows):
     for hidden in dict.fromkeys((row["fault"], row["change"]) for row in rows):
         own = [row for row in rows if (row["fault"], row["change"]) == hidden]
         counts = (dict(Counter(row[of] for row in own)) for of in ("of labels", "of ratio"))
-        lines.append(f"{hidden[0]}, {hidden[1]}: {len(own)} logs; labels %s; ratio %s" % tuple(counts))
+        lines.append(
+            f"{hidden[0]}, {hidden[1]}: {len(own)} logs; labels %s; ratio %s" % tuple(counts)
+        )
     return "\n".join(lines)

@@ -15,16 +15,23 @@ from dead_reckoning import measuring, pages  # noqa: E402
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
-        "--seeds", type=_range, default=range(300, 348), help="FROM:TO of the worlds; 8100:8148 to report"
+        "--seeds",
+        type=_range,
+        default=range(300, 348),
+        help="FROM:TO of the worlds; 8100:8148 to report",
     )
-    parser.add_argument("--write", action="store_true", help="docs/generated/dead-reckoning.md and .json too")
+    parser.add_argument(
+        "--write", action="store_true", help="docs/generated/dead-reckoning.md and .json too"
+    )
     options = parser.parse_args(arguments)
     found = measuring.measured(options.seeds)
     text = pages.page(found)
     print(text)
     if options.write:
         pages.PAGE.write_text(text, encoding="utf-8")
-        pages.PAGE.with_suffix(".json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+        pages.PAGE.with_suffix(".json").write_text(
+            json.dumps(found, indent=1) + "\n", encoding="utf-8"
+        )
 
 
 def _range(text):

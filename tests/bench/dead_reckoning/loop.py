@@ -37,8 +37,14 @@ def osv(kind, component=""):
     """Parameters of the true ship: those of her files, changed as `worlds.SHIP` and `worlds.SENSORS` say."""
     made, changes = parameters(kind, "osv", component), worlds.SHIP | worlds.SENSORS
     component = component or {"SensorParameters": "sensors"}.get(kind.__name__, "vessel")
-    given = {name.partition(".")[2]: one for name, one in changes.items() if name.startswith(f"{component}.")}
-    return replace(made, **{name: _plain(one) for name, one in given.items() if hasattr(made, name)})
+    given = {
+        name.partition(".")[2]: one
+        for name, one in changes.items()
+        if name.startswith(f"{component}.")
+    }
+    return replace(
+        made, **{name: _plain(one) for name, one in given.items() if hasattr(made, name)}
+    )
 
 
 def _plain(value):
@@ -62,7 +68,10 @@ class Loop:
     def __init__(self, given, laws, rides_on):
         zero = np.zeros(len(given))
         self.laws, self.rides_on = laws, rides_on
-        self.hull, self.table = osv(HullParameters), drift_table(osv(vessel.DriftParameters).drift_table)
+        self.hull, self.table = (
+            osv(HullParameters),
+            drift_table(osv(vessel.DriftParameters).drift_table),
+        )
         self.wind, self.mast = osv(WindParameters), osv(MastParameters)
         self.pid_law = parameters(filtered_pid.FilteredPidParameters, "osv")
         self.units = [osv(mapped.MapParameters, name) for name in worlds.UNITS]
@@ -74,18 +83,27 @@ class Loop:
         self.instruments = osv(sensors.SensorParameters)
         self.instruments = replace(self.instruments, seed=np.array([world.seed for world in given]))
         failures = self._failures(False)
-        self.sensors = sensors.start(0.0, self._truth(), failures, parameters=self.instruments, mast=self.mast)
+        self.sensors = sensors.start(
+            0.0, self._truth(), failures, parameters=self.instruments, mast=self.mast
+        )
         self.commands = [zero for _ in self.units]
-        self.loads = [mapped.mapped_loads(zero, zero, zero, zero, thruster=unit)[2:] for unit in self.units]
+        self.loads = [
+            mapped.mapped_loads(zero, zero, zero, zero, thruster=unit)[2:] for unit in self.units
+        ]
         self.taken = 1
-        self.reckoned = {name: law.start(self._measured(), design=design) for name, (law, design) in laws.items()}
+        self.reckoned = {
+            name: law.start(self._measured(), design=design) for name, (law, design) in laws.items()
+        }
         self._shown(self._measured(), 0.0)
         self.pid = filtered_pid.at_rest(*self._fed())
         self.allocated = fixed_angles.at_rest((zero, zero, zero), parameters=self.allocation)
 
     def _draw(self, given):
         """Weather and biases of the worlds."""
-        column = {name: np.array([getattr(world, name) for world in given]) for name in given[0].__dataclass_fields__}
+        column = {
+            name: np.array([getattr(world, name) for world in given])
+            for name in given[0].__dataclass_fields__
+        }
         speed, towards = column["wind_speed"], column["wind_from"]
         turn = abs((towards[:, 1] - towards[:, 0] + np.pi) % (2.0 * np.pi) - np.pi)
         self.weather = replace(
@@ -108,7 +126,13 @@ class Loop:
         box = dict(length=self.hull.length, breadth=self.hull.breadth, draught=self.hull.draught)
         drift, moved = wave_response(t, *motion[:5], self.sea, self.table, **box)
         wind = apparent_wind(motion.psi, motion.u, motion.v, *self.air)
-        return Ship(motion, drift, moved, wind, vessel.through_water(motion.psi, motion.u, motion.v, *self.current))
+        return Ship(
+            motion,
+            drift,
+            moved,
+            wind,
+            vessel.through_water(motion.psi, motion.u, motion.v, *self.current),
+        )
 
     def _truth(self):
         both = zip(self.ship.motion, self.ship.waves, strict=True)
@@ -116,8 +140,13 @@ class Loop:
 
     def _failures(self, lost):
         first = sensors.ReferenceFailure(lost=lost, north=self.bias[0], east=self.bias[1])
-        healthy, compass = sensors.SensorFailures(), sensors.CompassFailure(offset=self.compass_error)
-        return sensors.SensorFailures((first, *healthy.positions[1:]), (compass, healthy.compasses[1]))
+        healthy, compass = (
+            sensors.SensorFailures(),
+            sensors.CompassFailure(offset=self.compass_error),
+        )
+        return sensors.SensorFailures(
+            (first, *healthy.positions[1:]), (compass, healthy.compasses[1])
+        )
 
     def _measured(self):
         given = self.sensors.telegrams
@@ -127,7 +156,11 @@ class Loop:
 
     def _shown(self, measured, t):
         """Place that the controller is given, at t."""
-        state, since, works = self.reckoned[self.rides_on], t - (self.taken - 1.0), measured.valid > 0.5
+        state, since, works = (
+            self.reckoned[self.rides_on],
+            t - (self.taken - 1.0),
+            measured.valid > 0.5,
+        )
         north, east = to_ned(measured.psi, state.u, state.v)
         self.x_hat = np.where(works, measured.x, state.x + since * north)
         self.y_hat = np.where(works, measured.y, state.y + since * east)
@@ -139,8 +172,18 @@ class Loop:
         """All components from t to t + H."""
         h, motion = H, self.ship.motion
         means = weather.step(h, self.means, *self.setpoints, parameters=self.weather)
-        loads = [wind_loads(*apparent_wind(*motion[2:5], *self.air), wind=self.wind), self.ship.drift, *self.loads]
-        moved = vessel.step(motion, *(sum(one) for one in zip(*loads, strict=True)), *self.current, h, hull=self.hull)
+        loads = [
+            wind_loads(*apparent_wind(*motion[2:5], *self.air), wind=self.wind),
+            self.ship.drift,
+            *self.loads,
+        ]
+        moved = vessel.step(
+            motion,
+            *(sum(one) for one in zip(*loads, strict=True)),
+            *self.current,
+            h,
+            hull=self.hull,
+        )
         ship = self._seen(t + h, moved)
         measured, fed, flow = self._measured(), self._fed(), (*self.ship.water, motion.r)
         allocated = fixed_angles.step(
@@ -165,9 +208,20 @@ class Loop:
             }
         self.pid = filtered_pid.step(self.pid, fed, STILL, h, parameters=self.pid_law)
         self.sensors = sensors.step(
-            t, self.sensors, self._truth(), self._failures(lost), parameters=self.instruments, mast=self.mast
+            t,
+            self.sensors,
+            self._truth(),
+            self._failures(lost),
+            parameters=self.instruments,
+            mast=self.mast,
         )
-        self.ship, self.allocated, self.means, self.commands, self.loads = ship, allocated, means, commands, thrusts
+        self.ship, self.allocated, self.means, self.commands, self.loads = (
+            ship,
+            allocated,
+            means,
+            commands,
+            thrusts,
+        )
         self._shown(measured, t + h)
         self.air, self.current = self._air(t + h), weather.water_velocity(means)
 
@@ -177,11 +231,24 @@ class Loop:
         found |= {f"command_{k}": one for k, one in enumerate(found.pop("commands"), 1)}
         second = self.sensors.telegrams.positions[1]
         found |= {f"asked_{k}": one for k, one in enumerate(self.allocated.thrusts, 1)}
-        found |= {"second_x": second.x, "second_y": second.y, "x_hat": self.x_hat, "y_hat": self.y_hat}
+        found |= {
+            "second_x": second.x,
+            "second_y": second.y,
+            "x_hat": self.x_hat,
+            "y_hat": self.y_hat,
+        }
         ship = self.ship
         state = self.reckoned[self.rides_on]
-        found |= {"lost_for": state.lost_for, "sea": state.sea, "reckoned_x": state.x, "reckoned_y": state.y}
-        return found | {"true_x": ship.motion.x + ship.waves.x, "true_y": ship.motion.y + ship.waves.y}
+        found |= {
+            "lost_for": state.lost_for,
+            "sea": state.sea,
+            "reckoned_x": state.x,
+            "reckoned_y": state.y,
+        }
+        return found | {
+            "true_x": ship.motion.x + ship.waves.x,
+            "true_y": ship.motion.y + ship.waves.y,
+        }
 
     def run(self, first, last, losses=()):
         """From one second to another: a record with a sample a second, the last one included.
@@ -201,8 +268,16 @@ class Loop:
                 self.step(k * H, any(lost <= k * H < found for lost, found in losses))
         zero = 0.0 * rows[0]["x"]
         found = {name: np.stack([row[name] + zero for row in rows], -1) for name in rows[0]}
-        reckoned = {name: found[name] for name in ("x_hat", "y_hat", "lost_for", "sea", "reckoned_x", "reckoned_y")}
-        return Record({name: found[name] for name in worlds.MEASURED}, found["true_x"], found["true_y"], reckoned)
+        reckoned = {
+            name: found[name]
+            for name in ("x_hat", "y_hat", "lost_for", "sea", "reckoned_x", "reckoned_y")
+        }
+        return Record(
+            {name: found[name] for name in worlds.MEASURED},
+            found["true_x"],
+            found["true_y"],
+            reckoned,
+        )
 
     def fork(self, rides_on):
         """The same from here on with another law in the loop."""

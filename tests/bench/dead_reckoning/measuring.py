@@ -27,7 +27,10 @@ def laws():
         arrays = read_arrays(WEIGHTS / f"{name}.npz")
         law = motion_filter if "bow" in arrays else velocity_network
         found[name] = law, law.design(arrays)
-    return found | {"kalman": (rivals.Kalman(), None), "constant-velocity": (rivals.ConstantVelocity(), None)}
+    return found | {
+        "kalman": (rivals.Kalman(), None),
+        "constant-velocity": (rivals.ConstantVelocity(), None),
+    }
 
 
 def measured(seeds, tell=print):
@@ -54,27 +57,36 @@ def measured(seeds, tell=print):
     }
     for name in every:
         record = loop.fork(name).run(LOST, FOUND, ((LOST, FOUND),))
-        error = np.hypot(record.reckoned["x_hat"] - record.x, record.reckoned["y_hat"] - record.y)[:, 1:]
+        error = np.hypot(record.reckoned["x_hat"] - record.x, record.reckoned["y_hat"] - record.y)[
+            :, 1:
+        ]
         found["rides"][name] = _rounded(error.mean(-1))
         tell(f"{name} in the loop: done")
         if name == OURS or "paper" in name:
             found.setdefault("regions", {})[name] = _regions(name, record, error)
         if name == OURS:
             found["offset"] = _rounded(np.hypot(record.x, record.y)[:, -1])
-    found["biased"] = {f"our filter, {bias} m/s": _masked(_biased(held, bias), *every[OURS]) for bias in BIASES}
+    found["biased"] = {
+        f"our filter, {bias} m/s": _masked(_biased(held, bias), *every[OURS]) for bias in BIASES
+    }
     law, design = every["paper-ii"]
     for bias in BIASES:
-        found["biased"][f"LSTM of paper II, {bias} m/s"] = _masked(held, law, _learned_with(bias, design))
+        found["biased"][f"LSTM of paper II, {bias} m/s"] = _masked(
+            held, law, _learned_with(bias, design)
+        )
     return json.loads(json.dumps(found))
 
 
 def _joined(before, after):
     """Two records, one after the other."""
     parts = (
-        {k: np.concatenate([a[k][:, :-1], b[k]], -1) for k in a} for a, b in zip(before[::3], after[::3], strict=True)
+        {k: np.concatenate([a[k][:, :-1], b[k]], -1) for k in a}
+        for a, b in zip(before[::3], after[::3], strict=True)
     )
     measured, reckoned = parts
-    x, y = (np.concatenate([a[:, :-1], b], -1) for a, b in zip(before[1:3], after[1:3], strict=True))
+    x, y = (
+        np.concatenate([a[:, :-1], b], -1) for a, b in zip(before[1:3], after[1:3], strict=True)
+    )
     return worlds.Record(measured, x, y, reckoned)
 
 
@@ -89,7 +101,9 @@ def _masked(record, law, design):
 
 def _biased(record, bias):
     """With a bias of GNSS's velocities, forward and to starboard each."""
-    return record._replace(measured=record.measured | {name: record.measured[name] + bias for name in "uv"})
+    return record._replace(
+        measured=record.measured | {name: record.measured[name] + bias for name in "uv"}
+    )
 
 
 def _learned_with(bias, design):
@@ -103,8 +117,13 @@ def _regions(name, record, error):
     region = region_of(read_arrays(WEIGHTS / f"{name}.npz"))
     radii = radius(record.reckoned["lost_for"], record.reckoned["sea"], region=region)[:, 1:]
     inside = error <= radii
-    rows = {str(h): [float(inside[:, h - 1].mean()), float(radii[:, h - 1].mean())] for h in HORIZONS}
-    rows |= {f"sea state {n + 1}": [float(inside[n::4].mean()), float(radii[n::4].mean())] for n in range(4)}
+    rows = {
+        str(h): [float(inside[:, h - 1].mean()), float(radii[:, h - 1].mean())] for h in HORIZONS
+    }
+    rows |= {
+        f"sea state {n + 1}": [float(inside[n::4].mean()), float(radii[n::4].mean())]
+        for n in range(4)
+    }
     return rows | {"all": [float(inside.mean()), float(radii.mean())]}
 
 

@@ -29,15 +29,26 @@ def page(found):
     first, last = found["seeds"][0], found["seeds"][-1]
     command = f"python tests/bench/dead_reckoning --seeds {first}:{last + 1} --write"
     about = f"{len(found['seeds'])} worlds, seeds {first} to {last}: twelve directions of each sea state. Mean distance"
-    lines = ["# Dead reckoning through a minute without GNSS", "", f"Made by `{command}`.", "", about]
+    lines = [
+        "# Dead reckoning through a minute without GNSS",
+        "",
+        f"Made by `{command}`.",
+        "",
+        about,
+    ]
     lines += [
         "of the reckoned from the true place over the minute [m], with the 95 % interval of that mean. What they mean"
     ]
     lines += ["is on the page of [dead reckoning](../dead-reckoning.md)."]
-    for title, key in (("DP rides on dead reckoning", "rides"), ("DP keeps GNSS, as in paper II", "held")):
+    for title, key in (
+        ("DP rides on dead reckoning", "rides"),
+        ("DP keeps GNSS, as in paper II", "held"),
+    ):
         lines += ["", f"## {title}", "", f"| | {' | '.join(STATES)} |", "|---" * 5 + "|"]
         for name, about in NAMES.items():
-            lines.append(f"| {about} | {' | '.join(_cell(found, found[key][name], state) for state in range(4))} |")
+            lines.append(
+                f"| {about} | {' | '.join(_cell(found, found[key][name], state) for state in range(4))} |"
+            )
     return "\n".join(lines + _regions(found) + _biased(found)) + "\n"
 
 
@@ -67,10 +78,18 @@ def _regions(found):
 
 
 def _biased(found):
-    about = (
-        "Forward and to starboard each, DP keeps GNSS. Our filter meets it after training; the LSTM learned from it."
-    )
-    lines = ["", "## A bias of the velocities by GNSS", "", about, "", f"| | {' | '.join(STATES)} |", "|---" * 5 + "|"]
+    about = "Forward and to starboard each, DP keeps GNSS. Our filter meets it after training; the LSTM learned from it."
+    lines = [
+        "",
+        "## A bias of the velocities by GNSS",
+        "",
+        about,
+        "",
+        f"| | {' | '.join(STATES)} |",
+        "|---" * 5 + "|",
+    ]
     for name, values in found["biased"].items():
-        lines.append(f"| {name} | {' | '.join(_cell(found, values, state) for state in range(4))} |")
+        lines.append(
+            f"| {name} | {' | '.join(_cell(found, values, state) for state in range(4))} |"
+        )
     return lines

@@ -20,7 +20,14 @@ R = np.diag([0.7, 0.7, 0.2])
 Q = np.diag([0.1, 0.1, 0.1, 1e6, 1e6, 1e6, *(0.1 * np.diag(R))])
 """Paper II, eqs. (8) to (11). The order of Q is read as Fossen's: waves, bias, velocity."""
 WAVE_FREQUENCY, WAVE_DAMPING = 2.0 * np.pi / 8.0, 0.1  # rad/s, 1; not printed
-PLACES = [(37.0, 0.0, 1), (35.0, 0.0, 1), (-31.0, 0.0, 1), (-33.0, 0.0, 1), (-38.0, -6.0, 0), (-38.0, 6.0, 0)]
+PLACES = [
+    (37.0, 0.0, 1),
+    (35.0, 0.0, 1),
+    (-31.0, 0.0, 1),
+    (-33.0, 0.0, 1),
+    (-38.0, -6.0, 0),
+    (-38.0, 6.0, 0),
+]
 
 
 class State(NamedTuple):
@@ -49,7 +56,10 @@ class Kalman:
 
     def __init__(self):
         self.slopes = [self._slope(name) for name in worlds.UNITS]
-        self.wind, self.mast = parameters(WindParameters, "osv"), parameters(MastParameters, "osv", "sensors")
+        self.wind, self.mast = (
+            parameters(WindParameters, "osv"),
+            parameters(MastParameters, "osv", "sensors"),
+        )
         self.F, self.B, self.K = _discrete(1.0)
 
     def _slope(self, name):
@@ -60,7 +70,11 @@ class Kalman:
 
     def start(self, measured, *, design=None):
         kept = np.zeros((15, *np.shape(measured.x)))
-        kept[6:9] = measured.x, measured.y, measured.psi  # turned by the heading, which starts at some 0
+        kept[6:9] = (
+            measured.x,
+            measured.y,
+            measured.psi,
+        )  # turned by the heading, which starts at some 0
         zero = 0.0 * measured.x
         return State(measured.x, measured.y, zero, zero, zero, zero, (kept, measured.psi))
 
@@ -82,10 +96,16 @@ class Kalman:
 
     def _load(self, state, measured):
         total = 0.0
-        for slope, command, (x, y, side) in zip(self.slopes, measured.commands, PLACES, strict=True):
+        for slope, command, (x, y, side) in zip(
+            self.slopes, measured.commands, PLACES, strict=True
+        ):
             thrust = slope * command
-            total = total + np.array([(1 - side) * thrust, side * thrust, x * side * thrust - (1 - side) * y * thrust])
-        air = wind_from_mast(measured.wind_speed, measured.wind_from, state.u, state.v, 0.0 * state.u, mast=self.mast)
+            total = total + np.array(
+                [(1 - side) * thrust, side * thrust, x * side * thrust - (1 - side) * y * thrust]
+            )
+        air = wind_from_mast(
+            measured.wind_speed, measured.wind_from, state.u, state.v, 0.0 * state.u, mast=self.mast
+        )
         return total + np.array(wind_loads(*air, wind=self.wind))
 
 
@@ -93,8 +113,15 @@ def _discrete(h):
     """Transition, input and gain of the steady state."""
     A, B, E = np.zeros((15, 15)), np.zeros((15, 3)), np.zeros((15, 9))
     A[0:3, 3:6] = A[6:9, 12:15] = np.eye(3)
-    A[3:6, 0:3], A[3:6, 3:6] = -(WAVE_FREQUENCY**2) * np.eye(3), -2.0 * WAVE_DAMPING * WAVE_FREQUENCY * np.eye(3)
-    A[12:15, 9:12], A[12:15, 12:15], B[12:15] = np.linalg.inv(M), -np.linalg.inv(M) @ D, np.linalg.inv(M)
+    A[3:6, 0:3], A[3:6, 3:6] = (
+        -(WAVE_FREQUENCY**2) * np.eye(3),
+        -2.0 * WAVE_DAMPING * WAVE_FREQUENCY * np.eye(3),
+    )
+    A[12:15, 9:12], A[12:15, 12:15], B[12:15] = (
+        np.linalg.inv(M),
+        -np.linalg.inv(M) @ D,
+        np.linalg.inv(M),
+    )
     E[3:6, 0:3], E[9:12, 3:6], E[12:15, 6:9] = np.eye(3), np.eye(3), np.linalg.inv(M)
     F, part, series = np.eye(15), np.eye(15), h * np.eye(15)
     for k in range(1, 20):

@@ -18,7 +18,9 @@ ROOT = Path(__file__).resolve().parents[3]
 MEASURED = ROOT.parent / "shared" / "measured"
 
 
-REAL = [(c, p) for c in FOLDERS if (MEASURED / FOLDERS[c]).is_dir() for p in files(MEASURED.parent, c)]
+REAL = [
+    (c, p) for c in FOLDERS if (MEASURED / FOLDERS[c]).is_dir() for p in files(MEASURED.parent, c)
+]
 
 
 CRAFT = [(201, "none", "damping"), (203, "exchanged", "none"), (205, "none", "one weak")]

@@ -23,11 +23,18 @@ def test_another_origin_of_time_changes_nothing(answer):
 
 
 def test_every_second_row_still_names_the_cause(answer):
-    agree(answer("azimuth_offset"), answer("azimuth_offset", "thinned", variants.thinned), same, 2.0)
+    agree(
+        answer("azimuth_offset"), answer("azimuth_offset", "thinned", variants.thinned), same, 2.0
+    )
 
 
 def test_rows_between_the_rows_still_name_the_cause(answer):
-    agree(answer("azimuth_offset"), answer("azimuth_offset", "thickened", variants.thickened), same, 2.0)
+    agree(
+        answer("azimuth_offset"),
+        answer("azimuth_offset", "thickened", variants.thickened),
+        same,
+        2.0,
+    )
 
 
 def test_mirroring_the_ship_mirrors_a_tow(answer):
@@ -39,4 +46,6 @@ def test_mirroring_the_ship_mirrors_a_turned_thruster(answer):
 
 
 def check_mirrored(cause, answer):
-    agree(answer(cause), answer(cause, "mirrored", variants.mirrored), variants.mirrored_finding, 0.5)
+    agree(
+        answer(cause), answer(cause, "mirrored", variants.mirrored), variants.mirrored_finding, 0.5
+    )

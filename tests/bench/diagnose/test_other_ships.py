@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from diagnose import ferry, usv
 from diagnose.test_other_ships import along, short_ferry
-from shipcosim.diagnose.inference.null_distribution import healthy_records
 
+from shipcosim.diagnose.explanation.null_distribution import healthy_records
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.pipeline import find_causes
@@ -13,7 +13,11 @@ from shipcosim.series import write_table
 
 HIDDEN = {
     "thrust_loss of fore_starboard": ({"fore_starboard.thrust_loss": 0.3}, {}, {"loss": 0.3}),
-    "azimuth_offset of aft_port": ({"aft_port.azimuth_offset": np.radians(8.0)}, {}, {"offset": 8.0}),
+    "azimuth_offset of aft_port": (
+        {"aft_port.azimuth_offset": np.radians(8.0)},
+        {},
+        {"offset": 8.0},
+    ),
     "current": (
         {"environment.current_speed": 0.25, "environment.current_to": -0.64},
         {},
@@ -34,8 +38,13 @@ def found_in(log, ship, tmp_path):
 @pytest.mark.parametrize("label", HIDDEN)
 def test_what_is_wrong_with_the_ferry_is_named(label, tmp_path):
     wrong, around, truth = HIDDEN[label]
-    diagnosis = found_in(ferry.log(ferry=ferry.structure(**wrong), seed=10, **around), ferry.structure, tmp_path)
-    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == ("named", [label])
+    diagnosis = found_in(
+        ferry.log(ferry=ferry.structure(**wrong), seed=10, **around), ferry.structure, tmp_path
+    )
+    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == (
+        "named",
+        [label],
+    )
     _holds(diagnosis.findings[0], truth)
 
 
@@ -85,13 +94,24 @@ def open_fault(why):
 @pytest.mark.parametrize("label", ABOARD)
 def test_what_is_wrong_with_the_usv_is_named(label, tmp_path):
     wrong, around, truth = ABOARD[label]
-    diagnosis = found_in(usv.log(usv=usv.structure(**wrong), seed=30, **around), usv.structure, tmp_path)
-    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == ("named", [label])
+    diagnosis = found_in(
+        usv.log(usv=usv.structure(**wrong), seed=30, **around), usv.structure, tmp_path
+    )
+    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == (
+        "named",
+        [label],
+    )
     _holds(diagnosis.findings[0], truth)
 
 
 @pytest.mark.parametrize(
-    "rate", [1.0, pytest.param(0.2, marks=open_fault("yaw inertia and lags lie beyond their tolerances: unknown"))]
+    "rate",
+    [
+        1.0,
+        pytest.param(
+            0.2, marks=open_fault("yaw inertia and lags lie beyond their tolerances: unknown")
+        ),
+    ],
 )
 def test_the_healthy_usv_is_consistent(rate, tmp_path):
     assert found_in(usv.log(seed=30, rate=rate), usv.structure, tmp_path).verdict == "consistent"

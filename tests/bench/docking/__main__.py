@@ -20,8 +20,14 @@ VARIANTS = ("kinetic", "paper-iii", "ours")
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--held-out", action="store_true", help="seeds 8300 to 8339, once; else those of the choices")
-    parser.add_argument("--write", action="store_true", help="docs/generated/docking.md and docking.json too")
+    parser.add_argument(
+        "--held-out",
+        action="store_true",
+        help="seeds 8300 to 8339, once; else those of the choices",
+    )
+    parser.add_argument(
+        "--write", action="store_true", help="docs/generated/docking.md and docking.json too"
+    )
     options = parser.parse_args(arguments)
     seeds = {"familiar": dockings.CHOICES}
     if options.held_out:
@@ -29,17 +35,27 @@ def main(arguments=None):
     every = [seed for some in seeds.values() for seed in some]
     with ThreadPoolExecutor(2) as pool:
         known = [record for record in pool.map(measuring.recorded, every) if record]
-    records = {kind: [record for record in known if record.seed in some] for kind, some in seeds.items()}
+    records = {
+        kind: [record for record in known if record.seed in some] for kind, some in seeds.items()
+    }
     model = measuring.ship()
     found = {kind: measuring.measure(some, model) for kind, some in records.items()}
     times = {variant: measuring.step_time(variant, known[0], model) for variant in VARIANTS}
     ended = {kind: [record.seed for record in some] for kind, some in records.items()}
-    text = pages.page(found, seeds, ended, times, f"python tests/bench/docking {' '.join(arguments or sys.argv[1:])}")
+    text = pages.page(
+        found,
+        seeds,
+        ended,
+        times,
+        f"python tests/bench/docking {' '.join(arguments or sys.argv[1:])}",
+    )
     print(text)
     if options.write:
         pages.PAGE.write_text(text, encoding="utf-8")
         drawn = measuring.track(known[0], model, ("kinetic", "ours"))
-        curves = {kind: {name: one["error"] for name, one in some.items()} for kind, some in found.items()}
+        curves = {
+            kind: {name: one["error"] for name, one in some.items()} for kind, some in found.items()
+        }
         numbers = {"error_m": curves, "track": drawn | {"seed": known[0].seed}}
         pages.NUMBERS.write_text(json.dumps(plain(numbers)) + "\n", encoding="utf-8")
 

@@ -33,7 +33,9 @@ def recorded(seed: int, folder: Path = FOLDER) -> Record | None:
     return pickle.loads(path.read_bytes())
 
 
-def measure(records: Sequence[Record], model: ShipModel, names: Sequence[str] = tuple(PREDICTORS)) -> dict:
+def measure(
+    records: Sequence[Record], model: ShipModel, names: Sequence[str] = tuple(PREDICTORS)
+) -> dict:
     """How far off predictions are from every second of dockings, by predictor.
 
     Returns
@@ -59,7 +61,10 @@ def _measured(name: str, replayed: Replay, model: ShipModel) -> dict[str, np.nda
     widths = _widths(name)
     if widths is not None:
         radii, halves = docking.regions(widths, predictions.own_record(predicted.places, replayed))
-        for key, missed, sizes in (("inside", position, radii), ("inside_heading", heading, halves)):
+        for key, missed, sizes in (
+            ("inside", position, radii),
+            ("inside_heading", heading, halves),
+        ):
             within = np.where(np.isfinite(missed), missed <= np.stack(sizes), np.nan)
             found[key] = np.nanmean(within, axis=-1).T
         found["radius"] = np.stack(radii).mean(axis=-1).T
@@ -69,7 +74,11 @@ def _measured(name: str, replayed: Replay, model: ShipModel) -> dict[str, np.nda
 def _widths(name):
     from docking.rivals import arrays
 
-    kept = {"kinetic": ("ours", "kinetic_widths"), "paper III": ("paper-iii", "widths"), "ours": ("ours", "widths")}
+    kept = {
+        "kinetic": ("ours", "kinetic_widths"),
+        "paper III": ("paper-iii", "widths"),
+        "ours": ("ours", "widths"),
+    }
     return arrays(kept[name][0])[kept[name][1]] if name in kept else None
 
 
@@ -96,7 +105,9 @@ def track(record: Record, model: ShipModel, names: Sequence[str]) -> dict:
     found = {"x": replayed.truth["x"][0, 0], "y": replayed.truth["y"][0, 0], "starts": list(starts)}
     for name in names:
         places = PREDICTORS[name](replayed, model).places
-        found[name] = [[[float(one[k][0, start]) for one in places] for k in (0, 1)] for start in starts]
+        found[name] = [
+            [[float(one[k][0, start]) for one in places] for k in (0, 1)] for start in starts
+        ]
     return found
 
 

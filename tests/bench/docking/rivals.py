@@ -45,7 +45,9 @@ def kalman_filter(replay: Replay, model: ShipModel) -> Predicted:
     x, y = _filtered(replay, 0), _filtered(replay, 1)
     velocity, places = to_ned(replay.start.psi, *replay.start[3:5]), []
     for second, motion in enumerate(ahead, 1):
-        held = FADES * (second - FADES * (1.0 - np.exp(-second / FADES)))  # what a bias that fades adds
+        held = FADES * (
+            second - FADES * (1.0 - np.exp(-second / FADES))
+        )  # what a bias that fades adds
         found = []
         for k, (place, speed, current, bias) in enumerate((x, y)):
             pushed = motion[k] - replay.start[k] - second * velocity[k]
@@ -59,7 +61,10 @@ def _filtered(replay, axis):
     ship = replay.aboard.ship
     place, velocity = ship[axis], to_ned(ship.psi, ship.u, ship.v)[axis]
     pushed = replay.kinetic[0]
-    told = to_ned(pushed.psi, pushed.u, pushed.v)[axis] - to_ned(replay.start.psi, *replay.start[3:5])[axis]
+    told = (
+        to_ned(pushed.psi, pushed.u, pushed.v)[axis]
+        - to_ned(replay.start.psi, *replay.start[3:5])[axis]
+    )
     keep = np.exp(-SAMPLE / FADES)
     F = np.array([[1, SAMPLE, SAMPLE, 0.5], [0, 1, 0, SAMPLE], [0, 0, 1, 0], [0, 0, 0, keep]])
     H = np.array([[1.0, 0, 0, 0], [0, 1, 1, 0]])
@@ -85,7 +90,10 @@ def own_load(replay: Replay, model: ShipModel) -> Predicted:
 
 def _straight(start: Motion, replay: Replay) -> Predicted:
     north, east = to_ned(start.psi, start.u, start.v)
-    places = [(start.x + h * north, start.y + h * east, wrap(start.psi + h * start.r)) for h in range(1, LONGEST + 1)]
+    places = [
+        (start.x + h * north, start.y + h * east, wrap(start.psi + h * start.r))
+        for h in range(1, LONGEST + 1)
+    ]
     return Predicted(places, np.zeros_like(start.x))
 
 

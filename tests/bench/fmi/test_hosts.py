@@ -16,7 +16,9 @@ def test_all_fmus_of_the_project_run_in_an_environment_with_only_fmpy_installed(
     fmus = build_stale(root)
     venv.create(tmp_path / "venv", with_pip=True)
     python = next(path for path in (tmp_path / "venv").glob("*/python*") if path.is_file())
-    installed = subprocess.run([python, "-m", "pip", "install", "-q", "fmpy"], capture_output=True, text=True)
+    installed = subprocess.run(
+        [python, "-m", "pip", "install", "-q", "fmpy"], capture_output=True, text=True
+    )
     if installed.returncode:
         pytest.skip(f"needs a package index: {installed.stderr[-200:]}")
     code = """

@@ -2,7 +2,16 @@
 
 import pytest
 from fuzz.survive import survive
-from fuzz.test_fuzz import IN_CI, NUMBER, SEED, TYPED, TYPED_AT_ONCE, TYPED_IN_CI, TYPED_NUMBER, shown
+from fuzz.test_fuzz import (
+    IN_CI,
+    NUMBER,
+    SEED,
+    TYPED,
+    TYPED_AT_ONCE,
+    TYPED_IN_CI,
+    TYPED_NUMBER,
+    shown,
+)
 
 
 @pytest.mark.timeout(3600)

@@ -21,13 +21,19 @@ def outcomes():
     """By variant, allocator and direction of wind and waves; one array of networks holds all variants."""
     found = {}
     for allocator in (1, 2):
-        learned = networks(allocator, [(recipe.cutoff, seed) for recipe in RECIPES.values() for seed in SEEDS])
+        learned = networks(
+            allocator, [(recipe.cutoff, seed) for recipe in RECIPES.values() for seed in SEEDS]
+        )
         for name, wind_from in (("north", 0.0), ("west", -0.5 * pi)):
             outcome = sailed(learned, allocator, wind_from)
             for number, variant in enumerate(RECIPES):
                 own = slice(number * len(SEEDS), (number + 1) * len(SEEDS))
-                found[variant, allocator, name] = one = Outcome(*(values[own] for values in outcome))
-                print(variant, allocator, name, held(one), one.broken.round(4), one.distance.round(1))
+                found[variant, allocator, name] = one = Outcome(
+                    *(values[own] for values in outcome)
+                )
+                print(
+                    variant, allocator, name, held(one), one.broken.round(4), one.distance.round(1)
+                )
     return found
 
 
@@ -41,7 +47,9 @@ def test_as_printed_half_or_fewer_hold_her_in_head_seas(outcomes):
 
 def test_without_small_singular_values_nearly_all_hold_her(outcomes):
     assert all(
-        held(outcomes["paper-i-cutoff", allocator, name]) >= 8 for allocator in (1, 2) for name in ("north", "west")
+        held(outcomes["paper-i-cutoff", allocator, name]) >= 8
+        for allocator in (1, 2)
+        for name in ("north", "west")
     )
 
 

@@ -13,7 +13,9 @@ def test_exercise_is_what_its_scenario_gives(root, tmp_path):
 
     from shipcosim.series import write_table
 
-    spec = importlib.util.spec_from_file_location("write_exercise", root / "docs" / "generators" / "write_exercise.py")
+    spec = importlib.util.spec_from_file_location(
+        "write_exercise", root / "docs" / "generators" / "write_exercise.py"
+    )
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     write_table(script.training_set(script.exercise()), tmp_path / "exercise.csv")

@@ -17,14 +17,22 @@ from mistakes.tables import table
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sources", nargs="+", choices=SOURCES, default=SOURCES)
-    parser.add_argument("--seeds", type=_range, default=range(100, 106), help="FROM:TO, logs of each source")
-    parser.add_argument("--single", action="store_true", help="every mistake alone in every log, not drawn ones")
-    parser.add_argument("--draws", type=int, default=4, help="drawn mistakes for each log, besides none")
+    parser.add_argument(
+        "--seeds", type=_range, default=range(100, 106), help="FROM:TO, logs of each source"
+    )
+    parser.add_argument(
+        "--single", action="store_true", help="every mistake alone in every log, not drawn ones"
+    )
+    parser.add_argument(
+        "--draws", type=int, default=4, help="drawn mistakes for each log, besides none"
+    )
     parser.add_argument("--among", nargs="+", help="mistakes, where not all")
     parser.add_argument("--into", type=Path, help="file for the answers, one JSON line each")
     options = parser.parse_args(arguments)
     start, found = time.monotonic(), []
-    for answer in answers(options.sources, options.seeds, options.single, options.draws, options.among):
+    for answer in answers(
+        options.sources, options.seeds, options.single, options.draws, options.among
+    ):
         found.append(answer)
         if answer.outcome != "right":
             print(*asdict(answer).values())

@@ -30,7 +30,9 @@ def boat(seed, style=None, step=None, minutes=None, noise=1.0):
     rate, speed, drift = _orders(rng, style, time)
     rate, speed = _late(rate, rng.uniform(0.4, 1.2)), _late(speed, rng.uniform(1.0, 3.0))
     heading = np.radians(rng.uniform(0.0, 360.0)) + np.cumsum(rate) * FINE
-    sway = -drift * rate * np.maximum(speed, 0.2) + 0.03 * _late(rng.normal(size=len(time)) / FINE**0.5, 4.0)
+    sway = -drift * rate * np.maximum(speed, 0.2) + 0.03 * _late(
+        rng.normal(size=len(time)) / FINE**0.5, 4.0
+    )
     velocity = (speed + 1j * sway) * np.exp(1j * heading)
     position = np.cumsum(velocity) * FINE
     apparent = (_wind(rng, time) + velocity) * np.exp(-1j * heading)
@@ -61,7 +63,11 @@ def _orders(rng, style, time):
         side = np.sign(levels[0, (time / (8.0 * hold)).astype(int)])
         return side * rng.uniform(0.15, 0.5), np.full(len(time), top), rng.uniform(0.1, 0.6)
     if style == "zig-zag":
-        return np.where(steps % 2, -1.0, 1.0) * rng.uniform(0.1, 0.4), np.full(len(time), top), rng.uniform(0.1, 0.6)
+        return (
+            np.where(steps % 2, -1.0, 1.0) * rng.uniform(0.1, 0.4),
+            np.full(len(time), top),
+            rng.uniform(0.1, 0.6),
+        )
     if style == "wander":
         return 0.4 * levels[0, steps], top * (0.6 + 0.4 * levels[1, steps]), rng.uniform(0.1, 0.6)
     return 0.2 * levels[0, steps], np.where(levels[1, steps] > 0.0, top, 0.0), rng.uniform(0.1, 0.6)
@@ -93,7 +99,9 @@ def _as_measured(log, rng, noise):
     for role in ("north", "east") if rng.random() < 0.3 else ():
         grain = 1e-5 * METRES_PER_DEGREE  # position written with five decimals of a degree
         log[role] = grain * np.round(log[role] / grain) if noise else log[role]
-    log["heading"], log["wind_from"] = (np.mod(log[role], 360.0) for role in ("heading", "wind_from"))
+    log["heading"], log["wind_from"] = (
+        np.mod(log[role], 360.0) for role in ("heading", "wind_from")
+    )
     if rng.random() < 0.5:
         log = {role: values for role, values in log.items() if not role.startswith("wind")}
     return log

@@ -39,12 +39,16 @@ class Mistake:
 
 
 def _clock(factor, said):
-    return Mistake(lambda log: {"time": factor * log["time"]}, "clock", ("time",), 1.0 / factor, said)
+    return Mistake(
+        lambda log: {"time": factor * log["time"]}, "clock", ("time",), 1.0 / factor, said
+    )
 
 
 def _unit(channels, factor, unit):
     said = f"{' and '.join(channels)} {'are' if len(channels) > 1 else 'is'} in {unit}"
-    return Mistake(lambda log: {role: factor * log[role] for role in channels}, "frame", channels, said=said)
+    return Mistake(
+        lambda log: {role: factor * log[role] for role in channels}, "frame", channels, said=said
+    )
 
 
 def _sign(role):
@@ -62,7 +66,9 @@ def _frame(make, channels, said):
 
 def _swap(one, other):
     said = f"{one} and {other} are swapped"
-    return Mistake(lambda log: {one: log[other], other: log[one]}, "channel_swap", (one, other), said=said)
+    return Mistake(
+        lambda log: {one: log[other], other: log[one]}, "channel_swap", (one, other), said=said
+    )
 
 
 def _heading_from_east(log):
@@ -78,7 +84,10 @@ TOWARDS_NORTH = "surge and sway are the velocity towards north and east"
 
 
 def _degrees(log):
-    return {"north": log["north"] / 111195.0 + 59.9, "east": log["east"] / 111195.0 / np.cos(np.radians(59.9)) + 10.7}
+    return {
+        "north": log["north"] / 111195.0 + 59.9,
+        "east": log["east"] / 111195.0 / np.cos(np.radians(59.9)) + 10.7,
+    }
 
 
 def _turned(log):
@@ -104,20 +113,26 @@ MISTAKES = {
     "rate in deg/min": _unit(("yaw_rate",), 60.0, "deg/min"),
     "position in km": _unit(POSITION, 1e-3, "km"),
     "position in ft": _unit(POSITION, 1.0 / 0.3048, "ft"),
-    "position in degrees": _frame(_degrees, POSITION, "north and east are degrees of latitude and longitude"),
+    "position in degrees": _frame(
+        _degrees, POSITION, "north and east are degrees of latitude and longitude"
+    ),
     "sign of surge": _sign("surge"),
     "sign of sway": _sign("sway"),
     "sign of rate": _sign("yaw_rate"),
     "sign of east": _sign("east"),
     "sign of north": _sign("north"),
     "heading counter-clockwise": _sign("heading"),
-    "heading from east": _frame(_heading_from_east, ("heading",), "heading is counted counter-clockwise from east"),
+    "heading from east": _frame(
+        _heading_from_east, ("heading",), "heading is counted counter-clockwise from east"
+    ),
     "north and east swapped": _swap("north", "east"),
     "surge and sway swapped": _swap("surge", "sway"),
     "velocity over earth": _frame(
         _velocity_over_earth, VELOCITY, "surge and sway are the velocity towards north and east"
     ),
-    "grid turned": _frame(_turned, POSITION, "north and east are turned against heading and velocities"),
+    "grid turned": _frame(
+        _turned, POSITION, "north and east are turned against heading and velocities"
+    ),
 }
 
 

@@ -52,12 +52,20 @@ def _simulated(kind, seed):
     """The log without noise and with it; the ship herself has sailed with noisy sensors."""
     setup = set_up(kind, seed, causes=0, minutes=MINUTES)
     record = run([setup, setup])[0]  # NumPy adds up a lone column in another order
-    quiet = {name: 0.0 * getattr(setup.noise, name) for name in ("slow", "loop", "log", "thrusters")}
+    quiet = {
+        name: 0.0 * getattr(setup.noise, name) for name in ("slow", "loop", "log", "thrusters")
+    }
     setups = replace(setup, noise=replace(setup.noise, **quiet)), setup
     logs = []
     for frame in (write(one, record).log for one in setups):
         log = {name.split(" [")[0]: frame[name].to_numpy(float) for name in frame}
-        logs.append({role: v for role, v in log.items() if not role.startswith(("port", "starboard", "tunnel"))})
+        logs.append(
+            {
+                role: v
+                for role, v in log.items()
+                if not role.startswith(("port", "starboard", "tunnel"))
+            }
+        )
     return logs
 
 

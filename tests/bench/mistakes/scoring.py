@@ -55,8 +55,14 @@ class Answer:
 def as_table(log, declared):
     """The log as a file would be read: with its units in the headers or without."""
     units = {role: role_of(role).unit if declared else "" for role in log}
-    columns = {role: ("time", values, {"units": units[role]}) for role, values in log.items() if role != "time"}
-    return read_log(xarray.Dataset(columns, {"time": ("time", log["time"], {"units": units["time"]})}))
+    columns = {
+        role: ("time", values, {"units": units[role]})
+        for role, values in log.items()
+        if role != "time"
+    }
+    return read_log(
+        xarray.Dataset(columns, {"time": ("time", log["time"], {"units": units["time"]})})
+    )
 
 
 def answered(log, source, seed, names, declared, hidden=()):
@@ -72,9 +78,12 @@ def answered(log, source, seed, names, declared, hidden=()):
     left_open = [finding for finding in found if getattr(finding, "alternatives", ())]
     hits = [next((m for m in expected if _is(finding, m)), None) for finding in sure]
     said = tuple(
-        (_words(finding), finding.probability, hit is not None) for finding, hit in zip(sure, hits, strict=True)
+        (_words(finding), finding.probability, hit is not None)
+        for finding, hit in zip(sure, hits, strict=True)
     )
-    open_words = tuple(f"{_words(finding)} / {' / '.join(finding.alternatives)}" for finding in left_open)
+    open_words = tuple(
+        f"{_words(finding)} / {' / '.join(finding.alternatives)}" for finding in left_open
+    )
     visible = [MISTAKES[name] for name in names if name not in hidden]
     outcome = _outcome(expected, visible, hits, left_open)
     if outcome == "right" and not _is_put_right(log, with_mistakes(log, names), sure, visible):
@@ -93,7 +102,9 @@ def _answered_after_question(refusal, log, source, seed, names, declared, hidden
         return Answer(source, seed, names, declared, "beside", (), (str(refusal),), tuple(hidden))
     # Once the user has given the unit that was asked for, this mistake is gone from the log.
     rest = answered(log, source, seed, remaining, declared, hidden)
-    outcome = {"right": "among", "not visible": "among", "silent": "part"}.get(rest.outcome, rest.outcome)
+    outcome = {"right": "among", "not visible": "among", "silent": "part"}.get(
+        rest.outcome, rest.outcome
+    )
     return replace(rest, mistakes=names, outcome=outcome, open=(reading, *rest.open))
 
 
@@ -102,7 +113,9 @@ def _outcome(expected, visible, hits, left_open):
         return "wrong"
     left = [mistake for mistake in expected if mistake not in hits]
     if left_open:
-        return "among" if all(_is_among(finding, left, visible) for finding in left_open) else "beside"
+        return (
+            "among" if all(_is_among(finding, left, visible) for finding in left_open) else "beside"
+        )
     if not any(mistake in left for mistake in visible):
         return "right" if hits or not expected else "not visible"
     return "part" if hits else "silent"
@@ -111,7 +124,9 @@ def _outcome(expected, visible, hits, left_open):
 def _is_put_right(log, wrong, found, visible):
     """Whether the channels that visible mistakes are in are, once put right, those of the right log."""
     clean = read_anew(wrong, found)
-    return all(_is_near(role, clean[role], log[role]) for mistake in visible for role in mistake.channels)
+    return all(
+        _is_near(role, clean[role], log[role]) for mistake in visible for role in mistake.channels
+    )
 
 
 def _is_near(role, clean, right):
@@ -124,7 +139,9 @@ def _is_near(role, clean, right):
         return np.median(np.abs(np.mod(clean - right + 180.0, 360.0) - 180.0)) < 3.0
     if not len(right):
         return True  # what rounding took is not used
-    off, size = (np.std(one - (np.mean(one) if role in POSITION else 0.0)) for one in (clean - right, right))
+    off, size = (
+        np.std(one - (np.mean(one) if role in POSITION else 0.0)) for one in (clean - right, right)
+    )
     return off < PUT_RIGHT * size
 
 
@@ -143,11 +160,17 @@ def _is_among(finding, left, visible):
 
 def _says_more(rest):
     """Whether there is more in the words of a reading than joints and the unit that was stated."""
-    return any(word in rest for word in (" has ", " have ", " is ", " are ", " must ", " pass ", " runs "))
+    return any(
+        word in rest for word in (" has ", " have ", " is ", " are ", " must ", " pass ", " runs ")
+    )
 
 
 def _is(finding, mistake):
-    if finding.cause != mistake.cause or set(finding.channels) != set(mistake.channels) or finding.segments:
+    if (
+        finding.cause != mistake.cause
+        or set(finding.channels) != set(mistake.channels)
+        or finding.segments
+    ):
         return False
     if mistake.rate is None:
         return True

@@ -7,12 +7,17 @@ OUTCOMES = ("right", "wrong", "among", "beside", "part", "silent", "not visible"
 
 def table(answers):
     """Outcomes by source and by number of mistakes, and how often what was said at a probability is right."""
-    lines = [f"{'':34}" + "".join(f"{name:>{max(8, len(name) + 1)}}" for name in OUTCOMES) + "   of"]
+    lines = [
+        f"{'':34}" + "".join(f"{name:>{max(8, len(name) + 1)}}" for name in OUTCOMES) + "   of"
+    ]
     for source in dict.fromkeys(answer.source for answer in answers):
         for count in (0, 1, 2):
             group = [a for a in answers if a.source == source and len(a.mistakes) == count]
             lines += [_line(f"{source}, {count} mistakes", group)] if group else []
-    lines += [_line(f"all, {count} mistakes", [a for a in answers if len(a.mistakes) == count]) for count in (0, 1, 2)]
+    lines += [
+        _line(f"all, {count} mistakes", [a for a in answers if len(a.mistakes) == count])
+        for count in (0, 1, 2)
+    ]
     names = dict.fromkeys(a.mistakes[0] for a in answers if len(a.mistakes) == 1)
     lines += [_line(name, [a for a in answers if a.mistakes == (name,)]) for name in sorted(names)]
     return "\n".join([*lines, *_calibration(answers)])
@@ -20,7 +25,11 @@ def table(answers):
 
 def _line(name, group):
     counts = {outcome: sum(answer.outcome == outcome for answer in group) for outcome in OUTCOMES}
-    return f"{name:34}" + "".join(f"{n:{max(8, len(o) + 1)}}" for o, n in counts.items()) + f"{len(group):5}"
+    return (
+        f"{name:34}"
+        + "".join(f"{n:{max(8, len(o) + 1)}}" for o, n in counts.items())
+        + f"{len(group):5}"
+    )
 
 
 def _calibration(answers):

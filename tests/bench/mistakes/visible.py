@@ -31,7 +31,11 @@ def is_visible(log, true, name):
 
 def _positions(*logs):
     rows = _known(logs, ("north", "east", "heading", "surge", "sway"))
-    return [] if rows is None else [_off({role: values[rows] for role, values in log.items()}) for log in logs]
+    return (
+        []
+        if rows is None
+        else [_off({role: values[rows] for role, values in log.items()}) for log in logs]
+    )
 
 
 def _off(log):
@@ -45,7 +49,10 @@ def _headings(*logs):
     if rows is None:
         return []
     turned = [np.degrees(np.unwrap(np.radians(log["heading"][rows]))) for log in logs]
-    return [turn - _way(log["time"][rows], log["yaw_rate"][rows]) for turn, log in zip(turned, logs, strict=True)]
+    return [
+        turn - _way(log["time"][rows], log["yaw_rate"][rows])
+        for turn, log in zip(turned, logs, strict=True)
+    ]
 
 
 def _known(logs, roles):

@@ -45,7 +45,10 @@ STARTS = {
 """When predictions are made: no new corner is told in the minute ahead. [s]"""
 WANTED = {
     **{name: f"reference.{name}" for name in ("x_d", "y_d", "psi_d", "x_d_dot", "y_d_dot", "r_d")},
-    **{name: f"reference.{name}" for name in ("x_d_ddot", "y_d_ddot", "r_d_dot", "x_goal", "y_goal", "psi_goal")},
+    **{
+        name: f"reference.{name}"
+        for name in ("x_d_ddot", "y_d_ddot", "r_d_dot", "x_goal", "y_goal", "psi_goal")
+    },
     "wave_frequency_hat": "controller.wave_frequency_hat",
 }
 """Inputs of a predictor beside `KNOWN`, and where they come from."""
@@ -83,8 +86,13 @@ class Follows(Stays):
     def predict(self, state, known):
         now, before, motions = reference.resumed(known.desired, parameters=self.model), 0.0, []
         for horizon in HORIZONS:
-            now, before = reference.step(now, known.goal, horizon - before, parameters=self.model), horizon
-            motions.append(Motion(now.x, now.y, wrap(now.psi), *to_body(now.psi, now.x_dot, now.y_dot), now.r))
+            now, before = (
+                reference.step(now, known.goal, horizon - before, parameters=self.model),
+                horizon,
+            )
+            motions.append(
+                Motion(now.x, now.y, wrap(now.psi), *to_body(now.psi, now.x_dot, now.y_dot), now.r)
+            )
         return Prediction(tuple(motions), NONE, NONE)
 
 
@@ -101,12 +109,18 @@ PREDICTORS = {
 def acting(seed: int) -> World:
     """A world at distance 1 in which DP acts: ship and weather as drawn, the corners in place of what happens there."""
     drawn = draw(seed)
-    weather = [event for event in drawn.events if all(name.startswith("environment.") for name in event.override)]
+    weather = [
+        event
+        for event in drawn.events
+        if all(name.startswith("environment.") for name in event.override)
+    ]
     corners = [
         Event(time=told, override={f"reference.{name}": value for name, value in to.items()})
         for told, to in CORNERS.items()
     ]
-    return World(seed, 1.0, END, drawn.set, tuple(sorted([*weather, *corners], key=lambda event: event.time)))
+    return World(
+        seed, 1.0, END, drawn.set, tuple(sorted([*weather, *corners], key=lambda event: event.time))
+    )
 
 
 def recorded(seed: int, folder: Path) -> dict[str, np.ndarray]:
@@ -152,7 +166,9 @@ def page(measures: dict[str, list[dict[str, np.ndarray]]], seeds: range, command
         rows = []
         for name, worlds in measures.items():
             off = np.array([one[part] for one in worlds])
-            sizes = np.stack([np.hypot(off[..., 0], off[..., 1]), np.degrees(np.abs(off[..., 2]))], -1).mean(axis=1)
+            sizes = np.stack(
+                [np.hypot(off[..., 0], off[..., 1]), np.degrees(np.abs(off[..., 2]))], -1
+            ).mean(axis=1)
             mean, low, high = pages.interval(sizes)
             middle = np.median(sizes, axis=0)
             cells = [
@@ -174,7 +190,12 @@ def page(measures: dict[str, list[dict[str, np.ndarray]]], seeds: range, command
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", default="300:312", help="FROM:TO of worlds")
-    parser.add_argument("--into", type=Path, default=measuring.FOLDER, help="records: what stands there is not redone")
+    parser.add_argument(
+        "--into",
+        type=Path,
+        default=measuring.FOLDER,
+        help="records: what stands there is not redone",
+    )
     parser.add_argument("--write", action="store_true", help="docs/generated/dp_prediction.md too")
     options = parser.parse_args(arguments)
     seeds = range(*map(int, options.seeds.split(":")))
@@ -184,7 +205,9 @@ def main(arguments=None):
         for name, worlds in measures.items():
             worlds.append(measure(name, record))
         print(f"world {seed}: {perf_counter() - before:.0f} s", file=sys.stderr, flush=True)
-    text = page(measures, seeds, f"python tests/bench/prediction/acting.py --seeds {options.seeds} --write")
+    text = page(
+        measures, seeds, f"python tests/bench/prediction/acting.py --seeds {options.seeds} --write"
+    )
     print(text)
     if options.write:
         PAGE.write_text(text, encoding="utf-8")

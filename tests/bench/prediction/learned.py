@@ -37,14 +37,25 @@ HIDDEN = {
     "tunnel thrust_loss": {"tunnel.thrust_loss": 0.3},
     "azimuth thrust_loss": {"port.thrust_loss": 0.3},
 }
-CALM = {"environment.current_speed": 0.0, "environment.significant_wave_height": 0.02, "environment.wind_speed": 6.0}
+CALM = {
+    "environment.current_speed": 0.0,
+    "environment.significant_wave_height": 0.02,
+    "environment.wind_speed": 6.0,
+}
 """Nothing but the ship is wrong: no current, hardly a wave. [m/s, m, m/s]"""
-RIGHT = {"wind_scale": {"wind_X": 0.4, "wind_Y": 0.4, "wind_N": 0.4}, "tunnel thrust_loss": {"thrust_bow": -0.3}}
+RIGHT = {
+    "wind_scale": {"wind_X": 0.4, "wind_Y": 0.4, "wind_N": 0.4},
+    "tunnel thrust_loss": {"thrust_bow": -0.3},
+}
 """Coefficients that a predictor without errors would find: with these the force must get its name."""
 FORCE = {
     **{f"vessel.{name}": f"learned.{name}" for name in ("u", "v", "r", "u_r", "v_r")},
     **{f"vessel.tau_wind_{axis}": f"learned.wind_{axis}" for axis in "XYN"},
-    **{f"{unit}.tau_{axis}": f"learned.{unit}_{axis}" for unit in ("port", "starboard") for axis in "XYN"},
+    **{
+        f"{unit}.tau_{axis}": f"learned.{unit}_{axis}"
+        for unit in ("port", "starboard")
+        for axis in "XYN"
+    },
     **{f"tunnel.tau_{axis}": f"learned.tunnel_{axis}" for axis in "YN"},
     **{f"learned.tau_{axis}": f"vessel.tau_{axis}_6" for axis in "XYN"},
 }
@@ -104,7 +115,9 @@ def own_coefficients(rows: np.ndarray, ship) -> tuple[np.ndarray, np.ndarray]:
     for now in everything[1:]:
         record = own_record.step(record, now, 1.0, learned=learned, hull=ship.hull, wind=ship.wind)
     spread = np.sqrt(np.diagonal(record.covariance, axis1=-2, axis2=-1))
-    mean, std = np.tensordot(own_record.weights(record)[:, 0], np.stack([record.mean[:, 0], spread[:, 0]], axis=1), 1)
+    mean, std = np.tensordot(
+        own_record.weights(record)[:, 0], np.stack([record.mean[:, 0], spread[:, 0]], axis=1), 1
+    )
     return mean[own_model.COEFFICIENT], std[own_model.COEFFICIENT]
 
 
@@ -134,7 +147,9 @@ def said(run: "shipcosim.Run") -> str:
 
 def sizes(finding: dict) -> list[str]:
     """Estimates of a finding, in words."""
-    return [f"{name} {one['estimate']:.3g} {one['unit']}" for name, one in finding["parameters"].items()]
+    return [
+        f"{name} {one['estimate']:.3g} {one['unit']}" for name, one in finding["parameters"].items()
+    ]
 
 
 def main():
@@ -145,7 +160,12 @@ def main():
     ship, model = training.ship(), plan(args.seed, {})
     for name, right in RIGHT.items():
         force = {"coefficients": np.array([right.get(one, 0.0) for one in own_model.COEFFICIENTS])}
-        print(name, "| the right force |", said(sailed(model, force_of(force, FOLDER / "right"))), flush=True)
+        print(
+            name,
+            "| the right force |",
+            said(sailed(model, force_of(force, FOLDER / "right"))),
+            flush=True,
+        )
     for name, effect in HIDDEN.items():
         place = FOLDER / name.replace(" ", "-")
         truth = sailed(plan(args.seed, effect, args.distance))
@@ -161,7 +181,11 @@ def main():
 
 def shown(mean: np.ndarray, std: np.ndarray) -> str:
     """Coefficients that are off nought by more than two standard deviations."""
-    sure = [(name, m, s) for name, m, s in zip(own_model.COEFFICIENTS, mean, std, strict=True) if abs(m) > 2.0 * s]
+    sure = [
+        (name, m, s)
+        for name, m, s in zip(own_model.COEFFICIENTS, mean, std, strict=True)
+        if abs(m) > 2.0 * s
+    ]
     return ", ".join(f"{name} {m:.2f} +- {s:.2f}" for name, m, s in sure) or "none is sure"
 
 

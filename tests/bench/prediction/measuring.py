@@ -21,9 +21,18 @@ def recorded(seed: int, distance: float, folder: Path = FOLDER) -> Record:
     path = folder / f"record-{seed}-{distance:g}.npz"
     if not path.exists():
         record = sail(draw(seed, distance))
-        save(path, seed=seed, lost_at=record.lost_at, time=record.time, known=record.known, truth=record.truth)
+        save(
+            path,
+            seed=seed,
+            lost_at=record.lost_at,
+            time=record.time,
+            known=record.known,
+            truth=record.truth,
+        )
     with np.load(path) as kept:
-        return Record(int(kept["seed"]), float(kept["lost_at"]), kept["time"], kept["known"], kept["truth"])
+        return Record(
+            int(kept["seed"]), float(kept["lost_at"]), kept["time"], kept["known"], kept["truth"]
+        )
 
 
 def measured(name: str, seed: int, distance: float, folder: Path = FOLDER) -> dict[str, np.ndarray]:
@@ -57,7 +66,10 @@ def measure(name: str, record: Record, starts=STARTS) -> dict[str, np.ndarray]:
             found["errors"].append(errors(fmu, record.truth, row))
             ends = [f"{end:g}" for end in HORIZONS]
             found["regions"].append(
-                [[getattr(fmu, f"{what}_region_{end}") for what in ("position", "heading")] for end in ends]
+                [
+                    [getattr(fmu, f"{what}_region_{end}") for what in ("position", "heading")]
+                    for end in ends
+                ]
             )
             found["learned"].append(fmu.learned)
     return {key: np.array(values, float) for key, values in found.items()}

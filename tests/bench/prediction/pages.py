@@ -29,10 +29,14 @@ def by_world(worlds: Sequence[Mapping[str, np.ndarray]], first: int) -> np.ndarr
     """Mean absolute errors of the first starts, (worlds, horizons, 4): north, east, yaw, position. [m, m, deg, m]"""
     errors = np.array([one["errors"][:first] for one in worlds])
     sizes = np.abs(errors) * np.array(list(AXES.values()))
-    return np.concatenate([sizes, np.hypot(errors[..., :1], errors[..., 1:2])], axis=-1).mean(axis=1)
+    return np.concatenate([sizes, np.hypot(errors[..., :1], errors[..., 1:2])], axis=-1).mean(
+        axis=1
+    )
 
 
-def interval(values: np.ndarray, over: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def interval(
+    values: np.ndarray, over: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mean over worlds, the first axis, and its 95 % interval; with `over` the ratio of two means, worlds in pairs."""
     drawn = np.random.default_rng(26).integers(len(values), size=(DRAWS, len(values)))
     whole, draws = values.mean(axis=0), values[drawn].mean(axis=1)
@@ -43,7 +47,9 @@ def interval(values: np.ndarray, over: np.ndarray | None = None) -> tuple[np.nda
 
 def page(measures: Measures, seeds: Sequence[int], command: str) -> str:
     """The page, from the measures at distance 1 and at others."""
-    text = HEAD.format(command=command, worlds=len(seeds), first=seeds[0], last=seeds[-1], starts=max(FIRST))
+    text = HEAD.format(
+        command=command, worlds=len(seeds), first=seeds[0], last=seeds[-1], starts=max(FIRST)
+    )
     parts = [text, reached(measures), *(errors(measures, first) for first in FIRST)]
     parts += [regions(measures), distances(measures), steps(measures)]
     return "\n".join(parts)
@@ -55,26 +61,44 @@ def reached(measures: Measures) -> str:
     if "ours" in measures:
         for first, wanted in zip(FIRST, (-70.0, -50.0), strict=True):
             change = 100.0 * (interval(*_pair(measures, "ours", first))[0] - 1.0)
-            said = ", ".join(f"{word} {v:+.0f} %" for word, v in zip(AXES, change[-1], strict=False))
+            said = ", ".join(
+                f"{word} {v:+.0f} %" for word, v in zip(AXES, change[-1], strict=False)
+            )
             goal = f"ours, first {first} starts, 60 s: {wanted:.0f} % in north, east and yaw"
             rows.append((goal, said, _met(bool((change[-1, :3] <= wanted).all()))))
-        worst = float(np.max([100.0 * (interval(*_pair(measures, "ours", n))[0] - 1.0) for n in FIRST]))
-        rows.append(("ours: at no horizon more than 2 % worse than kinetic", f"{worst:+.0f} %", _met(worst <= 2.0)))
+        worst = float(
+            np.max([100.0 * (interval(*_pair(measures, "ours", n))[0] - 1.0) for n in FIRST])
+        )
+        rows.append(
+            (
+                "ours: at no horizon more than 2 % worse than kinetic",
+                f"{worst:+.0f} %",
+                _met(worst <= 2.0),
+            )
+        )
         places = [_coverage(measures["ours"][1.0], first) for first in FIRST]
         if all(np.isfinite(one[0]).all() for one in places):
             least, most = (100.0 * float(f([one[0] for one in places])) for f in (np.min, np.max))
             rows.append(
-                ("ours: 90 % regions have 85 to 95 %", f"{least:.0f} to {most:.0f} %", _met(85 <= least <= most <= 95))
+                (
+                    "ours: 90 % regions have 85 to 95 %",
+                    f"{least:.0f} to {most:.0f} %",
+                    _met(85 <= least <= most <= 95),
+                )
             )
         seconds = 1e3 * float(np.median([one["seconds"] for one in measures["ours"][1.0]]))
         rows.append(("ours: one step below 5 ms", f"{seconds:.1f} ms", _met(seconds < 5.0)))
     if "paper IV" in measures:
         change = 100.0 * (interval(*_pair(measures, "paper IV", 5))[0] - 1.0)
         said = ", ".join(f"{word} {v:+.0f} %" for word, v in zip(AXES, change[-1], strict=False))
-        rows.append(("paper IV's scheme, first 5 starts, 60 s: the thesis has -67, -45, -51 %", said, ""))
+        rows.append(
+            ("paper IV's scheme, first 5 starts, 60 s: the thesis has -67, -45, -51 %", said, "")
+        )
     if not rows:
         return ""
-    return "## What is to be reached\n\n" + table(("to reach, against the kinetic predictor", "measured", ""), rows)
+    return "## What is to be reached\n\n" + table(
+        ("to reach, against the kinetic predictor", "measured", ""), rows
+    )
 
 
 def errors(measures: Measures, first: int) -> str:
@@ -84,10 +108,17 @@ def errors(measures: Measures, first: int) -> str:
         rows = []
         for name in measures:
             found = interval(by_world(measures[name][1.0], first))
-            change, low, high = (100.0 * (one - 1.0) for one in interval(*_pair(measures, name, first)))
-            cells = [f"{found[0][k, a]:.2f} ({found[1][k, a]:.2f} to {found[2][k, a]:.2f})" for a in range(4)]
+            change, low, high = (
+                100.0 * (one - 1.0) for one in interval(*_pair(measures, name, first))
+            )
+            cells = [
+                f"{found[0][k, a]:.2f} ({found[1][k, a]:.2f} to {found[2][k, a]:.2f})"
+                for a in range(4)
+            ]
             against = (
-                "" if name == "kinetic" else f"{change[k, 3]:+.0f} % ({low[k, 3]:+.0f} to {high[k, 3]:+.0f})",
+                ""
+                if name == "kinetic"
+                else f"{change[k, 3]:+.0f} % ({low[k, 3]:+.0f} to {high[k, 3]:+.0f})",
                 "" if name == "kinetic" else " / ".join(f"{change[k, a]:+.0f}" for a in range(3)),
             )
             rows.append((name, *cells, *against))
@@ -100,7 +131,9 @@ def regions(measures: Measures) -> str:
     """How many truths the 90 % regions have; at other distances than 1 of the first 20 starts."""
     rows = []
     for name, found in measures.items():
-        cases = [(1.0, first) for first in FIRST] + [(one, max(FIRST)) for one in sorted(found) if one != 1.0]
+        cases = [(1.0, first) for first in FIRST] + [
+            (one, max(FIRST)) for one in sorted(found) if one != 1.0
+        ]
         for distance, first in cases:
             share, low, high, size = _coverage(found[distance], first)
             if not np.isfinite(share).all():
@@ -116,7 +149,9 @@ def regions(measures: Measures) -> str:
     if not rows:
         return "## Regions\n\nNo predictor has calibrated regions.\n"
     head = ("predictor", "distance", "starts", "of", *(f"{horizon:.0f} s" for horizon in HORIZONS))
-    return "## Regions of 90 %\n\nShare of truths within, and mean half-width.\n\n" + table(head, rows)
+    return "## Regions of 90 %\n\nShare of truths within, and mean half-width.\n\n" + table(
+        head, rows
+    )
 
 
 def distances(measures: Measures) -> str:
@@ -131,14 +166,20 @@ def distances(measures: Measures) -> str:
                 kinetic = by_world(measures["kinetic"][distance], first)[:, -1]
                 change = [100 * (position[:, k].mean() / kinetic[:, k].mean() - 1) for k in (3, 2)]
                 said = "" if name == "kinetic" else f" ({change[0]:+.0f}, {change[1]:+.0f} %)"
-                cells.append(f"{position[:, 3].mean():.2f} m, {position[:, 2].mean():.1f} deg{said}")
+                cells.append(
+                    f"{position[:, 3].mean():.2f} m, {position[:, 2].mean():.1f} deg{said}"
+                )
             rows.append((name, f"first {first}", *cells))
     text = (
         "Errors 60 s ahead of position and heading, by the worlds' distance: 0 where truth and model are alike but for "
         "weather and sensors; in brackets against the kinetic predictor, in position and heading.\n"
     )
     worlds = next(iter(measures.values()))
-    head = ("predictor", "starts", *(f"distance {distance:g}, {len(worlds[distance])} worlds" for distance in known))
+    head = (
+        "predictor",
+        "starts",
+        *(f"distance {distance:g}, {len(worlds[distance])} worlds" for distance in known),
+    )
     return "## How far truth and model are apart\n\n" + text + "\n" + table(head, rows)
 
 
@@ -173,5 +214,9 @@ def _met(is_met):
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """A table in Markdown."""
-    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *(f"| {' | '.join(row)} |" for row in rows)]
+    lines = [
+        f"| {' | '.join(head)} |",
+        f"|{'---|' * len(head)}",
+        *(f"| {' | '.join(row)} |" for row in rows),
+    ]
     return "\n".join(lines) + "\n"

@@ -26,7 +26,9 @@ DEGREE = np.pi / 180.0
 @cache
 def fmu_class(name: str) -> type:
     """The class of an FMU of the project."""
-    spec = importlib.util.spec_from_file_location(f"measured_{name}", ROOT / "fmus" / name / f"{name}.py")
+    spec = importlib.util.spec_from_file_location(
+        f"measured_{name}", ROOT / "fmus" / name / f"{name}.py"
+    )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return next(c for c in vars(module).values() if getattr(c, "__module__", "") == module.__name__)
@@ -73,13 +75,32 @@ class LinearKalman(MotionPredictor):
 
     def begin(self, known):
         force, current = self.assumed.force_std**2, self.assumed.current_std**2
-        spread = [0.01, 0.01, 1e-4, 0.01, 0.01, 1e-5, current, current, force, force, ARM**2 * force]
-        return np.array([*known.ship, *NONE, 0.0, 0.0]), np.diag(spread), air_velocity(known), known.thrusters
+        spread = [
+            0.01,
+            0.01,
+            1e-4,
+            0.01,
+            0.01,
+            1e-5,
+            current,
+            current,
+            force,
+            force,
+            ARM**2 * force,
+        ]
+        return (
+            np.array([*known.ship, *NONE, 0.0, 0.0]),
+            np.diag(spread),
+            air_velocity(known),
+            known.thrusters,
+        )
 
     def follow(self, state, known, since):
         mean, covariance, air, thrust = state
         keep = np.exp(-since / self.assumed.wind_time)
-        air = tuple(now + keep * (old - now) for old, now in zip(air, air_velocity(known), strict=True))
+        air = tuple(
+            now + keep * (old - now) for old, now in zip(air, air_velocity(known), strict=True)
+        )
         slope = np.column_stack(
             [(self._moved(mean + e, air, thrust, since) - self._moved(mean - e, air, thrust, since)) / (2.0 * e.max())
              for e in np.diag(SMALL)]
@@ -120,7 +141,19 @@ class LinearKalman(MotionPredictor):
         north, east = to_ned(middle, u, v)
         keep = np.exp(-h / self.assumed.force_time)
         return np.array(
-            [mean[0] + h * north, mean[1] + h * east, psi + h * r, u, v, r, c_n, c_e, keep * b_n, keep * b_e, b_m]
+            [
+                mean[0] + h * north,
+                mean[1] + h * east,
+                psi + h * r,
+                u,
+                v,
+                r,
+                c_n,
+                c_e,
+                keep * b_n,
+                keep * b_e,
+                b_m,
+            ]
         )
 
     def _noise(self, h):
@@ -134,7 +167,9 @@ class LinearKalman(MotionPredictor):
 
 DAMPING = 3.0  # over that of the observer, which is of a ship held: 1, 3 and 10 tried on worlds 300 and 301
 ARM = 9.0  # m, of forces that turn the ship: her radius of gyration
-MEASURED = np.array([0.1, 0.1, 0.2 * DEGREE, 0.03, 0.03, 0.05 * DEGREE])  # assumed errors of what is estimated
+MEASURED = np.array(
+    [0.1, 0.1, 0.2 * DEGREE, 0.03, 0.03, 0.05 * DEGREE]
+)  # assumed errors of what is estimated
 SMALL = np.array([0.1, 0.1, 0.01, 0.01, 0.01, 0.001, 0.05, 0.05, 100.0, 100.0, 1000.0])  # of slopes
 
 

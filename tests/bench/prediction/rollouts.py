@@ -28,24 +28,36 @@ def errors(ensemble, seeds, ship):
     """What predictions miss 60 s ahead of the true ship, (starts, worlds, 3): north, east, heading. [m, m, deg]"""
     records = [measuring.recorded(seed, 1.0) for seed in seeds]
     sailed = training.aligned(records, BEFORE)
-    truth = np.stack([one.truth[int(np.searchsorted(one.time, one.lost_at - 1e-6)) :][:81] for one in records], axis=1)
+    truth = np.stack(
+        [one.truth[int(np.searchsorted(one.time, one.lost_at - 1e-6)) :][:81] for one in records],
+        axis=1,
+    )
     everything = rollouts.known_of(sailed.known, ship)
     past, found = law.begin(rollouts.mapped(lambda array: array[0], everything)), []
     for row in range(1, BEFORE + STARTS + 1):
         known = rollouts.mapped(lambda array, row=row: array[row], everything)
         past = law.step(past, known, hull=ship.hull, wind=ship.wind)
         if row > BEFORE:
-            last = law.predict(past, known, ensemble, seconds=SECONDS, hull=ship.hull, wind=ship.wind)[-1]
+            last = law.predict(
+                past, known, ensemble, seconds=SECONDS, hull=ship.hull, wind=ship.wind
+            )[-1]
             reached = truth[row - BEFORE + SECONDS]
             turned = wrap_series(last.psi - reached[:, 2], 2.0 * np.pi)
-            found.append(np.stack([last.x - reached[:, 0], last.y - reached[:, 1], np.degrees(turned)], axis=-1))
+            found.append(
+                np.stack(
+                    [last.x - reached[:, 0], last.y - reached[:, 1], np.degrees(turned)], axis=-1
+                )
+            )
     return np.array(found)
 
 
 def show(name, ensemble, seeds, ship):
     """A row of the table."""
     off = np.abs(errors(ensemble, seeds, ship))
-    cells = [", ".join(f"{value:.1f}" for value in off[:first].mean(axis=(0, 1))) for first in (5, STARTS)]
+    cells = [
+        ", ".join(f"{value:.1f}" for value in off[:first].mean(axis=(0, 1)))
+        for first in (5, STARTS)
+    ]
     print(f"| {name} | {cells[0]} | {cells[1]} |", flush=True)
 
 
@@ -59,7 +71,9 @@ def main():
         show(f"one step, {len(seeds)} worlds", law.ensemble_of(arrays), CHOICE, ship)
         pieces = paper_iv_rollouts.stretches(sailed, ship)
         for steps in STEPS:
-            kept, losses = paper_iv_rollouts.fit(arrays, pieces, ship, training.PAPER_IV, steps, lambda done, of: None)
+            kept, losses = paper_iv_rollouts.fit(
+                arrays, pieces, ship, training.PAPER_IV, steps, lambda done, of: None
+            )
             name = f"whole predictions, {len(seeds)} worlds, {steps} steps (loss {losses[0]:.2f} to {losses[-1]:.2f})"
             show(name, law.ensemble_of(kept), CHOICE, ship)
 

@@ -54,12 +54,20 @@ def missed(problem, comparison):
     network = trained(problem, plain, comparison.train)
     last = in_rows(plain.record)[-1]
     found = predicted(plain, comparison.rows, network, last)
-    return missing(readings(found, plain.model), comparison.seen, comparison.rows + last)["position"]
+    return missing(readings(found, plain.model), comparison.seen, comparison.rows + last)[
+        "position"
+    ]
 
 
 def features(motion, inputs):
     """State and inputs, (..., m) array."""
-    columns = [10.0 * motion.u, 10.0 * motion.v, 100.0 * motion.r, np.cos(motion.psi), np.sin(motion.psi)]
+    columns = [
+        10.0 * motion.u,
+        10.0 * motion.v,
+        100.0 * motion.r,
+        np.cos(motion.psi),
+        np.sin(motion.psi),
+    ]
     for n, azimuth in inputs.units.values():
         thrust = n * np.abs(n)
         columns += [thrust * np.cos(azimuth), thrust * np.sin(azimuth)]
@@ -86,7 +94,10 @@ def trained(problem, plain, train):
     callable
     """
     torch.manual_seed(1)
-    step = linearise(problem.motion, problem.record, problem.model, []).driven[:, 3:6, 0] / problem.record.step
+    step = (
+        linearise(problem.motion, problem.record, problem.model, []).driven[:, 3:6, 0]
+        / problem.record.step
+    )
     kernel = np.ones(SMOOTH) / SMOOTH
     missed = np.stack([np.convolve(-axis, kernel, "same") for axis in step.T], axis=1)
     rows = np.flatnonzero(train[:-1] & problem.record.known[:-1])
@@ -120,7 +131,11 @@ def _fit(net, x, y, cut):
             now = float(torch.nn.functional.mse_loss(net(x[cut:]), y[cut:]))
         waited += 1
         if now < best:
-            best, kept, waited = now, {name: value.clone() for name, value in net.state_dict().items()}, 0
+            best, kept, waited = (
+                now,
+                {name: value.clone() for name, value in net.state_dict().items()},
+                0,
+            )
         if waited > PATIENCE:
             break
     net.load_state_dict(kept)
@@ -139,7 +154,9 @@ def predicted(plain, rows, network, steps):
     motion = Motion(*(value[rows] for value in plain.motion))
     for k in range(steps):
         first = _rates(motion, _at(here, rows + k), model, network)
-        middle = Motion(*(value + 0.5 * h * rate for value, rate in zip(motion, first, strict=True)))
+        middle = Motion(
+            *(value + 0.5 * h * rate for value, rate in zip(motion, first, strict=True))
+        )
         second = _rates(middle, _at(half, rows + k), model, network)
         motion = Motion(*(value + h * rate for value, rate in zip(motion, second, strict=True)))
     return motion
@@ -147,10 +164,14 @@ def predicted(plain, rows, network, steps):
 
 def _rates(motion, inputs, model, network):
     rates, extra = motion_rates(motion, inputs, model), network(features(motion, inputs))
-    return rates._replace(u=rates.u + extra[..., 0], v=rates.v + extra[..., 1], r=rates.r + extra[..., 2])
+    return rates._replace(
+        u=rates.u + extra[..., 0], v=rates.v + extra[..., 1], r=rates.r + extra[..., 2]
+    )
 
 
 def _at(inputs, rows):
     units = {name: tuple(series[rows] for series in pair) for name, pair in inputs.units.items()}
-    wind = (None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from))
+    wind = (
+        None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from)
+    )
     return Inputs(inputs.time[rows], units, *wind)

@@ -60,10 +60,14 @@ def problem_of(path):
     log = read_log(path)
     faults = tuple(examine(log))
     clean = repaired(log, faults)
-    model = replace(ship_model_of(system()), span=(float(clean["time"][0]), float(clean["time"][-1])))
+    model = replace(
+        ship_model_of(system()), span=(float(clean["time"][0]), float(clean["time"][-1]))
+    )
     record = record_of(clean, model)
     motion = first_motion(record, model, SMOOTH)
-    problem = Problem(record, model, motion, np.ones(3), list(hypotheses_of(read_catalogue(), model)), faults)
+    problem = Problem(
+        record, model, motion, np.ones(3), list(hypotheses_of(read_catalogue(), model)), faults
+    )
     scale = missing_acceleration(problem, {}).reshape(3, -1).std(axis=1)
     return replace(problem, scale=scale)
 
@@ -71,12 +75,17 @@ def problem_of(path):
 def missing_acceleration(problem, values):
     """Measured minus modelled acceleration over `scale`, of the rows where all is known, one axis after the other."""
     model, seen, h = problem.model.with_values(values), problem.motion, problem.record.step
-    motion = Motion(*(2.0 * value - other for value, other in zip(seen, readings(seen, model), strict=True)))
+    motion = Motion(
+        *(2.0 * value - other for value, other in zip(seen, readings(seen, model), strict=True))
+    )
     here = Motion(*(value[:-1] for value in motion))
     modelled = motion_rates(here, problem.record.inputs(model), model)
     known = problem.record.known[:-1]
     rows = [
-        (np.gradient(getattr(motion, name), h)[:-1] - gaussian_filter1d(getattr(modelled, name), SMOOTH / h))[known]
+        (
+            np.gradient(getattr(motion, name), h)[:-1]
+            - gaussian_filter1d(getattr(modelled, name), SMOOTH / h)
+        )[known]
         / scale
         for name, scale in zip("uvr", problem.scale, strict=True)
     ]
@@ -130,7 +139,9 @@ def regression(problem, chosen, values=None):
         step = np.linalg.lstsq(J, -missing, rcond=None)[0]
         for parameter, by in zip(parameters, step, strict=True):
             now = values.get(parameter.paths[0], parameter.neutral)
-            values |= dict.fromkeys(parameter.paths, float(np.clip(now + by * parameter.typical, *parameter.bounds)))
+            values |= dict.fromkeys(
+                parameter.paths, float(np.clip(now + by * parameter.typical, *parameter.bounds))
+            )
         deviations = np.sqrt(np.diag(np.linalg.pinv(J.T @ J)) * missing.var())
         std = {
             parameter.paths[0]: float(d * parameter.typical)
@@ -139,7 +150,10 @@ def regression(problem, chosen, values=None):
     missing = missing_acceleration(problem, values)
     n = missing.size
     return Regression(
-        tuple(chosen), values, std, n * math.log(float(missing @ missing) / n) + len(parameters) * math.log(n)
+        tuple(chosen),
+        values,
+        std,
+        n * math.log(float(missing @ missing) / n) + len(parameters) * math.log(n),
     )
 
 
@@ -160,8 +174,13 @@ def inverse_dynamics(path, most=2):
     problem = problem_of(path)
     best, rivals = regression(problem, ()), []
     for _ in range(most):
-        others = [hypothesis for hypothesis in problem.hypotheses if hypothesis not in best.hypotheses]
-        tried = [regression(problem, (*best.hypotheses, hypothesis), best.values) for hypothesis in others]
+        others = [
+            hypothesis for hypothesis in problem.hypotheses if hypothesis not in best.hypotheses
+        ]
+        tried = [
+            regression(problem, (*best.hypotheses, hypothesis), best.values)
+            for hypothesis in others
+        ]
         tried.sort(key=lambda one: one.bic)
         if tried[0].bic > best.bic - STRONG:
             break
@@ -169,7 +188,8 @@ def inverse_dynamics(path, most=2):
     findings = [_finding(hypothesis, best.values, best.std) for hypothesis in best.hypotheses]
     if len(rivals) > 1:
         alike = tuple(
-            Candidate(one.hypotheses[-1].cause, one.hypotheses[-1].component, 1 / len(rivals)) for one in rivals
+            Candidate(one.hypotheses[-1].cause, one.hypotheses[-1].component, 1 / len(rivals))
+            for one in rivals
         )
         return Diagnosis("ambiguous", (*problem.faults, *findings[:-1]), indistinguishable=alike)
     return _named(problem, findings)
@@ -195,7 +215,9 @@ def sparse_regression(path):
     ]  # holds the steady current
     parameters = [parameter for hypothesis in library for parameter in hypothesis.parameters]
     optimizer = pysindy.STLSQ(threshold=THRESHOLD, alpha=RIDGE)
-    found = optimizer.fit(slopes(problem, parameters, {}), -missing_acceleration(problem, {})).coef_.ravel()
+    found = optimizer.fit(
+        slopes(problem, parameters, {}), -missing_acceleration(problem, {})
+    ).coef_.ravel()
     sizes = {parameter.paths: size for parameter, size in zip(parameters, found, strict=True)}
     findings = []
     for hypothesis in library:

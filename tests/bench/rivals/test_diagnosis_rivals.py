@@ -15,7 +15,10 @@ from trial.scoring import score
 SEEDS = range(FIRST_SEED, FIRST_SEED + 24)
 SETS = ["one", "healthy", "unknown"]
 MINUTES = float(os.environ.get("SHIPCOSIM_TRIAL_MINUTES", "30"))
-RIVALS = {"bic": "rivals.regressions:inverse_dynamics", "sindy": "rivals.regressions:sparse_regression"}
+RIVALS = {
+    "bic": "rivals.regressions:inverse_dynamics",
+    "sindy": "rivals.regressions:sparse_regression",
+}
 
 
 @pytest.fixture(scope="module")
@@ -25,15 +28,22 @@ def results(root):
     share = {"minutes": MINUTES / (1 + len(RIVALS)), "jobs": 2}
     found = {"ours": runs.run(runs.KINDS, SETS, SEEDS, root / "results" / "trial.jsonl", **share)}
     for name, tool in RIVALS.items():
-        found[name] = runs.run(runs.KINDS, SETS, SEEDS, root / "results" / f"{name}.jsonl", tool=tool, **share)
+        found[name] = runs.run(
+            runs.KINDS, SETS, SEEDS, root / "results" / f"{name}.jsonl", tool=tool, **share
+        )
     print(f"\n{comparison.comparison([result for some in found.values() for result in some])}")
     common = set.intersection(*({runs.key(result) for result in some} for some in found.values()))
-    return {name: [result for result in some if runs.key(result) in common] for name, some in found.items()}
+    return {
+        name: [result for result in some if runs.key(result) in common]
+        for name, some in found.items()
+    }
 
 
 def right(results):
     """Share of right answers over all sets."""
-    return np.mean([score(r["answer"], r["diagnosis"] or tables.UNJUDGED, r["span"]).right for r in results])
+    return np.mean(
+        [score(r["answer"], r["diagnosis"] or tables.UNJUDGED, r["span"]).right for r in results]
+    )
 
 
 @pytest.mark.parametrize("rival", RIVALS)
@@ -46,7 +56,9 @@ def test_named_causes_predict_better_than_a_network(tmp_path):
     from truth import draw_many
 
     found = []
-    for case in draw_many("trial", SEEDS[:6], among=["tow", "crossflow", "thrust_loss", "wind_scale"]):
+    for case in draw_many(
+        "trial", SEEDS[:6], among=["tow", "crossflow", "thrust_loss", "wind_scale"]
+    ):
         case.save(tmp_path / "log.csv")
         found.append(gains(tmp_path / "log.csv"))
         print(f"\n{case.seed}: {found[-1]}")

@@ -32,7 +32,11 @@ from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 @cache
 def ship(name):
     """Model of a ship, and how much slower than Gunnerus she sails her trials."""
-    return (twin.model(), 1.0) if name == "gunnerus" else (ship_model_of(ferry.structure().checked()), 2.0)
+    return (
+        (twin.model(), 1.0)
+        if name == "gunnerus"
+        else (ship_model_of(ferry.structure().checked()), 2.0)
+    )
 
 
 def hidden(model, random):
@@ -40,8 +44,14 @@ def hidden(model, random):
     of, size = model.vessel, random.uniform(0.7, 1.3)
     return {
         "nothing": (set(), {}),
-        "drag in drift, late orders": ({"drift_drag", "late_orders"}, {f"{of}.mmg_X_vv": -0.6 * size, "lag": 2.5}),
-        "yaw inertia": ({"yaw_inertia"}, {f"{of}.inertia_yaw": (1.0 + 0.8 * size) * model.get(f"{of}.inertia_yaw")}),
+        "drag in drift, late orders": (
+            {"drift_drag", "late_orders"},
+            {f"{of}.mmg_X_vv": -0.6 * size, "lag": 2.5},
+        ),
+        "yaw inertia": (
+            {"yaw_inertia"},
+            {f"{of}.inertia_yaw": (1.0 + 0.8 * size) * model.get(f"{of}.inertia_yaw")},
+        ),
         "yaw damping": ({"yaw_damping"}, {f"{of}.mmg_N_r": -0.03 * size}),
         "resistance over speed": ({"drag_over_speed"}, {f"{of}.drag_growth": 1.2 * size}),
     }
@@ -60,17 +70,25 @@ def answered(log, model, right, truth):
     if len(sets) == 1:
         return verdict(sets, right), "-", said
     designs = designed(separations(evidence, sets), sets)
-    chosen = [one for one in catalogue(read.ship) if one.name in {design.manoeuvre for design in designs}]
+    chosen = [
+        one for one in catalogue(read.ship) if one.name in {design.manoeuvre for design in designs}
+    ]
     if not chosen:
         return verdict(sets, right), "nothing prescribed", said
     numbers, lag = truth
-    changes = {path: value - model.get(path) for path, value in numbers.items()} | {"instruments.order_lag": lag}
+    changes = {path: value - model.get(path) for path, value in numbers.items()} | {
+        "instruments.order_lag": lag
+    }
     shafts = dict.fromkeys(model.azimuths, trials.LEGS[0][1] / 60.0)
     more = [trial for _, pair in as_trials(chosen, read.ship, shafts, changes) for trial in pair]
     again = ranked(trial_evidence([*found, *more], read.ship, causes, orders=True))
     sets = [best_of(again), *rivals_of(again)]
     then = f"{' and '.join(one.name for one in chosen)}: {' | '.join(one.label for one in sets)}"
-    return verdict([best_of(ranking), *rivals_of(ranking)], right), verdict(sets, right), f"{said}; {then}"
+    return (
+        verdict([best_of(ranking), *rivals_of(ranking)], right),
+        verdict(sets, right),
+        f"{said}; {then}",
+    )
 
 
 def verdict(sets, right):
@@ -93,7 +111,10 @@ if __name__ == "__main__":
             logs = trials.logs(problems, seed, model, slow)
             drawn = trials.drawn(problems, np.random.default_rng(seed), model)
             for i, (what, (right, numbers)) in enumerate(planted.items()):
-                truth = {path: float(values[i]) for path, values in drawn.items()}, numbers.get("lag", 0.0)
+                truth = (
+                    {path: float(values[i]) for path, values in drawn.items()},
+                    numbers.get("lag", 0.0),
+                )
                 word, then, said = answered(logs[what], model, right, truth)
                 counts[name, what, word, then] += 1
                 print(seed, name, what, word, then, said, sep="; ", flush=True)

@@ -16,5 +16,7 @@ def reported(what: str, values: Sequence[float], unit: str, to_reach: str) -> fl
     """Median of repeated measurements, printed with their spread and what is to be reached."""
     middle = median(values)
     low, high = min(values), max(values)
-    print(f"\n{what}: {middle:.3g} {unit} (median of {len(values)}, {low:.3g} to {high:.3g}); to reach {to_reach}")
+    print(
+        f"\n{what}: {middle:.3g} {unit} (median of {len(values)}, {low:.3g} to {high:.3g}); to reach {to_reach}"
+    )
     return middle

@@ -24,7 +24,12 @@ class Log:
 
 def test_columns_are_filtered_3_times_as_fast_as_by_numpy():
     linear, noise = drawn(COLUMNS), levels(1)
-    alone = Noise(*(values[0] for values in (noise.white, noise.jolt, noise.walk, noise.wave, noise.wave_frequency)))
+    alone = Noise(
+        *(
+            values[0]
+            for values in (noise.white, noise.jolt, noise.walk, noise.wave, noise.wave_frequency)
+        )
+    )
     white = innovations(linear, alone, Log).white
     _, theirs = in_numpy(linear, noise)
     np.testing.assert_allclose(white, theirs[:, 0], rtol=1e-6, atol=1e-6 * np.abs(white).max())
@@ -55,14 +60,19 @@ def drawn(columns):
     A[:, range(6, 9), range(6, 9)] = 1.0
     H[:, range(6), range(6)] = H[:, range(3), range(9, 12)] = 1.0
     H[:, range(3), range(12, 15)] = H[:, range(3, 6), range(15, 18)] = 1.0
-    driven, seen = 1e-3 * random.standard_normal((ROWS - 1, 6, columns)), random.standard_normal((ROWS, 6, columns))
+    driven, seen = (
+        1e-3 * random.standard_normal((ROWS - 1, 6, columns)),
+        random.standard_normal((ROWS, 6, columns)),
+    )
     return Linear(A, driven, H, seen, np.ones((ROWS, 6), bool))
 
 
 def levels(count):
     """Levels of noise, some twice as large as others."""
     size = np.linspace(1.0, 2.0, count)[:, None]
-    white, jolt, walk = (size * np.full((count, n), level) for n, level in ((6, 0.1), (3, 1e-3), (3, 1e-5)))
+    white, jolt, walk = (
+        size * np.full((count, n), level) for n, level in ((6, 0.1), (3, 1e-3), (3, 1e-5))
+    )
     return Noise(white, jolt, walk, 0.05 * np.ones((count, 3)), np.linspace(0.8, 1.2, count))
 
 
@@ -80,7 +90,9 @@ def in_numpy(linear, noises):
         Li = np.linalg.inv(L)
         white.append(Li @ (linear.seen[k] - H @ x))
         gain = CHt @ np.swapaxes(Li, -1, -2)
-        found -= 0.5 * (white[k][..., 0] ** 2).sum(-1) + np.log(np.diagonal(L, axis1=-2, axis2=-1)).sum(-1)
+        found -= 0.5 * (white[k][..., 0] ** 2).sum(-1) + np.log(
+            np.diagonal(L, axis1=-2, axis2=-1)
+        ).sum(-1)
         x, C = x + gain @ white[k], C - gain @ np.swapaxes(gain, -1, -2)
         if k < ROWS - 1:
             x = A[k] @ x

@@ -21,8 +21,12 @@ TIMES_REAL_TIME = (150.0, 300.0)
 @pytest.fixture(scope="module")
 def seconds(root):
     """Durations of the runs by engine, those of one round at the same place."""
-    scenario = read_scenario(root / "scenarios" / "four_corner.toml").model_copy(update={"output_interval": None})
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"])
+    scenario = read_scenario(root / "scenarios" / "four_corner.toml").model_copy(
+        update={"output_interval": None}
+    )
+    system = read_system(
+        scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"]
+    )
     engines = ["fmpy", *(name for name in TO_REACH if name not in engines_missing())]
     for engine in engines:
         simulate(system, scenario.model_copy(update={"stop_time": 5.0}), RunOptions(engine=engine))
@@ -42,7 +46,10 @@ def test_faster_than_other_engines(seconds, engine, needs):
         needs(f"engine {engine}")
     ratios = [theirs / ours for ours, theirs in zip(seconds["fmpy"], seconds[engine], strict=True)]
     goal, aim = TO_REACH[engine]
-    assert reported(f"four corners, beside {engine}", ratios, "times as fast", f"{goal}, aim {aim}") >= goal
+    assert (
+        reported(f"four corners, beside {engine}", ratios, "times as fast", f"{goal}, aim {aim}")
+        >= goal
+    )
 
 
 def test_faster_than_real_time(seconds):

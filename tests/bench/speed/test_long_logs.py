@@ -15,7 +15,11 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 MINUTES, SEED = 240, 5900
 LESS_MEMORY, MOST_MEMORY, MOST_TIME = 1.3, 600.0, 1.8  # 1, MB, 1
-LONG_MINUTES, LONG_MEMORY, LONG_TIME = 1667, 1000.0, 240.0  # 100 020 rows; MB, s of CPU: two minutes of two cores
+LONG_MINUTES, LONG_MEMORY, LONG_TIME = (
+    1667,
+    1000.0,
+    240.0,
+)  # 100 020 rows; MB, s of CPU: two minutes of two cores
 
 
 @pytest.fixture(scope="module")
@@ -29,13 +33,17 @@ def log(tmp_path_factory):
 
 def test_parts_need_less_memory(log):
     whole, parts = measured(log, 10**9), measured(log, 4096)
-    print(f"\n{MINUTES * 60} rows in one piece: {whole[0]:.0f} MB, {whole[1]:.1f} s CPU; in parts: {parts}")
+    print(
+        f"\n{MINUTES * 60} rows in one piece: {whole[0]:.0f} MB, {whole[1]:.1f} s CPU; in parts: {parts}"
+    )
     assert parts[2] == pytest.approx(whole[2], rel=1e-9)  # the same score
     assert whole[0] / parts[0] >= LESS_MEMORY and parts[0] <= MOST_MEMORY
     assert parts[1] <= MOST_TIME * whole[1]
 
 
-def test_a_hundred_thousand_rows_are_diagnosed_in_a_gigabyte_and_four_minutes_of_processor(tmp_path):
+def test_a_hundred_thousand_rows_are_diagnosed_in_a_gigabyte_and_four_minutes_of_processor(
+    tmp_path,
+):
     """Forty times as many rows as in 40 minutes; what is computed for the ship grows by no more than 2.5."""
     from truth import draw
 
@@ -45,7 +53,9 @@ def test_a_hundred_thousand_rows_are_diagnosed_in_a_gigabyte_and_four_minutes_of
         draw("trial", SEED, minutes=minutes, causes=0).save(path)
         figures.append(measured(path, "whole"))
     (_, short, _), (memory, seconds, _) = figures
-    print(f"\n{LONG_MINUTES * 60} rows: {memory:.0f} MB, {seconds:.0f} s CPU, {seconds / short:.1f} times 40 minutes'")
+    print(
+        f"\n{LONG_MINUTES * 60} rows: {memory:.0f} MB, {seconds:.0f} s CPU, {seconds / short:.1f} times 40 minutes'"
+    )
     assert memory <= LONG_MEMORY and seconds <= LONG_TIME
 
 
@@ -90,7 +100,9 @@ def main(log, part):
 
     parts.PART, parts._ENTRIES = part, part * 64
     parts._KEPT = parts._KEPT if part < 10**6 else 10**12
-    read = read_measurements(log, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[ROOT / "build" / "fmus"]))
+    read = read_measurements(
+        log, read_system(ROOT / "ssp" / "gunnerus_open", fmus=[ROOT / "build" / "fmus"])
+    )
     table = repaired(read.log)
     short = identification_problem(
         table.isel(time=slice(0, 1200)), read.ship, read.causes

@@ -24,12 +24,19 @@ def test_a_variation_is_forty_times_as_fast_on_one_core_as_the_run_in_python(roo
         starts.append(1000.0 * cpu_seconds(lambda: many(SHORT)) / VARIATIONS)
     reported("CPU time of a variation of 1 s", starts, "ms", "10")
     what = f"each of {VARIATIONS} variations, on each core"
-    assert reported(what, ratios, "times as fast as the run in Python", "150: 300 on two cores") >= AT_LEAST
+    assert (
+        reported(what, ratios, "times as fast as the run in Python", "150: 300 on two cores")
+        >= AT_LEAST
+    )
 
 
 def many(stop_time):
-    variations = [{"environment.seed": seed, "sensors.seed": 1000 + seed} for seed in range(VARIATIONS)]
-    scenario = read_scenario("four_corner").model_copy(update={"stop_time": stop_time, "expect": []})
+    variations = [
+        {"environment.seed": seed, "sensors.seed": 1000 + seed} for seed in range(VARIATIONS)
+    ]
+    scenario = read_scenario("four_corner").model_copy(
+        update={"stop_time": stop_time, "expect": []}
+    )
     if stop_time == SHORT:
         scenario = scenario.model_copy(update={"events": scenario.events[:1]})
     runs = shipcosim.simulate_many(None, scenario, variations, record=SHOWN)

@@ -19,15 +19,27 @@ LARGEST = 20.0  # microseconds
 
 
 def empty_fmu():
-    lines = ["from shipcosim.fmi import Fmu, Input, Output", "", "", "class Empty(Fmu):", '    """Does nothing."""', ""]
-    lines += [f'    u{i} = Input("1", "input {i}")\n    y{i} = Output("1", "output {i}")' for i in range(N_VALUES)]
+    lines = [
+        "from shipcosim.fmi import Fmu, Input, Output",
+        "",
+        "",
+        "class Empty(Fmu):",
+        '    """Does nothing."""',
+        "",
+    ]
+    lines += [
+        f'    u{i} = Input("1", "input {i}")\n    y{i} = Output("1", "output {i}")'
+        for i in range(N_VALUES)
+    ]
     return "\n".join([*lines, "", "    def step(self, t, h):", "        pass", ""])
 
 
 def ring():
     """SSD in which every FMU feeds the next one."""
     space = "http://ssp-standard.org/SSP1/SystemStructureDescription"
-    components = "".join(f'<Component name="c{i}" source="resources/empty.fmu"/>' for i in range(N_FMUS))
+    components = "".join(
+        f'<Component name="c{i}" source="resources/empty.fmu"/>' for i in range(N_FMUS)
+    )
     connections = "".join(
         f'<Connection startElement="c{i}" startConnector="y{j}" endElement="c{(i + 1) % N_FMUS}" endConnector="u{j}"/>'
         for i in range(N_FMUS)
@@ -47,6 +59,13 @@ def test_own_time_per_fmu_step(tmp_path):
     costs = []
     for _ in range(RUNS):
         told = []
-        simulate(system, scenario, RunOptions(progress=lambda done, total, told=told: told.append(time.perf_counter())))
+        simulate(
+            system,
+            scenario,
+            RunOptions(progress=lambda done, total, told=told: told.append(time.perf_counter())),
+        )
         costs.append((told[-1] - told[0]) / (N_FMUS * N_STEPS))
-    assert reported("step of an FMU", [1e6 * cost for cost in costs], "microseconds", "20, aim 10") < LARGEST
+    assert (
+        reported("step of an FMU", [1e6 * cost for cost in costs], "microseconds", "20, aim 10")
+        < LARGEST
+    )

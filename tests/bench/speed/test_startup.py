@@ -31,7 +31,9 @@ ComponentInstance.step = first
 
 def command():
     """The installed command."""
-    return str(Path(sysconfig.get_path("scripts")) / ("shipcosim.exe" if os.name == "nt" else "shipcosim"))
+    return str(
+        Path(sysconfig.get_path("scripts")) / ("shipcosim.exe" if os.name == "nt" else "shipcosim")
+    )
 
 
 def test_help_comes_at_once():
@@ -51,7 +53,9 @@ def test_first_step_of_a_run_comes_within_two_seconds(root, tmp_path):
     seconds = []
     for _ in range(RUNS):
         start = time.time()
-        done = subprocess.run([sys.executable, "-c", code, *arguments], cwd=root, capture_output=True, text=True)
+        done = subprocess.run(
+            [sys.executable, "-c", code, *arguments], cwd=root, capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stderr
         seconds.append(float(done.stderr.partition("first step at ")[2].split()[0]) - start)
     assert reported("first step of shipcosim run", seconds, "s", f"{LONGEST_START}") < LONGEST_START

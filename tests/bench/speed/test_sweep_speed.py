@@ -67,10 +67,18 @@ def test_a_run_of_a_study_costs_less_than_ten_milliseconds_on_top(plan, tmp_path
     swept(plan(few, length), tmp_path / "first")
     on_top = []
     for number in range(ROUNDS):
-        study = [spent(lambda n=n, k=number: swept(plan(n, length), tmp_path / f"{k}-{n}")) for n in (few, many)]
+        study = [
+            spent(lambda n=n, k=number: swept(plan(n, length), tmp_path / f"{k}-{n}"))
+            for n in (few, many)
+        ]
         same = [spent(lambda n=n: alone(n)) for n in (few, many)]
         on_top.append(1000.0 * ((study[1] - study[0]) - (same[1] - same[0])) / (many - few))
-    assert reported("CPU time of a run of a study over that of the same variation alone", on_top, "ms", "10") < 10.0
+    assert (
+        reported(
+            "CPU time of a run of a study over that of the same variation alone", on_top, "ms", "10"
+        )
+        < 10.0
+    )
 
 
 def test_two_processes_do_nearly_twice_as_much(plan, tmp_path):
@@ -81,8 +89,15 @@ def test_two_processes_do_nearly_twice_as_much(plan, tmp_path):
         clock = {}
         for n in (1, 2):
             folder = tmp_path / f"{number}-{n}"
-            clock[n] = spent(lambda n=n, to=folder: swept(plan(runs, length), to, n), time.perf_counter)
+            clock[n] = spent(
+                lambda n=n, to=folder: swept(plan(runs, length), to, n), time.perf_counter
+            )
         ratios.append(clock[1] / clock[2])
         throughput.append(runs * length / clock[1])
-    reported("ship-seconds a second on one core, start of the worker included", throughput, "", "as many as can be")
+    reported(
+        "ship-seconds a second on one core, start of the worker included",
+        throughput,
+        "",
+        "as many as can be",
+    )
     assert reported("time of one process over that of two", ratios, "", "1.8") >= 1.5

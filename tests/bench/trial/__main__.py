@@ -32,27 +32,39 @@ def main(arguments=None):
     running = commands.add_parser("run", help="draw and diagnose what is not in the results yet")
     running.add_argument("--kinds", nargs="+", choices=runs.KINDS, default=runs.KINDS)
     running.add_argument("--sets", nargs="+", choices=runs.SETS, default=["one", "healthy"])
-    running.add_argument("--seeds", type=_range, default=range(FIRST_SEED, FIRST_SEED + 200), help="FROM:TO")
+    running.add_argument(
+        "--seeds", type=_range, default=range(FIRST_SEED, FIRST_SEED + 200), help="FROM:TO"
+    )
     running.add_argument("--into", type=Path, default=ROOT / "results" / "trial.jsonl")
     running.add_argument("--jobs", type=int, default=1)
     running.add_argument("--minutes", type=float, help="begin no new batch after this long")
     running.add_argument("--tool", help="module:function that diagnoses a path")
     running.set_defaults(call=_run)
-    sailing = commands.add_parser("sail", help="sail what ambiguous answers prescribe, and diagnose the longer logs")
+    sailing = commands.add_parser(
+        "sail", help="sail what ambiguous answers prescribe, and diagnose the longer logs"
+    )
     sailing.add_argument("--kinds", nargs="+", choices=runs.KINDS, default=runs.KINDS)
     sailing.add_argument("--sets", nargs="+", choices=runs.SETS, default=["one"])
-    sailing.add_argument("--into", type=Path, default=ROOT / "results" / "trial.jsonl", help="where the answers are")
+    sailing.add_argument(
+        "--into", type=Path, default=ROOT / "results" / "trial.jsonl", help="where the answers are"
+    )
     sailing.add_argument("--jobs", type=int, default=1)
     sailing.add_argument("--minutes", type=float, help="begin no new log after this long")
     sailing.add_argument("--tool", default=runs.TOOL, help="module:function that diagnoses a path")
     sailing.set_defaults(call=_sail)
     showing = commands.add_parser("table", help="print the table of results")
-    showing.add_argument("results", type=Path, nargs="*", default=[ROOT / "results" / "trial.jsonl"])
-    showing.add_argument("--write", action="store_true", help="into docs/generated/diagnosis-trial.md too")
+    showing.add_argument(
+        "results", type=Path, nargs="*", default=[ROOT / "results" / "trial.jsonl"]
+    )
+    showing.add_argument(
+        "--write", action="store_true", help="into docs/generated/diagnosis-trial.md too"
+    )
     showing.set_defaults(call=_table)
     beside = commands.add_parser("rivals", help="print the rates of several tools on the same logs")
     beside.add_argument("results", type=Path, nargs="+")
-    beside.add_argument("--write", action="store_true", help="into docs/generated/diagnosis-trial.md too")
+    beside.add_argument(
+        "--write", action="store_true", help="into docs/generated/diagnosis-trial.md too"
+    )
     beside.set_defaults(call=_rivals)
     options = parser.parse_args(arguments)
     options.call(options)
@@ -95,7 +107,9 @@ def shown():
     columns = [BarColumn(), MofNCompleteColumn(), TaskProgressColumn(), TimeElapsedColumn()]
     columns += [TextColumn("left:"), TimeRemainingColumn()]
     hour = 3600.0  # s of results that tell the pace
-    with Progress(*columns, speed_estimate_period=hour, transient=True, disable=not sys.stdout.isatty()) as bar:
+    with Progress(
+        *columns, speed_estimate_period=hour, transient=True, disable=not sys.stdout.isatty()
+    ) as bar:
         task = bar.add_task("", total=None)
 
         def show(result, total):

@@ -26,7 +26,10 @@ def comparison(results):
     by_tool = {tool: [r for r in results if r["tool"] == tool] for tool in LABELS}
     by_tool = {tool: found for tool, found in by_tool.items() if found}
     common = set.intersection(*({key(r) for r in found} for found in by_tool.values()))
-    lines = ["| | " + " | ".join(LABELS[tool] for tool in by_tool) + " |", "|---|" + "---|" * len(by_tool)]
+    lines = [
+        "| | " + " | ".join(LABELS[tool] for tool in by_tool) + " |",
+        "|---|" + "---|" * len(by_tool),
+    ]
     for row in ROWS:
         for kind in KINDS if row.name in NAMES else ():
             mine = [[r for r in found if key(r) in common] for found in by_tool.values()]

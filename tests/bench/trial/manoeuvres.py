@@ -23,7 +23,10 @@ def orders_of(manoeuvre):
     """A manoeuvre as the fields of `truth.orders.Orders`."""
     return {
         "legs": [[float(value) for value in leg] for leg in manoeuvre.legs],
-        "pushes": [[p.thruster, *(float(v) for v in (p.start, p.end, p.force, *p.azimuth))] for p in manoeuvre.pushes],
+        "pushes": [
+            [p.thruster, *(float(v) for v in (p.start, p.end, p.force, *p.azimuth))]
+            for p in manoeuvre.pushes
+        ],
         "free": [[float(value) for value in span] for span in manoeuvre.free],
     }
 

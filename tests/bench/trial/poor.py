@@ -67,8 +67,14 @@ def _channels(names, which, rng):
 
 def _is_in(answer, span, roles):
     """Whether a hidden effect is in what is kept of a log."""
-    in_time = not answer.segments or any(start <= span[1] and end >= span[0] for start, end in answer.segments)
-    return in_time and (not answer.channels or bool(set(answer.channels) & roles)) and answer.onset <= span[1]
+    in_time = not answer.segments or any(
+        start <= span[1] and end >= span[0] for start, end in answer.segments
+    )
+    return (
+        in_time
+        and (not answer.channels or bool(set(answer.channels) & roles))
+        and answer.onset <= span[1]
+    )
 
 
 def _role(name):

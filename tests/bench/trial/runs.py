@@ -21,12 +21,24 @@ from truth.cases import CAUSES
 
 KINDS = ("trial", "work", "hold")
 TOOL = "trial.tools:ours"
-REFERENCED = ("form_reference", "healthy_form_reference")  # sets with a sea trial of another day, the ship well
+REFERENCED = (
+    "form_reference",
+    "healthy_form_reference",
+)  # sets with a sea trial of another day, the ship well
 TOOLS = {"drift": "trial.tools:with_drift"}  # of the sets that others are for
 TOOLS |= dict.fromkeys(REFERENCED, "trial.tools:with_reference_log")
 BATCH = 16
 DRIFT = {"legs": [[30, 0, 0, 0], [300, 0, 0, 0]], "free": [[30, 330]]}  # five minutes without power
-ALIKE = ("current", "tow", "wave_drift", "thrust_loss", "rpm_offset", "azimuth_offset", "reverse_loss", "wind_scale")
+ALIKE = (
+    "current",
+    "tow",
+    "wave_drift",
+    "thrust_loss",
+    "rpm_offset",
+    "azimuth_offset",
+    "reverse_loss",
+    "wind_scale",
+)
 """Causes that look like another one in a few minutes in which a ship does little."""
 POOR = {
     "slow_2s": {"every": 2},
@@ -103,7 +115,9 @@ def run(kinds, sets, seeds, into, *, tool=None, jobs=1, minutes=None, progress=p
                 wanted = [seed for seed in batch if (kind, name, seed) not in done]
                 if not wanted or time.monotonic() > until:
                     continue
-                for result in diagnosed(kind, name, wanted, tool=tool or TOOLS.get(name, TOOL), pool=pool):
+                for result in diagnosed(
+                    kind, name, wanted, tool=tool or TOOLS.get(name, TOOL), pool=pool
+                ):
                     add(result, into)
                     progress(result, len(plan - done))
     return [result for result in read_results(into) if key(result) in plan]
@@ -111,7 +125,11 @@ def run(kinds, sets, seeds, into, *, tool=None, jobs=1, minutes=None, progress=p
 
 def pool_of(jobs):
     """Processes for `diagnosed`; none for one job."""
-    return ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) if jobs > 1 else contextlib.nullcontext()
+    return (
+        ProcessPoolExecutor(jobs, mp_context=get_context("spawn"))
+        if jobs > 1
+        else contextlib.nullcontext()
+    )
 
 
 def diagnosed(kind, name, seeds, *, tool=TOOL, pool=None):
@@ -132,7 +150,9 @@ def drawn(kind, seeds, options):
     if "poor" not in options:
         return draw_many(kind, seeds, **options)
     rest = {key: value for key, value in options.items() if key != "poor"}
-    return [poorer(case, **options["poor"]) for case in _whole(kind, tuple(seeds), json.dumps(rest))]
+    return [
+        poorer(case, **options["poor"]) for case in _whole(kind, tuple(seeds), json.dumps(rest))
+    ]
 
 
 @lru_cache(maxsize=2)
@@ -144,7 +164,9 @@ def _whole(kind, seeds, options):
 def answered(cases, *, tool=TOOL, pool=None):
     """Diagnose drawn logs, each with its set and the options that it was drawn with; yields as `diagnosed`."""
     with tempfile.TemporaryDirectory() as folder:
-        paths = [str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in cases]
+        paths = [
+            str(Path(folder) / f"{case.kind}-{name}-{case.seed}.csv") for case, name, _ in cases
+        ]
         for (case, name, _), path in zip(cases, paths, strict=True):
             case.save(path)
             if name == "drift":
@@ -160,7 +182,9 @@ def answered(cases, *, tool=TOOL, pool=None):
                 "set": name,
                 "options": options,
                 "seed": int(case.seed),
-                "answer": json.loads(json.dumps([answer._asdict() for answer in case.answer], default=float)),
+                "answer": json.loads(
+                    json.dumps([answer._asdict() for answer in case.answer], default=float)
+                ),
                 "span": [float(times.min()), float(times.max())],
                 "tool": tool,
                 **outcome,
@@ -169,7 +193,9 @@ def answered(cases, *, tool=TOOL, pool=None):
 
 def reference_log(case):
     """A sea trial of the ship of a log on another day, on which she is well."""
-    return draw("trial", case.seed, causes=0, form=SETS[REFERENCED[0]]["form"], day=1, ship=case.kind)
+    return draw(
+        "trial", case.seed, causes=0, form=SETS[REFERENCED[0]]["form"], day=1, ship=case.kind
+    )
 
 
 def outcome_of(path, tool=TOOL):
@@ -219,7 +245,9 @@ def _version():
     """Version of the project, with the commit where it is a working copy."""
     command = ["git", "describe", "--always", "--dirty"]
     try:
-        commit = subprocess.run(command, cwd=Path(__file__).parent, capture_output=True, text=True, check=True).stdout
+        commit = subprocess.run(
+            command, cwd=Path(__file__).parent, capture_output=True, text=True, check=True
+        ).stdout
     except (OSError, subprocess.CalledProcessError):
         return shipcosim.__version__
     return f"{shipcosim.__version__} ({commit.strip()})"

@@ -129,7 +129,9 @@ def score(answers, diagnosis, span):
         overlap=_least_overlap(answers, pairs, span),
         errors={_name(a): _error(a, f) for a, f in pairs if a["parameters"]},
         within={f"{_name(a)} {k}": _is_within(a, f, k) for a, f in pairs for k in a["parameters"]},
-        onset_errors={_name(a): (f.get("onset") or 0.0) - a["onset"] for a, f in pairs if a.get("onset")},
+        onset_errors={
+            _name(a): (f.get("onset") or 0.0) - a["onset"] for a, f in pairs if a.get("onset")
+        },
     )
 
 
@@ -141,7 +143,9 @@ def named_rightly(answers, diagnosis):
     list of tuple of dict and bool
     """
     pairs = _paired(answers, diagnosis.get("findings", []))
-    return [(found, any(found is one for _, one in pairs)) for found in diagnosis.get("findings", [])]
+    return [
+        (found, any(found is one for _, one in pairs)) for found in diagnosis.get("findings", [])
+    ]
 
 
 def _paired(answers, findings):
@@ -178,7 +182,11 @@ def _least_overlap(answers, pairs, span):
     faults = [answer for answer in answers if answer["cause"] in DATA_FAULTS]
     if not faults:
         return None
-    found = [_overlap(answer, finding, span) for answer, finding in pairs if answer["cause"] in DATA_FAULTS]
+    found = [
+        _overlap(answer, finding, span)
+        for answer, finding in pairs
+        if answer["cause"] in DATA_FAULTS
+    ]
     return min(found) if len(found) == len(faults) else 0.0
 
 

@@ -164,7 +164,9 @@ def _removed(name, after, floor, before="bias_observer_m"):
         gains = [result["diagnosis"].get(name) or {} for result, judged in pairs if judged.right]
         left = [(gain[before], gain[after], gain[floor]) for gain in gains if after in gain]
         shares = [
-            (first - missed) / (first - min(least, missed)) for first, missed, least in left if least < LITTLE * first
+            (first - missed) / (first - min(least, missed))
+            for first, missed, least in left
+            if least < LITTLE * first
         ]
         return f"{100 * np.median(shares):.0f} % ({len(shares)})" if shares else ""
 
@@ -188,15 +190,32 @@ def _gain_rows(place, name, wanted):
     """Rows of one kind of gain: with an observer on both sides, with one only beside the plain model, and shares."""
     none, with_one = ("", "", ""), "after_observer_m"
     return (
-        Row(EXPLAINED.format(place), "drift", wanted, cell=_removed(name, with_one, "twin_observer_m")),
+        Row(
+            EXPLAINED.format(place),
+            "drift",
+            wanted,
+            cell=_removed(name, with_one, "twin_observer_m"),
+        ),
         Row(NOT_NOISE, "drift", none, cell=_removed(name, with_one, "noise_floor_m")),
         Row(ALONE, "drift", none, cell=_removed(name, "after_m", "twin_m")),
-        Row(f"worse than the bias observer: {place}", "drift", ("2", "2", "2"), _worse(name, with_one)),
+        Row(
+            f"worse than the bias observer: {place}",
+            "drift",
+            ("2", "2", "2"),
+            _worse(name, with_one),
+        ),
         Row("the same, by more than chance", "drift", none, _surely_worse(name)),
-        Row("and where a perfect model is not worse itself", "drift", none, _needlessly_worse(name)),
+        Row(
+            "and where a perfect model is not worse itself", "drift", none, _needlessly_worse(name)
+        ),
         Row(ALONE, "drift", none, _worse(name, "after_m")),
         *(
-            Row(SHARE.format(place, label), "drift", none, cell=_removed(name, after, "twin_m", "before_m"))
+            Row(
+                SHARE.format(place, label),
+                "drift",
+                none,
+                cell=_removed(name, after, "twin_m", "before_m"),
+            )
             for label, after in SHARED.items()
         ),
     )
@@ -204,9 +223,17 @@ def _gain_rows(place, name, wanted):
 
 ROWS = (
     Row("right cause named", "one", ("98", "88", "as honest"), _right),
-    Row("right, or said not testable", "one", ("", "", ""), lambda r, s: s.right or (s.excused and not s.alarm)),
     Row(
-        "in the reported set (before any manoeuvre)", "one", ("", "", ""), lambda r, s: s.contained if s.alarm else None
+        "right, or said not testable",
+        "one",
+        ("", "", ""),
+        lambda r, s: s.right or (s.excused and not s.alarm),
+    ),
+    Row(
+        "in the reported set (before any manoeuvre)",
+        "one",
+        ("", "", ""),
+        lambda r, s: s.contained if s.alarm else None,
     ),
     Row("the same, of ambiguous answers", "one", ("", "", ""), _of_ambiguous),
     Row(
@@ -233,7 +260,9 @@ ROWS = (
     *(row for place, name, wanted in GAINS for row in _gain_rows(place, name, wanted)),
     Row("twice the mismatch: right", "mismatch", ("", "", ""), _right),
     Row("twice the mismatch: right when it names one", "mismatch", ("99", "98", "95"), _precise),
-    Row("twice the mismatch: false alarm on healthy data", "healthy_mismatch", ("", "", ""), _alarm),
+    Row(
+        "twice the mismatch: false alarm on healthy data", "healthy_mismatch", ("", "", ""), _alarm
+    ),
     Row("rough ship: right", "rough", ("", "", ""), _right),
     Row("rough ship: right when it names one", "rough", ("99", "98", "95"), _precise),
     Row("rough ship: false alarm on healthy data", "healthy_rough", ("", "", ""), _alarm),
@@ -241,17 +270,39 @@ ROWS = (
     Row("another form: right when it names one", "form", ("95", "95", ""), _precise),
     Row("another form: false alarm on healthy data", "healthy_form", ("5", "5", ""), _alarm),
     Row("another form, with a reference: right", "form_reference", ("85", "85", ""), _right),
-    Row("another form, with a reference: right when it names one", "form_reference", ("98", "98", ""), _precise),
     Row(
-        "another form, with a reference: false alarm on healthy data", "healthy_form_reference", ("2", "2", ""), _alarm
+        "another form, with a reference: right when it names one",
+        "form_reference",
+        ("98", "98", ""),
+        _precise,
     ),
-    Row("a wrong clock beside a cause: both named, nothing else", "clock", ("86", "60", ""), _right),
+    Row(
+        "another form, with a reference: false alarm on healthy data",
+        "healthy_form_reference",
+        ("2", "2", ""),
+        _alarm,
+    ),
+    Row(
+        "a wrong clock beside a cause: both named, nothing else", "clock", ("86", "60", ""), _right
+    ),
     Row("the same, a wrong name", "clock", ("", "", ""), _wrong),
     Row("a few minutes in which causes look alike: ambiguous", "alike", ("", "", ""), _ambiguous),
     Row("the same, a wrong name", "alike", ("", "", ""), _wrong),
-    Row("the same, in the reported set, of ambiguous answers", "alike", ("", "", ""), _of_ambiguous),
-    Row("after the one prescribed manoeuvre: right cause named", "alike sailed", ("", "", ""), _right),
-    Row("the same, in the reported set", "alike sailed", ("95", "95", "95"), lambda r, s: s.contained),
+    Row(
+        "the same, in the reported set, of ambiguous answers", "alike", ("", "", ""), _of_ambiguous
+    ),
+    Row(
+        "after the one prescribed manoeuvre: right cause named",
+        "alike sailed",
+        ("", "", ""),
+        _right,
+    ),
+    Row(
+        "the same, in the reported set",
+        "alike sailed",
+        ("95", "95", "95"),
+        lambda r, s: s.contained,
+    ),
     Row("the same, a wrong name", "alike sailed", ("", "", ""), _wrong),
     *(row for name in POOR for row in _poor_rows(name)),
     Row("time", "one", ("30 s", "30 s", "60 s"), cell=_seconds),
@@ -262,7 +313,9 @@ LEADING = {
     "right cause named": "the hidden cause is named, and nothing else",
     "right when it names one": "what is named is right",
     "false alarm on healthy data": "a healthy ship is called wrong",
-    EXPLAINED.format("DP"): "of the error at 60 s that the cause explains, the extended model removes",
+    EXPLAINED.format(
+        "DP"
+    ): "of the error at 60 s that the cause explains, the extended model removes",
     "another form: right": "the hidden cause of a ship of another form than the model is named, and nothing else",
     "another form: right when it names one": "what is named of her is right",
     "another form: false alarm on healthy data": "a healthy ship of another form is called wrong",
@@ -275,7 +328,9 @@ def leading(results):
     lines = ["| | " + " | ".join(KINDS) + " |", "|---|" + "---|" * len(KINDS)]
     for label, words in LEADING.items():
         row = next(row for row in ROWS if row.label == label)
-        lines.append(f"| {words} | " + " | ".join(content(row, results, kind) for kind in KINDS) + " |")
+        lines.append(
+            f"| {words} | " + " | ".join(content(row, results, kind) for kind in KINDS) + " |"
+        )
     return "\n".join(lines)
 
 
@@ -297,7 +352,8 @@ def table(results):
         cells = [content(row, results, kind) for kind in KINDS]
         if any(cells):
             wanted = [
-                f" ({target})" if cell and target else "" for cell, target in zip(cells, row.targets, strict=True)
+                f" ({target})" if cell and target else ""
+                for cell, target in zip(cells, row.targets, strict=True)
             ]
             lines.append(f"| {row.label} | " + " | ".join(map(str.__add__, cells, wanted)) + " |")
     parts = lines, calibration(results), _causes(results), _misses(results)
@@ -319,7 +375,10 @@ def _cell(successes, tries):
 
 
 def _heading(results):
-    seeds, versions = [result["seed"] for result in results], sorted({result["version"] for result in results})
+    seeds, versions = (
+        [result["seed"] for result in results],
+        sorted({result["version"] for result in results}),
+    )
     errors = sum(result["error"] is not None for result in results)
     return (
         f"{len(results)} logs, seeds {min(seeds)} to {max(seeds)}, version {', '.join(versions)}; {errors} ended in an"
@@ -346,11 +405,16 @@ def calibration(results):
             sure, data = finding["probability"], finding["kind"] == "data"
             place = -1 if data else min(np.searchsorted(SURE, sure, side="right"), len(edges)) - 1
             [*bins.values()][place].append((sure, right))
-    lines = ["| causes named with probability | named | mean probability | right |", "|---|---|---|---|"]
+    lines = [
+        "| causes named with probability | named | mean probability | right |",
+        "|---|---|---|---|",
+    ]
     for name, found in bins.items():
         if found:
             sure, right = np.transpose(found)
-            lines.append(f"| {name} | {len(found)} | {sure.mean():.2f} | {_cell(int(right.sum()), right.size)} |")
+            lines.append(
+                f"| {name} | {len(found)} | {sure.mean():.2f} | {_cell(int(right.sum()), right.size)} |"
+            )
     return lines
 
 
@@ -361,10 +425,16 @@ def _causes(results):
         for result, judged in _judged(results, "one", kind):
             cause = result["answer"][0]["cause"]
             counts[cause].update({f"{kind} all": 1, kind: int(judged.right)})
-    lines = ["| right, of single causes | " + " | ".join(KINDS) + " |", "|---|" + "---|" * len(KINDS)]
+    lines = [
+        "| right, of single causes | " + " | ".join(KINDS) + " |",
+        "|---|" + "---|" * len(KINDS),
+    ]
     for cause in sorted(counts):
         cells = [
-            f"{counts[cause][k]} of {counts[cause][f'{k} all']}" if counts[cause][f"{k} all"] else "" for k in KINDS
+            f"{counts[cause][k]} of {counts[cause][f'{k} all']}"
+            if counts[cause][f"{k} all"]
+            else ""
+            for k in KINDS
         ]
         lines.append(f"| `{cause}` | " + " | ".join(cells) + " |")
     return lines
@@ -376,10 +446,14 @@ def _misses(results):
     for result in results:
         judged = score(result["answer"], result["diagnosis"] or UNJUDGED, result["span"])
         if not judged.right:
-            found[result["kind"], result["set"], hidden_name(result), answered_name(result)].append(result["seed"])
+            found[result["kind"], result["set"], hidden_name(result), answered_name(result)].append(
+                result["seed"]
+            )
     lines = ["| kind, set | hidden | answered | seeds |", "|---|---|---|---|"]
     for (kind, name, hidden, answered), seeds in sorted(found.items()):
-        lines.append(f"| {kind}, {name} | {hidden} | {answered} | {', '.join(map(str, sorted(seeds)))} |")
+        lines.append(
+            f"| {kind}, {name} | {hidden} | {answered} | {', '.join(map(str, sorted(seeds)))} |"
+        )
     return lines
 
 
@@ -394,8 +468,12 @@ def answered_name(result):
     if diagnosis is None:
         return f"error: {result['error'][:80]}"
     named = " + ".join(_words(finding) for finding in diagnosis["findings"])
-    beside = ", ".join(_words(candidate) for candidate in diagnosis.get("indistinguishable", [])[:4])
-    return " ".join(part for part in (diagnosis["verdict"], named, f"({beside})" if beside else "") if part)
+    beside = ", ".join(
+        _words(candidate) for candidate in diagnosis.get("indistinguishable", [])[:4]
+    )
+    return " ".join(
+        part for part in (diagnosis["verdict"], named, f"({beside})" if beside else "") if part
+    )
 
 
 def _words(entry):

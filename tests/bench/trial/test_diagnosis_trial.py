@@ -29,7 +29,9 @@ def results(root):
     return found
 
 
-@pytest.mark.parametrize("row", [row for row in tables.ROWS if row.hit and any(row.targets)], ids=lambda row: row.label)
+@pytest.mark.parametrize(
+    "row", [row for row in tables.ROWS if row.hit and any(row.targets)], ids=lambda row: row.label
+)
 def test_the_rate_so_far_is_compatible_with_what_is_wanted(results, row):
     """The upper (where little is wanted: lower) end of its 95 % interval reaches the target."""
     held = 0

@@ -3,7 +3,9 @@
 from trial import runs, tools
 
 
-def test_naming_the_cause_is_worth_more_than_a_bias_observer_under_dp_and_in_the_drift_after_it(tmp_path):
+def test_naming_the_cause_is_worth_more_than_a_bias_observer_under_dp_and_in_the_drift_after_it(
+    tmp_path,
+):
     (case,) = runs.draw_many("trial", [3], among=["current"], after=runs.DRIFT)
     case.save(tmp_path / "log.csv")
     case.twin().save(tools.twin_of(tmp_path / "log.csv"))

@@ -106,9 +106,15 @@ def with_drift(path, nameless=None):
         return WithGain(diagnosis)
     under_dp = problem, compare(problem, fit)
     adrift = _compared(path, problem.noise, fit, UNTIL)
-    healthy = [_compared(twin_of(path), problem.noise, None, until)[1] for until in (SHARE * UNTIL, UNTIL)]
-    under_dp = _gain(*under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0, nameless)
-    adrift = _gain(*adrift, healthy[1], lambda errors: errors["regime"].values == "drifting", nameless)
+    healthy = [
+        _compared(twin_of(path), problem.noise, None, until)[1] for until in (SHARE * UNTIL, UNTIL)
+    ]
+    under_dp = _gain(
+        *under_dp, healthy[0], lambda errors: errors["start_time"].values <= UNTIL - 60.0, nameless
+    )
+    adrift = _gain(
+        *adrift, healthy[1], lambda errors: errors["regime"].values == "drifting", nameless
+    )
     return WithGain(replace(diagnosis, gain=under_dp), adrift)
 
 

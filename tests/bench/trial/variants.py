@@ -28,7 +28,10 @@ def turned_finding(cause, component, values, angle):
     for end in ("", "_start", "_end"):
         north, east = values.get(f"north{end}"), values.get(f"east{end}")
         if north is not None:
-            values[f"north{end}"], values[f"east{end}"] = cos * north - sin * east, sin * north + cos * east
+            values[f"north{end}"], values[f"east{end}"] = (
+                cos * north - sin * east,
+                sin * north + cos * east,
+            )
     return cause, component, values
 
 
@@ -48,8 +51,15 @@ def mirrored(log):
 def mirrored_finding(cause, component, values):
     """The other side's unit; what points to starboard changes its sign, and so do angles."""
     flips = cause in MIRRORED or (cause, component) == ("rpm_offset", "tunnel")
-    sign = {name: -1.0 if flips or name in ("y", "east", "east_start", "east_end") else 1.0 for name in values}
-    return cause, TWINS.get(component, component), {name: sign[name] * value for name, value in values.items()}
+    sign = {
+        name: -1.0 if flips or name in ("y", "east", "east_start", "east_end") else 1.0
+        for name in values
+    }
+    return (
+        cause,
+        TWINS.get(component, component),
+        {name: sign[name] * value for name, value in values.items()},
+    )
 
 
 def shifted(log, seconds):
@@ -69,7 +79,9 @@ def with_other_units(log):
         "yaw_rate [deg/s]": ("yaw_rate [rad/s]", np.pi / 180),
         **{f"{name} [deg]": (f"{name} [rad]", np.pi / 180) for name in ANGLES},
     }
-    return pd.DataFrame({new: factor * log[old] for old, (new, factor) in _all(log, factors).items()})
+    return pd.DataFrame(
+        {new: factor * log[old] for old, (new, factor) in _all(log, factors).items()}
+    )
 
 
 def _all(log, factors):
@@ -93,7 +105,9 @@ def with_channel_file(log, folder):
     for name, column in names.items():
         role, unit = name.rstrip("]").split(" [")
         more = {"heading": ", offset = 90", "starboard_azimuth": ", sign = -1"}.get(role, "")
-        lines.append(f'{role} = {{column = "{column}", unit = "{"kn" if role == "surge" else unit}"{more}}}')
+        lines.append(
+            f'{role} = {{column = "{column}", unit = "{"kn" if role == "surge" else unit}"{more}}}'
+        )
     path = folder / "channels.toml"
     path.write_text("\n".join(lines), encoding="utf-8")
     return table, path
@@ -103,7 +117,10 @@ def at_positions_on_earth(log, latitude=63.4, longitude=10.4):
     """Latitude and longitude instead of metres, on the WGS 84 ellipsoid."""
     radius, flat = 6378137.0, 0.00669437999014
     curve = 1.0 - flat * np.sin(np.radians(latitude)) ** 2
-    meridian, parallel = radius * (1 - flat) / curve**1.5, radius / curve**0.5 * np.cos(np.radians(latitude))
+    meridian, parallel = (
+        radius * (1 - flat) / curve**1.5,
+        radius / curve**0.5 * np.cos(np.radians(latitude)),
+    )
     new = log.drop(columns=["north [m]", "east [m]"])
     new["latitude [deg]"] = latitude + np.degrees(log["north [m]"] / meridian)
     new["longitude [deg]"] = longitude + np.degrees(log["east [m]"] / parallel)
@@ -128,6 +145,8 @@ def thickened(log, parts=2):
         new[name] = np.interp(dense, time[good], values)
         if "[deg]" in name:
             new[name] = (
-                new[name] % 360.0 if name.startswith(("heading", "wind")) else (new[name] + 180.0) % 360.0 - 180.0
+                new[name] % 360.0
+                if name.startswith(("heading", "wind"))
+                else (new[name] + 180.0) % 360.0 - 180.0
             )
     return pd.DataFrame(new)

@@ -28,7 +28,9 @@ INERTIA = np.array([[557e3], [743e3], [62e6]])
 LINEAR_DRAG = np.array([[5e3], [10e3], [2e6]])  # rough resistance to the planned motion
 SQUARE_DRAG = np.array([[2e3], [60e3], [75e6]])
 LIMIT = np.array([[50e3], [30e3], [450e3]])
-ERROR_LIMIT = np.array([[2.5], [2.5], [np.radians(25.0)]])  # a larger one is not answered by more thrust
+ERROR_LIMIT = np.array(
+    [[2.5], [2.5], [np.radians(25.0)]]
+)  # a larger one is not answered by more thrust
 THRUST_RATE = 2000.0
 HAND_RATE = 600.0  # of a thruster pushed by hand, so that the others can follow
 TURN_RATE = np.radians(10.0)
@@ -36,8 +38,12 @@ BIAS_LIMIT = np.array([[15e3], [15e3], [200e3]])
 DEAD_BAND = np.array([[0.15], [0.15], [np.radians(0.2)]])
 TICK = 1.0
 FIXED, TURNING, OPPOSED = 0, 1, 2
-LOADS = np.array([[1, 0, 1, 0, 0], [0, 1, 0, 1, 1], [-UNIT_Y[0], UNIT_X, -UNIT_Y[1], UNIT_X, TUNNEL_X]])
-ARM = np.array([1.0, 1.0, 8.0])  # of moments against forces, where the thrusters that are left cannot hold everything
+LOADS = np.array(
+    [[1, 0, 1, 0, 0], [0, 1, 0, 1, 1], [-UNIT_Y[0], UNIT_X, -UNIT_Y[1], UNIT_X, TUNNEL_X]]
+)
+ARM = np.array(
+    [1.0, 1.0, 8.0]
+)  # of moments against forces, where the thrusters that are left cannot hold everything
 NOMINAL_WIND = wind_table(np.ones(3), rough=False)
 
 
@@ -150,7 +156,12 @@ def plan_trial(planner, rng, modes):
     def turns():
         for _ in range(2):
             across = rng.uniform(-12, 12)
-            planner.move(0, across, rng.choice((-1, 1)) * np.radians(rng.uniform(40, 90)), rng.uniform(60, 75))
+            planner.move(
+                0,
+                across,
+                rng.choice((-1, 1)) * np.radians(rng.uniform(40, 90)),
+                rng.uniform(60, 75),
+            )
             planner.wait(12)
 
     modes, blocks = rng.permutation(modes), 0
@@ -170,7 +181,9 @@ def plan_work(planner, rng, modes):
         turn = rng.choice((-1, 1)) * np.radians(rng.uniform(15, 80))
         which = rng.integers(3)
         move, turn = move * (which != 0), turn * (which != 1)
-        seconds = max(move / rng.uniform(0.2, 0.35), np.degrees(abs(turn)) / rng.uniform(0.4, 0.7), 30)
+        seconds = max(
+            move / rng.uniform(0.2, 0.35), np.degrees(abs(turn)) / rng.uniform(0.4, 0.7), 30
+        )
         planner.move(move * np.cos(to), move * np.sin(to), turn, seconds)
 
 
@@ -199,18 +212,22 @@ class Autopilot:
         self.accelerations = np.gradient(self.rates, TICK, axis=1)
         self.mode = np.stack([plan.mode for plan in plans], axis=-1)
         self.bandwidth, self.bias_time, self.wind_share, self.toe, self.opposed = (
-            np.array([getattr(style, name) for style in styles]) for name in Style.__dataclass_fields__
+            np.array([getattr(style, name) for style in styles])
+            for name in Style.__dataclass_fields__
         )
         hands = [plan.hand or ByHand.nothing(plan.mode.size) for plan in plans]
         self.told, self.told_azimuth, self.dead = (
-            np.stack([getattr(hand, name) for hand in hands], axis=-1) for name in ByHand.__dataclass_fields__
+            np.stack([getattr(hand, name) for hand in hands], axis=-1)
+            for name in ByHand.__dataclass_fields__
         )
         self.stiffness = INERTIA * self.bandwidth**2
         self.damping = np.sqrt(3.0) * INERTIA * self.bandwidth
         self.position = self.eta[:, 0].copy()
         self.velocity = np.zeros_like(self.position)
         self.bias = np.zeros_like(self.position)
-        self.moved = np.zeros_like(self.position)  # setpoint from the plan's: where the ship is when power comes back
+        self.moved = np.zeros_like(
+            self.position
+        )  # setpoint from the plan's: where the ship is when power comes back
         self.wind = None
         self.azimuth = azimuth.copy()
         self.thrust = np.zeros((3, azimuth.shape[1]))
@@ -298,14 +315,22 @@ class Autopilot:
 
     def by_hand(self, load, k, i):
         """Thrusts (3,) and directions (2,) of one ship: as told, and the others hold her against it."""
-        told, c, s = np.isfinite(self.told[:, k, i]), np.cos(self.azimuth[:, i]), np.sin(self.azimuth[:, i])
+        told, c, s = (
+            np.isfinite(self.told[:, k, i]),
+            np.cos(self.azimuth[:, i]),
+            np.sin(self.azimuth[:, i]),
+        )
         pushed = np.where(told, self.thrust[:, i], 0.0)
-        forces = np.array([pushed[0] * c[0], pushed[0] * s[0], pushed[1] * c[1], pushed[1] * s[1], pushed[2]])
+        forces = np.array(
+            [pushed[0] * c[0], pushed[0] * s[0], pushed[1] * c[1], pushed[1] * s[1], pushed[2]]
+        )
         free = np.repeat(~told, (2, 2, 1))
         rest = (load - LOADS @ forces) / ARM
         forces[free] = np.linalg.lstsq((LOADS / ARM[:, None])[:, free], rest, rcond=None)[0]
         wish = forces[:4].reshape(2, 2).T
-        turned = np.where(np.hypot(*wish) > 1200.0, np.arctan2(wish[1], wish[0]), self.azimuth[:, i])
+        turned = np.where(
+            np.hypot(*wish) > 1200.0, np.arctan2(wish[1], wish[0]), self.azimuth[:, i]
+        )
         turned = np.where(told[:2], self.told_azimuth[:, k, i], turned)
         turn = np.mod(turned - self.azimuth[:, i] + np.pi, 2 * np.pi) - np.pi
         azimuth = self.azimuth[:, i] + np.clip(turn, -TURN_RATE * TICK, TURN_RATE * TICK)
@@ -330,8 +355,13 @@ def revolutions(thrust):
     """Propeller speeds (3, n) that give a thrust at bollard, by the nominal numbers. [rpm]"""
     ahead = WATER_DENSITY * PROPELLER_DIAMETER**4 / 3600 * BOLLARD_AHEAD
     astern = WATER_DENSITY * PROPELLER_DIAMETER**4 / 3600 * BOLLARD_ASTERN
-    units = np.where(thrust[:2] > 0, np.sqrt(np.abs(thrust[:2]) / ahead), -np.sqrt(np.abs(thrust[:2]) / astern))
+    units = np.where(
+        thrust[:2] > 0, np.sqrt(np.abs(thrust[:2]) / ahead), -np.sqrt(np.abs(thrust[:2]) / astern)
+    )
     tunnel = np.sign(thrust[2]) * np.sqrt(np.abs(thrust[2]) / TUNNEL_THRUST)
     return np.array(
-        [*np.clip(units, -AZIMUTH_RPM_MAX, AZIMUTH_RPM_MAX), np.clip(tunnel, -TUNNEL_RPM_MAX, TUNNEL_RPM_MAX)]
+        [
+            *np.clip(units, -AZIMUTH_RPM_MAX, AZIMUTH_RPM_MAX),
+            np.clip(tunnel, -TUNNEL_RPM_MAX, TUNNEL_RPM_MAX),
+        ]
     )

@@ -121,13 +121,18 @@ def draw_many(kind, seeds, **options):
     return [
         case
         for first in range(0, len(seeds), BATCH)
-        for case in draw_batch([set_up(kind, seed, **options) for seed in seeds[first : first + BATCH]])
+        for case in draw_batch(
+            [set_up(kind, seed, **options) for seed in seeds[first : first + BATCH]]
+        )
     ]
 
 
 def share_held(cases):
     """Share of healthy logs in which the ship stays near its setpoint."""
-    held = [case.off_track.max() < 12.0 and np.degrees(np.abs(case.off_heading).max()) < 25.0 for case in cases]
+    held = [
+        case.off_track.max() < 12.0 and np.degrees(np.abs(case.off_heading).max()) < 25.0
+        for case in cases
+    ]
     return np.mean(held)
 
 
@@ -183,10 +188,14 @@ def set_up(
         plan, longer = carried_out(plan, orders, of_day("captain"), AFTER), AFTER + orders.rows
         if "clock" not in names:  # with one, the last rows of the log may see what comes after them
             hidden = [effects.gone_on(e, 60 * minutes + longer) for e in hidden]
-    ends = [(n, n + longer) for n in (BEFORE + ticks, rows)] + [(records(BEFORE + ticks), records(plan.mode.size))]
+    ends = [(n, n + longer) for n in (BEFORE + ticks, rows)] + [
+        (records(BEFORE + ticks), records(plan.mode.size))
+    ]
 
     def lengthened(name):
-        return Lengthened(of_day(name), of_day(f"{name} after"), {long: short for short, long in ends})
+        return Lengthened(
+            of_day(name), of_day(f"{name} after"), {long: short for short, long in ends}
+        )
 
     drawn = draw_form(stream(ship or kind, seed, "form"), form) if form else None
     air = lengthened("air")
@@ -223,7 +232,11 @@ def modes_for(hidden):
     """Ways to use the units in which the hidden effects can show at all."""
     causes = {e.answer.cause for e in hidden}
     if "reverse_loss" in causes:
-        return (autopilot.FIXED,) if "thruster_interaction" not in causes else (autopilot.FIXED, autopilot.TURNING)
+        return (
+            (autopilot.FIXED,)
+            if "thruster_interaction" not in causes
+            else (autopilot.FIXED, autopilot.TURNING)
+        )
     if "thruster_interaction" in causes:
         return (autopilot.TURNING, autopilot.OPPOSED)
     if "channel_swap" in causes:
@@ -242,7 +255,9 @@ def set_effects(kind, seed, causes=1, size=1.0, minutes=40, among=None, onset=Fa
     groups = [group for group in groups if always is None or always in group]
     if not groups:
         raise ValueError(f"no {causes} of {names} go together")
-    return [draw_effect(name, rng, size, minutes, onset) for name in groups[rng.integers(len(groups))]]
+    return [
+        draw_effect(name, rng, size, minutes, onset) for name in groups[rng.integers(len(groups))]
+    ]
 
 
 def go_together(causes):
@@ -268,10 +283,14 @@ def draw_effect(cause, rng, size, minutes, onset):
 def draw_batch(setups):
     """Simulate logs together with their twins."""
     twins = [replace(setup, effects=()) for setup in setups if setup.effects]
-    spare = setups if len(setups) + len(twins) == 1 else []  # NumPy adds up a lone column in another order
+    spare = (
+        setups if len(setups) + len(twins) == 1 else []
+    )  # NumPy adds up a lone column in another order
     records = run(setups + twins + spare)
     cases = [write(setup, record) for setup, record in zip(setups, records, strict=False)]
-    healthy = (write(setup, record) for setup, record in zip(twins, records[len(setups) :], strict=False))
+    healthy = (
+        write(setup, record) for setup, record in zip(twins, records[len(setups) :], strict=False)
+    )
     return [replace(case, healthy=next(healthy)) if case.answer else case for case in cases]
 
 
@@ -280,10 +299,14 @@ def write(setup, record):
     times = np.arange(setup.rows)
     grid = -BEFORE + HALF_SECOND * np.arange(record["x"].size)
     when = faults.true_times(times, [e.answer for e in setup.effects])
-    channels = sensors.log_channels(record, grid, when, setup.weather, setup.mast_wind, setup.sea, setup.noise)
+    channels = sensors.log_channels(
+        record, grid, when, setup.weather, setup.mast_wind, setup.sea, setup.noise
+    )
     parts = [spoiled(setup, channels, times, slice(0, setup.planned_rows), "dropouts")]
     if setup.rows > setup.planned_rows:
-        parts.append(spoiled(setup, channels, times, slice(setup.planned_rows, setup.rows), "dropouts after"))
+        parts.append(
+            spoiled(setup, channels, times, slice(setup.planned_rows, setup.rows), "dropouts after")
+        )
     log = pd.concat([part for part, _ in parts], ignore_index=True)
     answer = [faults.told_of(pieces) for pieces in zip(*(told for _, told in parts), strict=True)]
     truth = pd.DataFrame({name: np.interp(times, grid, record[name]) for name in sensors.RECORDED})
@@ -302,7 +325,9 @@ def spoiled(setup, channels, times, rows, name):
         kept &= left
         answer.append(told)
     channels = sensors.wrap_and_round(channels)
-    channels, received = sensors.drop_out(channels, stream(setup.kind, setup.seed, name_of(name, setup.day)))
+    channels, received = sensors.drop_out(
+        channels, stream(setup.kind, setup.seed, name_of(name, setup.day))
+    )
     columns = {"time [s]": times.astype(float)}
     columns |= {f"{role} [{sensors.ROLES[role][0]}]": values for role, values in channels.items()}
     return pd.DataFrame(columns)[kept & received], answer

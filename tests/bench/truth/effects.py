@@ -65,7 +65,16 @@ SIZES = {
 THRUSTERS = ("port", "starboard", "tunnel")
 PHYSICS = tuple(SIZES)[:14]
 SENSORS = ("heading_bias", "lever_arm", "velocity_scale")
-IN_LOG = ("navigation_lag", "thruster_lag", "clock", "gap", "frame", "channel_swap", "sign", "heading_wrap")
+IN_LOG = (
+    "navigation_lag",
+    "thruster_lag",
+    "clock",
+    "gap",
+    "frame",
+    "channel_swap",
+    "sign",
+    "heading_wrap",
+)
 EXCLUSIVE = ({"current", "current_varying"}, set(IN_LOG))  # at most one of each in a pair
 NEVER_PAIRED = {"frame", "channel_swap", "sign"}
 WITHOUT_ONSET = {"mass", "current_varying"}
@@ -108,8 +117,14 @@ def draw_current_varying(rng, size, minutes):
     else:
         speeds[int(rng.random() < 0.5)] *= rng.uniform(0.0, 0.25)
     start, end = vector(speeds[0], first), vector(speeds[1], first + turn)
-    parameters = {f"{k}_start": v for k, v in start.items()} | {f"{k}_end": v for k, v in end.items()}
-    return None, parameters, {"speeds": tuple(speeds), "first": first, "turn": turn, "last": 60.0 * minutes}
+    parameters = {f"{k}_start": v for k, v in start.items()} | {
+        f"{k}_end": v for k, v in end.items()
+    }
+    return (
+        None,
+        parameters,
+        {"speeds": tuple(speeds), "first": first, "turn": turn, "last": 60.0 * minutes},
+    )
 
 
 def draw_wave_drift(rng, size, minutes):
@@ -164,12 +179,18 @@ def draw_thrust_loss(rng, size, minutes):
 
 
 def draw_azimuth_offset(rng, size, minutes):
-    return str(rng.choice(THRUSTERS[:2])), {"offset": either(rng) * draw_size("azimuth_offset", rng, size)}, {}
+    return (
+        str(rng.choice(THRUSTERS[:2])),
+        {"offset": either(rng) * draw_size("azimuth_offset", rng, size)},
+        {},
+    )
 
 
 def draw_rpm_offset(rng, size, minutes):
     thruster = str(rng.choice(THRUSTERS))
-    offset = either(rng) * draw_size("rpm_offset", rng, size) * (12.0 if thruster == "tunnel" else 1.0)
+    offset = (
+        either(rng) * draw_size("rpm_offset", rng, size) * (12.0 if thruster == "tunnel" else 1.0)
+    )
     return thruster, {"offset": offset}, {}
 
 
@@ -223,7 +244,9 @@ def gone_on(effect, last):
     shape = effect.shape | {"goes_to": last / effect.shape["last"]}
     speed = shape["speeds"][0] + shape["goes_to"] * (shape["speeds"][1] - shape["speeds"][0])
     end = vector(speed, shape["first"] + shape["goes_to"] * shape["turn"])
-    parameters = effect.answer.parameters | {f"{name}_end": float(value) for name, value in end.items()}
+    parameters = effect.answer.parameters | {
+        f"{name}_end": float(value) for name, value in end.items()
+    }
     return Effect(effect.answer._replace(parameters=parameters), shape)
 
 
@@ -267,7 +290,9 @@ def act_angle(knob):
 
 
 def act_thrust_loss(effect, knobs, i, t, ship, ramp):
-    knobs.thrust[THRUSTERS.index(effect.answer.component), i] *= 1 - ramp * effect.answer.parameters["loss"]
+    knobs.thrust[THRUSTERS.index(effect.answer.component), i] *= (
+        1 - ramp * effect.answer.parameters["loss"]
+    )
 
 
 def act_azimuth_offset(effect, knobs, i, t, ship, ramp):
@@ -276,7 +301,9 @@ def act_azimuth_offset(effect, knobs, i, t, ship, ramp):
 
 
 def act_rpm_offset(effect, knobs, i, t, ship, ramp):
-    knobs.rpm[THRUSTERS.index(effect.answer.component), i] += ramp * effect.answer.parameters["offset"]
+    knobs.rpm[THRUSTERS.index(effect.answer.component), i] += (
+        ramp * effect.answer.parameters["offset"]
+    )
 
 
 def act_reverse_loss(effect, knobs, i, t, ship, ramp):

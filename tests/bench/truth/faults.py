@@ -26,7 +26,16 @@ SWAPS = (
     ("surge", "sway"),
     ("north", "east"),
 )
-SIGNS = ("surge", "sway", "yaw_rate", "east", "tunnel_rpm", "port_azimuth", "starboard_azimuth", "wind_from")
+SIGNS = (
+    "surge",
+    "sway",
+    "yaw_rate",
+    "east",
+    "tunnel_rpm",
+    "port_azimuth",
+    "starboard_azimuth",
+    "wind_from",
+)
 GAPS = ("interpolated", "held", "missing", "empty")
 
 
@@ -41,7 +50,9 @@ def part_of(rng, seconds):
 
 def draw_lag(cause, channels):
     def draw(rng, size, minutes):
-        return Effect(Answer(cause, None, {"lag": float(draw_size(cause, rng, size))}, (), channels))
+        return Effect(
+            Answer(cause, None, {"lag": float(draw_size(cause, rng, size))}, (), channels)
+        )
 
     return draw
 
@@ -55,7 +66,9 @@ def draw_clock(rng, size, minutes):
 
 def segments(rng, lengths, seconds, apart=60):
     """Segments of these lengths in random places of the log, none near another or the ends, in whole seconds."""
-    free = np.sort(rng.uniform(0, seconds - np.sum(lengths) - apart * (len(lengths) + 1), len(lengths)))
+    free = np.sort(
+        rng.uniform(0, seconds - np.sum(lengths) - apart * (len(lengths) + 1), len(lengths))
+    )
     starts = free + apart + np.concatenate([[0.0], np.cumsum(np.asarray(lengths) + apart)[:-1]])
     return tuple((int(a), int(a + length)) for a, length in zip(starts, lengths, strict=True))
 
@@ -63,7 +76,9 @@ def segments(rng, lengths, seconds, apart=60):
 def draw_gap(rng, size, minutes):
     how = str(rng.choice(GAPS))
     parts = segments(rng, rng.uniform(25, 90, rng.integers(1, 4)), 60 * minutes)
-    channels = NAVIGATION if how in ("interpolated", "held") and rng.random() < 0.5 else tuple(ROLES)
+    channels = (
+        NAVIGATION if how in ("interpolated", "held") and rng.random() < 0.5 else tuple(ROLES)
+    )
     return Effect(Answer("gap", None, {}, parts, channels, note=how))
 
 
@@ -73,7 +88,11 @@ def draw_frame(rng, size, minutes):
 
 
 def draw_swap(rng, size, minutes):
-    return Effect(Answer("channel_swap", None, {}, part_of(rng, 60 * minutes), SWAPS[rng.integers(len(SWAPS))]))
+    return Effect(
+        Answer(
+            "channel_swap", None, {}, part_of(rng, 60 * minutes), SWAPS[rng.integers(len(SWAPS))]
+        )
+    )
 
 
 def draw_sign(rng, size, minutes):
@@ -82,7 +101,9 @@ def draw_sign(rng, size, minutes):
 
 def draw_wrap(rng, size, minutes):
     """Where they are is known when the log is written; see `wrapped`."""
-    return Effect(Answer("heading_wrap", None, {}, (), ("heading",)), {"samples": int(rng.integers(1, 5))})
+    return Effect(
+        Answer("heading_wrap", None, {}, (), ("heading",)), {"samples": int(rng.integers(1, 5))}
+    )
 
 
 DRAW = {
@@ -115,7 +136,9 @@ def true_times(times, answers):
     for answer in answers:
         if answer.cause == "clock":
             for start, end in answer.segments:
-                clock = clock + (answer.parameters["rate"] - 1) * np.clip(times - start, 0, end - start)
+                clock = clock + (answer.parameters["rate"] - 1) * np.clip(
+                    times - start, 0, end - start
+                )
         elif answer.cause in late:
             late[answer.cause] = answer.parameters["lag"]
     return clock - late["navigation_lag"], clock - late["thruster_lag"], clock
@@ -170,7 +193,9 @@ def told_of(pieces):
 
 def blend(channels, changed, hit):
     """Channels with the changed ones in the rows that are hit."""
-    return channels | {role: np.where(hit, values, channels[role]) for role, values in changed.items()}
+    return channels | {
+        role: np.where(hit, values, channels[role]) for role, values in changed.items()
+    }
 
 
 def gap(channels, hit, answer):
@@ -194,7 +219,13 @@ def frame(channels, how):
     """The channels of a frame fault, as they should not be."""
     heading = np.radians(channels["heading"])
     if how == "velocity_earth":
-        return dict(zip(("surge", "sway"), to_earth(heading, channels["surge"], channels["sway"]), strict=True))
+        return dict(
+            zip(
+                ("surge", "sway"),
+                to_earth(heading, channels["surge"], channels["sway"]),
+                strict=True,
+            )
+        )
     if how == "velocity_knots":
         return {role: channels[role] / KNOT for role in ("surge", "sway")}
     if how == "wind_knots":
@@ -207,7 +238,10 @@ def frame(channels, how):
     north, east = to_earth(heading, *to_earth(towards, channels["wind_speed"], 0.0))
     v_north, v_east = to_earth(heading, channels["surge"], channels["sway"])
     north, east = north + v_north, east + v_east
-    return {"wind_speed": np.hypot(north, east), "wind_from": np.degrees(np.arctan2(east, north)) + 180.0}
+    return {
+        "wind_speed": np.hypot(north, east),
+        "wind_from": np.degrees(np.arctan2(east, north)) + 180.0,
+    }
 
 
 def swap(channels, which):
@@ -221,9 +255,14 @@ def wrapped(channels, times, samples):
     heading = np.mod(channels["heading"], 360.0)
     parts, k = [], 1
     while k < heading.size - samples - 1:
-        if abs(heading[k] - heading[k - 1]) > 180.0 and abs(heading[k + samples] - heading[k - 1]) > 180.0:
+        if (
+            abs(heading[k] - heading[k - 1]) > 180.0
+            and abs(heading[k + samples] - heading[k - 1]) > 180.0
+        ):
             share = np.arange(1, samples + 1) / (samples + 1)
-            heading[k : k + samples] = heading[k - 1] + share * (heading[k + samples] - heading[k - 1])
+            heading[k : k + samples] = heading[k - 1] + share * (
+                heading[k + samples] - heading[k - 1]
+            )
             parts.append((float(times[k]), float(times[k + samples - 1])))
             k += samples
         k += 1

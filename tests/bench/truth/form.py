@@ -66,7 +66,10 @@ def draw_form(rng, size=1.0):
     def within(most, shape=()):
         return size * most * rng.uniform(-1.0, 1.0, shape)
 
-    factors, round_ship = 1.0 + within(DRAG_ALONG, ALONG.size), 1.0 + within(WIND_ROUND, (3, ROUND.size))
+    factors, round_ship = (
+        1.0 + within(DRAG_ALONG, ALONG.size),
+        1.0 + within(WIND_ROUND, (3, ROUND.size)),
+    )
     round_ship[:, -1] = round_ship[:, 0]
     grid = np.arange(0.0, 361.0, 10.0)
 
@@ -83,5 +86,7 @@ def draw_form(rng, size=1.0):
         rolls=rng.uniform(*ROLLS) if size else 0.0,
         tunnel_fading=size * TUNNEL_FADING * rng.uniform(),
         cross_flow_power=2.0 + within(EXPONENT),
-        hull_loss=round_the_circle(size * HULL_LOSS * rng.uniform(0.0, 1.0, (2, ROUND.size)) * (ROUND % 360.0 > 0.0)),
+        hull_loss=round_the_circle(
+            size * HULL_LOSS * rng.uniform(0.0, 1.0, (2, ROUND.size)) * (ROUND % 360.0 > 0.0)
+        ),
     )

@@ -34,7 +34,15 @@ NEUTRAL = {
     "position_scale": 1.0,
     "wind_direction": 0.0,  # measured minus true [rad]
 }
-SENSOR = ("heading_bias", "lever_x", "lever_y", "velocity_scale", "rate_scale", "position_scale", "wind_direction")
+SENSOR = (
+    "heading_bias",
+    "lever_x",
+    "lever_y",
+    "velocity_scale",
+    "rate_scale",
+    "position_scale",
+    "wind_direction",
+)
 
 
 class Knobs:

@@ -52,10 +52,16 @@ def run(setups):
     """
     n = len(setups)
     coefficients = Coefficients.stack([s.coefficients for s in setups])
-    wind, mast = (np.stack([getattr(s, name).T for s in setups], axis=-1) for name in ("wind", "mast_wind"))
+    wind, mast = (
+        np.stack([getattr(s, name).T for s in setups], axis=-1) for name in ("wind", "mast_wind")
+    )
     sea = np.stack([s.sea for s in setups], axis=-1)
-    slow, white = (np.stack([getattr(s.noise, name) for s in setups], axis=-1) for name in ("slow", "loop"))
-    period, waves_to = (np.array([getattr(s.weather, name) for s in setups]) for name in ("wave_period", "waves_to"))
+    slow, white = (
+        np.stack([getattr(s.noise, name) for s in setups], axis=-1) for name in ("slow", "loop")
+    )
+    period, waves_to = (
+        np.array([getattr(s.weather, name) for s in setups]) for name in ("wave_period", "waves_to")
+    )
     wave_number = (2 * np.pi / period) ** 2 / plant.GRAVITY
     toe = np.array([s.style.toe for s in setups])
     start = np.array([s.plan.eta[:, 0] for s in setups]).T
@@ -67,14 +73,23 @@ def run(setups):
     changing = [i for i, s in enumerate(setups) if any(changes(e) for e in s.effects)]
     pilot = Autopilot([s.plan for s in setups], [s.style for s in setups], azimuth)
     ticks = setups[0].plan.mode.size
-    record = np.empty((int(ticks / HALF_SECOND) + 1, len(RECORDED) + len(THRUSTER_ROWS) + len(knobs.sensor), n))
+    record = np.empty(
+        (int(ticks / HALF_SECOND) + 1, len(RECORDED) + len(THRUSTER_ROWS) + len(knobs.sensor), n)
+    )
     keep(record[0], ship, coefficients, knobs)
     for tick in range(ticks):
         act(setups, changing, knobs, tick - BEFORE, ship)
         k = 2 * tick
         state = [getattr(ship, name) for name in RECORDED]
         readings = sensors.loop_readings(
-            state, knobs.sensor, sea[k], period, waves_to, mast[k], slow[:, tick].copy(), white[:, tick]
+            state,
+            knobs.sensor,
+            sea[k],
+            period,
+            waves_to,
+            mast[k],
+            slow[:, tick].copy(),
+            white[:, tick],
         )
         rpm, azimuth = pilot.command(tick, *readings)
         for k in (2 * tick, 2 * tick + 1):
@@ -96,7 +111,11 @@ def act(setups, which, knobs, t, ship):
     for i in which:
         knobs.reset(i)
         for effect in setups[i].effects:
-            law = unknowns.act_unknown if effect.answer.cause == "unknown" else effects.ACT.get(effect.answer.cause)
+            law = (
+                unknowns.act_unknown
+                if effect.answer.cause == "unknown"
+                else effects.ACT.get(effect.answer.cause)
+            )
             if law:
                 law(effect, knobs, i, t, ship, effect.ramp(t))
 

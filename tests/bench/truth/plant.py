@@ -35,7 +35,9 @@ class Ship(NamedTuple):
     v_r: np.ndarray
     momentum: tuple  # of three [kg m/s, kg m/s, kg m2/s]
     rates: tuple  # of the momentum and of psi, one step ago; empty at the start
-    remembered: np.ndarray  # (3, n) velocity through the water that the force with a memory remembers
+    remembered: (
+        np.ndarray
+    )  # (3, n) velocity through the water that the force with a memory remembers
     rpm: np.ndarray  # (3, n) real speed of port, starboard and tunnel propeller
     azimuth: np.ndarray  # (2, n) real direction of the units
 
@@ -46,7 +48,23 @@ def at_rest(x, y, psi, rpm, azimuth, coefficients, knobs):
     u_c, v_c = to_body(psi, knobs.current_north, knobs.current_east)
     momentum = momenta(still, still, still, u_c, v_c, coefficients, knobs)
     remembered = np.array([-u_c, -v_c, still])
-    return Ship(x, y, psi, still, still, still, still, still, -u_c, -v_c, momentum, (), remembered, rpm, azimuth)
+    return Ship(
+        x,
+        y,
+        psi,
+        still,
+        still,
+        still,
+        still,
+        still,
+        -u_c,
+        -v_c,
+        momentum,
+        (),
+        remembered,
+        rpm,
+        azimuth,
+    )
 
 
 def to_body(psi, north, east):
@@ -112,7 +130,9 @@ def wind_load(psi, u, v, north, east, coefficients, knobs):
     left = np.minimum(place.astype(int), 35)
     ships = np.arange(psi.size)
     low, high = coefficients.wind[:, left, ships], coefficients.wind[:, left + 1, ships]
-    return (low + (high - low) * (place - left)) * ((along * along + across * across) * knobs.wind_scale)
+    return (low + (high - low) * (place - left)) * (
+        (along * along + across * across) * knobs.wind_scale
+    )
 
 
 def roll_step(ship, wind_y, hull_y, thruster_y, wave_slope, rolls, h):
@@ -154,8 +174,18 @@ def step(ship, rpm_target, azimuth_target, wind, wave_slope, coefficients, knobs
     pull_x, pull_y = to_body(ship.psi, knobs.pull_north, knobs.pull_east)
     load_x = unit_x + hull_x + air_x + pull_x + knobs.force_x + memory[0]
     load_y = unit_y + tunnel + hull_y + air_y + pull_y + knobs.force_y + memory[1]
-    load_n = unit_n + coefficients.tunnel_x * tunnel + hull_n + air_n + TOW_X * pull_y + knobs.moment + memory[2]
-    roll, roll_rate = roll_step(ship, air_y, hull_y, unit_y + tunnel, wave_slope, coefficients.rolls, h)
+    load_n = (
+        unit_n
+        + coefficients.tunnel_x * tunnel
+        + hull_n
+        + air_n
+        + TOW_X * pull_y
+        + knobs.moment
+        + memory[2]
+    )
+    roll, roll_rate = roll_step(
+        ship, air_y, hull_y, unit_y + tunnel, wave_slope, coefficients.rolls, h
+    )
     load_y = load_y - coefficients.mass * SWAY_ARM * (roll_rate - ship.roll_rate) / h
 
     p_x, p_y, p_n = ship.momentum
@@ -164,7 +194,9 @@ def step(ship, rpm_target, azimuth_target, wind, wave_slope, coefficients, knobs
     rates = (r * p_y + load_x, -r * p_x + load_y, munk + load_n, r)
     p_x, p_y, p_n, psi = (
         value + h * (1.5 * now - 0.5 * before)
-        for value, now, before in zip((*ship.momentum, ship.psi), rates, ship.rates or rates, strict=True)
+        for value, now, before in zip(
+            (*ship.momentum, ship.psi), rates, ship.rates or rates, strict=True
+        )
     )
     u_c, v_c = to_body(psi, knobs.current_north, knobs.current_east)
     u_r, v_r, r = velocities((p_x, p_y, p_n), u_c, v_c, coefficients, knobs)

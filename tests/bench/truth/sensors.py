@@ -8,7 +8,11 @@ from truth.plant import to_body, to_earth
 from truth.weather import gauss_markov, wave_motion
 
 MAST_HEIGHT = 10.0  # of the antenna above the roll axis, for ships that roll [m]
-GAUSS_MARKOV = ((0.1, 240.0), (0.1, 240.0), (np.radians(0.1), 60.0))  # north, east, heading: [m or rad, s]
+GAUSS_MARKOV = (
+    (0.1, 240.0),
+    (0.1, 240.0),
+    (np.radians(0.1), 60.0),
+)  # north, east, heading: [m or rad, s]
 WHITE = np.array([0.2, 0.2, np.radians(0.1), 0.02, 0.02, np.radians(0.05), 0.02, np.radians(1.0)])
 ROLES = {  # unit and resolution of the log
     "north": ("m", 0.01),
@@ -43,7 +47,10 @@ class Noise:
 def draw_noise(rng, ticks, rows):
     """Noise of the sizes of nominal-model.md, within a fifth of them; the heading is off by some 0.05 deg for good."""
     size = rng.uniform(0.8, 1.2, 8)
-    slow = [size[i] * std * gauss_markov(rng, ticks, 1.0, time) for i, (std, time) in enumerate(GAUSS_MARKOV)]
+    slow = [
+        size[i] * std * gauss_markov(rng, ticks, 1.0, time)
+        for i, (std, time) in enumerate(GAUSS_MARKOV)
+    ]
     slow[2] = slow[2] + np.radians(0.05) * rng.standard_normal()
     fine = np.array([0.3, 0.3, 3.0, np.radians(0.1), np.radians(0.1)])
     return Noise(
@@ -81,7 +88,9 @@ def antenna(state, sensor, sea, period, waves_to):
     body_north, body_east = to_earth(psi, surge, sway)
     arm_north, arm_east = to_earth(total, lever_x, lever_y + MAST_HEIGHT * roll)
     v_north, v_east = to_earth(psi, u + surge_rate, v + sway_rate)
-    turn_north, turn_east = to_earth(total, -rate * lever_y, rate * lever_x + MAST_HEIGHT * roll_rate)
+    turn_north, turn_east = to_earth(
+        total, -rate * lever_y, rate * lever_x + MAST_HEIGHT * roll_rate
+    )
     return (
         position_scale * (x + body_north + arm_north),
         position_scale * (y + body_east + arm_east),
@@ -111,7 +120,9 @@ def loop_readings(state, sensor, sea, period, waves_to, wind, slow, white):
 
 def running_mean(series, window, h):
     """Mean over the last `window` seconds, on the last axis."""
-    total = np.concatenate([np.zeros((*series.shape[:-1], 1)), np.cumsum(series, axis=-1) * h], axis=-1)
+    total = np.concatenate(
+        [np.zeros((*series.shape[:-1], 1)), np.cumsum(series, axis=-1) * h], axis=-1
+    )
     edges = h * np.arange(total.shape[-1])
     start = np.maximum(edges[1:] - window, 0.0)
     early = np.array([np.interp(start, edges, row) for row in total])
@@ -152,10 +163,13 @@ def log_channels(record, grid, when, conditions, wind, sea, noise):
     heading = heading + slow[2] + noise.log[2]
     surge, sway = to_body(heading, v_north, v_east)
     felt = np.array(relative_wind(state, wind, record["sensor"][6]))
-    ahead, starboard = (np.interp(air, grid, row) for row in running_mean(felt, noise.wind_mean, grid[1] - grid[0]))
+    ahead, starboard = (
+        np.interp(air, grid, row) for row in running_mean(felt, noise.wind_mean, grid[1] - grid[0])
+    )
     speed, towards = np.hypot(ahead, starboard), np.arctan2(starboard, ahead)
     units = {
-        name: np.interp(thrusters, grid, record[name]) + noise.thrusters[i] for i, name in enumerate(THRUSTER_ROWS)
+        name: np.interp(thrusters, grid, record[name]) + noise.thrusters[i]
+        for i, name in enumerate(THRUSTER_ROWS)
     }
     return {
         "north": north + slow[0] + noise.log[0],

@@ -75,11 +75,53 @@ BETA = np.linspace(-180.0, 180.0, THRUST_COEFFICIENT.size)
 # (m/s)^2 at 0, 10 ... 180 deg (gunnerus_33p9_wind_load_coefficients.csv).
 WIND_LOAD = np.array(
     [
-        [33.813, 34.126, 34.748, 34.669, 32.414, 27.199, 20.016, 12.647, 6.0174, 0, -5.1004, -10.771, -17.154]
+        [
+            33.813,
+            34.126,
+            34.748,
+            34.669,
+            32.414,
+            27.199,
+            20.016,
+            12.647,
+            6.0174,
+            0,
+            -5.1004,
+            -10.771,
+            -17.154,
+        ]
         + [-23.420, -27.911, -29.712, -29.593, -28.926, -28.611],
-        [0, 19.441, 40.860, 64.668, 87.873, 104.72, 112.01, 112.26, 110.25, 109.24, 110.44, 112.99, 113.45]
+        [
+            0,
+            19.441,
+            40.860,
+            64.668,
+            87.873,
+            104.72,
+            112.01,
+            112.26,
+            110.25,
+            109.24,
+            110.44,
+            112.99,
+            113.45,
+        ]
         + [106.57, 89.423, 65.498, 41.126, 19.474, 0],
-        [0, -138.24, -244.01, -312.54, -324.61, -267.60, -158.66, -31.170, 94.948, 218.48, 346.66, 483.34, 614.48]
+        [
+            0,
+            -138.24,
+            -244.01,
+            -312.54,
+            -324.61,
+            -267.60,
+            -158.66,
+            -31.170,
+            94.948,
+            218.48,
+            346.66,
+            483.34,
+            614.48,
+        ]
         + [698.60, 688.03, 578.55, 410.10, 216.37, 0],
     ]
 )
@@ -114,7 +156,21 @@ OTHER_WIND_LOAD = (
                 0.22,
                 0,
             ],
-            [0, -0.014, -0.029, -0.04, -0.045, -0.041, -0.035, -0.013, 0.02, 0.04, 0.075, 0.093, 0.114]
+            [
+                0,
+                -0.014,
+                -0.029,
+                -0.04,
+                -0.045,
+                -0.041,
+                -0.035,
+                -0.013,
+                0.02,
+                0.04,
+                0.075,
+                0.093,
+                0.114,
+            ]
             + [0.148, 0.149, 0.135, 0.10, 0.05, 0],
         ]
     )
@@ -142,19 +198,28 @@ class Coefficients:
     unit_y: np.ndarray  # (2, n) [m]
     tunnel_x: np.ndarray  # [m]
     wind: np.ndarray  # (3, 37, n) as WIND_LOAD, round the full circle
-    hull_loss: np.ndarray  # (2, 37, n) share of the units' thrust that the hull takes, round the full circle [1]
+    hull_loss: (
+        np.ndarray
+    )  # (2, 37, n) share of the units' thrust that the hull takes, round the full circle [1]
     azimuth_error: np.ndarray  # (2, n) real minus logged [rad]
     rpm_error: np.ndarray  # (3, n) logged minus real [rpm]
     drive_time: np.ndarray  # (3, n) lag of the propeller speeds [s]
     rolls: np.ndarray  # 1 for a ship that rolls, 0 for one that does not [1]
     damping: np.ndarray  # (3, n) linear, in surge, sway and yaw [N s/m, N s/m, N m s]
-    memory: np.ndarray  # (3, n) of the force that remembers, as added mass in slow motion [kg, kg, kg m2]
+    memory: (
+        np.ndarray
+    )  # (3, n) of the force that remembers, as added mass in slow motion [kg, kg, kg m2]
     memory_time: np.ndarray  # (3, n) for how long it does [s]
 
     @classmethod
     def stack(cls, ships):
         """Many single ships as one batch."""
-        return cls(**{f.name: np.stack([getattr(ship, f.name) for ship in ships], axis=-1) for f in fields(cls)})
+        return cls(
+            **{
+                f.name: np.stack([getattr(ship, f.name) for ship in ships], axis=-1)
+                for f in fields(cls)
+            }
+        )
 
 
 def draw_coefficients(rng, mismatch=1.0, rough=False, form=None):
@@ -189,7 +254,13 @@ def draw_coefficients(rng, mismatch=1.0, rough=False, form=None):
         added=np.array([26_550.0, 212_400.0, -637_200.0, 19.12e6]) * near("added_mass", 4),
         drag=1645.0 * near("drag") * (DRAG_SPEED**0.15 if rough else 1.0),
         drag_power=np.array(1.85 if rough else 2.0),
-        strips=0.5 * WATER_DENSITY * DRAUGHT * LENGTH / N_STRIPS * strip_coefficients(rough) * near("crossflow"),
+        strips=0.5
+        * WATER_DENSITY
+        * DRAUGHT
+        * LENGTH
+        / N_STRIPS
+        * strip_coefficients(rough)
+        * near("crossflow"),
         cross_flow_power=np.array(2.0),
         lift=30e3 * near("lift"),
         side_spin=0.8 * near("side_force", 2),
@@ -235,7 +306,11 @@ def formed(ship, form):
 
 def strip_coefficients(rough):
     """Drag coefficient of each strip: uniform, or (rough) larger towards the ends with the same mean."""
-    shape = 0.7 + 0.9 * (2 * STRIP_X / LENGTH) ** 2 + 0.1 * (2 * STRIP_X / LENGTH) if rough else np.ones(N_STRIPS)
+    shape = (
+        0.7 + 0.9 * (2 * STRIP_X / LENGTH) ** 2 + 0.1 * (2 * STRIP_X / LENGTH)
+        if rough
+        else np.ones(N_STRIPS)
+    )
     return 1.5 * shape / shape.mean()
 
 

@@ -32,4 +32,6 @@ class Lengthened:
             return self.first.standard_normal(size)
         short = self.lengths[int(shape[-1])]
         parts = (self.first, short), (self.then, shape[-1] - short)
-        return np.concatenate([rng.standard_normal((*shape[:-1], rows)) for rng, rows in parts], axis=-1)
+        return np.concatenate(
+            [rng.standard_normal((*shape[:-1], rows)) for rng, rows in parts], axis=-1
+        )

@@ -8,7 +8,9 @@ from truth.cases import KINDS, draw, draw_many, share_held
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("options", [{}, {"rough": True}, {"mismatch": 2.0}, {"causes": 1}, {"causes": 2}], ids=str)
+@pytest.mark.parametrize(
+    "options", [{}, {"rough": True}, {"mismatch": 2.0}, {"causes": 1}, {"causes": 2}], ids=str
+)
 def test_the_dp_holds_the_ship_in_40_minutes_of_anything(kind, options):
     assert share_held(draw_many(kind, range(600, 664), **{"causes": 0} | options)) >= 0.95
 

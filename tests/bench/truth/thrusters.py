@@ -66,5 +66,9 @@ def unit_loads(u_r, v_r, r, rpm, azimuth, coefficients, knobs):
 def tunnel_load(u_r, rpm, coefficients, knobs):
     """Force of the tunnel thruster to starboard, (n,). [N]"""
     return (
-        coefficients.tunnel * knobs.thrust[2] * rpm * np.abs(rpm) * np.exp(-((coefficients.tunnel_fading * u_r) ** 2))
+        coefficients.tunnel
+        * knobs.thrust[2]
+        * rpm
+        * np.abs(rpm)
+        * np.exp(-((coefficients.tunnel_fading * u_r) ** 2))
     )

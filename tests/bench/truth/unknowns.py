@@ -11,7 +11,11 @@ from truth.plant import to_body
 
 
 def draw_periodic_moment(rng, size, place):
-    return {"moment": size * rng.uniform(60e3, 140e3), "period": rng.uniform(100, 300), "phase": direction(rng)}
+    return {
+        "moment": size * rng.uniform(60e3, 140e3),
+        "period": rng.uniform(100, 300),
+        "phase": direction(rng),
+    }
 
 
 def act_periodic_moment(shape, knobs, i, t, ship):
@@ -21,7 +25,11 @@ def act_periodic_moment(shape, knobs, i, t, ship):
 def draw_ventilation(rng, size, place):
     """Bursts of 10 to 40 s, one about every 90 s, of both units at once."""
     starts = np.cumsum(rng.exponential(60.0, 100) + 30.0) - 250.0
-    return {"loss": size * rng.uniform(0.5, 0.9), "starts": starts, "ends": starts + rng.uniform(10, 40, 100)}
+    return {
+        "loss": size * rng.uniform(0.5, 0.9),
+        "starts": starts,
+        "ends": starts + rng.uniform(10, 40, 100),
+    }
 
 
 def act_ventilation(shape, knobs, i, t, ship):
@@ -30,7 +38,11 @@ def act_ventilation(shape, knobs, i, t, ship):
 
 
 def draw_compass_deviation(rng, size, place):
-    return {"most": size * np.radians(rng.uniform(4, 8)), "phase": direction(rng), "poles": rng.choice((2, 3))}
+    return {
+        "most": size * np.radians(rng.uniform(4, 8)),
+        "phase": direction(rng),
+        "poles": rng.choice((2, 3)),
+    }
 
 
 def act_compass_deviation(shape, knobs, i, t, ship):
@@ -41,7 +53,11 @@ def draw_anchor_spring(rng, size, place):
     """A chain from the bow to the ground 25 to 45 m off, slack within 10 m."""
     angle, reach = direction(rng), rng.uniform(25, 45)
     stiffness = size * rng.uniform(80, 200)
-    return {"x": place[0] + reach * np.cos(angle), "y": place[1] + reach * np.sin(angle), "stiffness": stiffness}
+    return {
+        "x": place[0] + reach * np.cos(angle),
+        "y": place[1] + reach * np.sin(angle),
+        "stiffness": stiffness,
+    }
 
 
 def act_anchor_spring(shape, knobs, i, t, ship):
@@ -69,11 +85,18 @@ def act_shoal(shape, knobs, i, t, ship):
 
 def draw_wind_shadow(rng, size, place):
     """The mast stands in the wind, the hull in the lee of a quay on one side of a line through the place."""
-    return {"x": place[0], "y": place[1], "side": direction(rng), "lee": min(size * rng.uniform(0.6, 0.9), 1.0)}
+    return {
+        "x": place[0],
+        "y": place[1],
+        "side": direction(rng),
+        "lee": min(size * rng.uniform(0.6, 0.9), 1.0),
+    }
 
 
 def act_wind_shadow(shape, knobs, i, t, ship):
-    beyond = (ship.x[i] - shape["x"]) * np.cos(shape["side"]) + (ship.y[i] - shape["y"]) * np.sin(shape["side"])
+    beyond = (ship.x[i] - shape["x"]) * np.cos(shape["side"]) + (ship.y[i] - shape["y"]) * np.sin(
+        shape["side"]
+    )
     knobs.wind_scale[i] *= 1 - shape["lee"] / (1 + np.exp(-beyond / 1.0))
 
 
@@ -123,7 +146,12 @@ def act_dead_band(shape, knobs, i, t, ship):
 
 def draw_seiche(rng, size, place):
     speed = size * rng.uniform(0.15, 0.3)
-    return {"speed": speed, "to": direction(rng), "period": rng.uniform(300, 700), "phase": direction(rng)}
+    return {
+        "speed": speed,
+        "to": direction(rng),
+        "period": rng.uniform(300, 700),
+        "phase": direction(rng),
+    }
 
 
 def act_seiche(shape, knobs, i, t, ship):

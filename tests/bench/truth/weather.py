@@ -65,7 +65,12 @@ def wind_series(weather, rng, n, h):
 def elevation(weather, rng, n, h):
     """Narrow-band elevation of the sea, complex: the real part, and a quarter period on the imaginary. [m]"""
     envelope = gauss_markov(rng, n, h, 3 * weather.wave_period, complex)
-    return 0.25 * weather.wave_height * envelope * np.exp(2j * np.pi / weather.wave_period * h * np.arange(n))
+    return (
+        0.25
+        * weather.wave_height
+        * envelope
+        * np.exp(2j * np.pi / weather.wave_period * h * np.arange(n))
+    )
 
 
 def wave_motion(psi, sea, period, waves_to):

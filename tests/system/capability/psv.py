@@ -26,7 +26,9 @@ HULL = Hull(
 )
 
 
-def thruster(name, kind, x, y, *, diameter, power, height, eta_1, eta_2=1.0, eta_m=0.93, ducted=False):
+def thruster(
+    name, kind, x, y, *, diameter, power, height, eta_1, eta_2=1.0, eta_m=0.93, ducted=False
+):
     """A thruster of that vessel, or one like it."""
     thrust = nominal_thrust(diameter, power, eta_1, eta_2, eta_m)
     angle = 0.5 * np.pi if kind == "tunnel" else 0.0

@@ -23,7 +23,9 @@ def disc(thrust, corners=1800):
 def test_one_fixed_propeller_holds_head_wind_up_to_its_thrust_and_nothing_from_the_side():
     propeller = actuator(-20.0, 0.0, [[(100.0, 0.0), (-40.0, 0.0)]], 4)
     loads = [(-50.0, 0.0, 0.0), (80.0, 0.0, 0.0), (0.0, 10.0, 0.0), (-50.0, 10.0, 0.0)]
-    assert largest_share([propeller], np.array(loads)) == pytest.approx((2.0, 0.5, 0.0, 0.0), abs=1e-9)
+    assert largest_share([propeller], np.array(loads)) == pytest.approx(
+        (2.0, 0.5, 0.0, 0.0), abs=1e-9
+    )
 
 
 def test_two_tunnels_hold_a_side_force_between_them_as_a_beam_on_two_supports():
@@ -64,7 +66,10 @@ def brute_share(load, bow, half):
         tunnel = (N - x * Y + y2 * X + (y1 - y2) * fx) / (BOW - x)
         fits = np.abs(tunnel) <= bow
         for (a, b), middle in zip(((fx, fy), (X - fx, Y - tunnel - fy)), MIDDLES, strict=True):
-            size, away = np.hypot(a, b), np.abs((np.arctan2(b, a) - middle + np.pi) % (2.0 * np.pi) - np.pi)
+            size, away = (
+                np.hypot(a, b),
+                np.abs((np.arctan2(b, a) - middle + np.pi) % (2.0 * np.pi) - np.pi),
+            )
             fits &= (size <= 100.0) & ((away >= half) | (size < 1e-9))
         best = share if fits.any() else best
     return best
@@ -101,7 +106,10 @@ def test_a_sector_cut_out_never_helps_and_its_pieces_together_are_the_disc():
     left = np.ones(len(DIRECTIONS))
 
     def share(narrowed):
-        whole = [Actuator(t.x, t.y, pieces(t, narrowed if t.kind == "azimuth" else ()), left) for t in THRUSTERS]
+        whole = [
+            Actuator(t.x, t.y, pieces(t, narrowed if t.kind == "azimuth" else ()), left)
+            for t in THRUSTERS
+        ]
         return largest_share(whole, loads)
 
     assert share([Sector(0.7, 1e-9, 0.999)]) == pytest.approx(share([]), rel=2e-3)
@@ -110,11 +118,23 @@ def test_a_sector_cut_out_never_helps_and_its_pieces_together_are_the_disc():
 
 def test_share_of_thrust_used_is_that_of_another_implementation():
     """Published of the supply vessel without its skeg: 0.747 and 1.055 at the beam, 0.995, 1.039; corners of 10 deg."""
-    published = {(6, 9): 0.747, (7, 9): 1.055, (7, 10): 0.995, (11, 16): 1.039, (11, 0): 0.628, (11, 18): 0.650}
+    published = {
+        (6, 9): 0.747,
+        (7, 9): 1.055,
+        (7, 10): 0.995,
+        (11, 16): 1.039,
+        (11, 0): 0.628,
+        (11, 18): 0.650,
+    }
     for (number, k), expected in published.items():
         condition, angle = CONDITIONS[number - 1], DIRECTIONS[k : k + 1]
         made = [
-            Actuator(t.x, t.y, pieces(t, sectors(t, THRUSTERS, ())), 0.9 * ventilation(t, HULL, condition, angle))
+            Actuator(
+                t.x,
+                t.y,
+                pieces(t, sectors(t, THRUSTERS, ())),
+                0.9 * ventilation(t, HULL, condition, angle),
+            )
             for t in THRUSTERS
         ]
         (share,) = largest_share(made, 1.25 * level_1_loads(HULL, condition, angle))
@@ -126,5 +146,9 @@ def test_nothing_to_push_with_holds_nothing_and_no_load_needs_nothing():
     assert largest_share([none], np.ones((2, 3))) == pytest.approx(0.0)
     assert largest_share([], np.ones((2, 3))) == pytest.approx(0.0)
     behind = actuator(-20.0, 0.0, [[(0.0, 60.0), (0.0, -60.0)]])
-    assert not np.signbit(largest_share([behind], np.array([(5.0, 5.0, 5.0)]))).any()  # one over it is infinite
-    assert largest_share([actuator(0.0, 0.0, disc(1.0, 36))], np.zeros((1, 3))) == pytest.approx(MOST)
+    assert not np.signbit(
+        largest_share([behind], np.array([(5.0, 5.0, 5.0)]))
+    ).any()  # one over it is infinite
+    assert largest_share([actuator(0.0, 0.0, disc(1.0, 36))], np.zeros((1, 3))) == pytest.approx(
+        MOST
+    )

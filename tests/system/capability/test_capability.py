@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 from capability.psv import HULL, NUMBERS, THRUSTERS, thruster
 
-from shipcosim.capability import as_json, capability_of, dataset, notation, numbers_table, read_vessel
+from shipcosim.capability import (
+    as_json,
+    capability_of,
+    dataset,
+    notation,
+    numbers_table,
+    read_vessel,
+)
 from shipcosim.capability.compute import level_1_share
 from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, Condition
 from shipcosim.capability.loads import level_1_loads
@@ -35,21 +42,30 @@ def test_numbers_of_a_supply_vessel_are_those_of_another_implementation():
 
 def test_two_azimuths_in_line_hold_twice_what_one_holds_and_the_race_on_a_dead_one_costs():
     """Head seas: 1 - 1/(0.02 9 + 0.25 3 + 1.2) = 0.531 three diameters ahead of the dead one, nothing behind it."""
-    unit = {"diameter": 2.0, "power": 1e6, "height": -90.0, "eta_1": 800.0}  # so deep that it does not ventilate
+    unit = {
+        "diameter": 2.0,
+        "power": 1e6,
+        "height": -90.0,
+        "eta_1": 800.0,
+    }  # so deep that it does not ventilate
     fore, aft, near = (thruster(f"at {x}", "azimuth", x, 0.0, **unit) for x in (20.0, -20.0, 14.0))
 
     def from_ahead(working, failed):
         return level_1_share(HULL, working, failed, CONDITIONS[6])[0]
 
     alone = from_ahead([fore], [aft])
-    assert alone == pytest.approx(0.9 * fore.ahead / -(1.25 * level_1_loads(HULL, CONDITIONS[6], DIRECTIONS)[0, 0]))
+    assert alone == pytest.approx(
+        0.9 * fore.ahead / -(1.25 * level_1_loads(HULL, CONDITIONS[6], DIRECTIONS)[0, 0])
+    )
     assert from_ahead([fore, aft], []) == pytest.approx(2.0 * alone)
     assert from_ahead([fore], [near]) == pytest.approx(0.531 * alone, rel=1e-3)
     assert from_ahead([near], [fore]) == pytest.approx(alone)
 
 
 def test_a_ship_with_one_fixed_propeller_holds_weather_from_ahead_and_astern_only():
-    propeller = thruster("screw", "fixed", -40.0, 0.0, diameter=3.0, power=2e6, height=1.8, eta_1=800.0)
+    propeller = thruster(
+        "screw", "fixed", -40.0, 0.0, diameter=3.0, power=2e6, height=1.8, eta_1=800.0
+    )
     found = numbers_of(HULL, [propeller])
     assert found[0] > 5 and found[18] > 5
     assert not np.delete(found, [0, 18]).any()
@@ -79,7 +95,13 @@ def test_thrusters_are_those_of_the_system_with_the_thrust_of_the_parameter_shee
 
 
 def test_cases_are_the_intact_ship_each_thruster_each_group_and_each_bus_of_several(found):
-    names = ["intact", "without port", "without starboard", "without tunnel", "without port and starboard"]
+    names = [
+        "intact",
+        "without port",
+        "without starboard",
+        "without tunnel",
+        "without port and starboard",
+    ]
     assert [case.name for case in found.cases] == [*names, "without bus A (port and tunnel)"]
     assert found.cases[-1].failed == ("port", "tunnel")
 
@@ -124,7 +146,9 @@ def test_elements_are_the_lowest_numbers_near_the_bow_and_all_around(vessel):
     fails_from(0, 9, 7)
     fails_from(1, 33, 5)
     fails_from(1, 10, 2)
-    made = Capability(vessel, (Case("intact", ()), Case("without port", ("port",))), {LEVEL_1: used})
+    made = Capability(
+        vessel, (Case("intact", ()), Case("without port", ("port",))), {LEVEL_1: used}
+    )
     assert notation(made) == "DP capability-L1(9, 7, 5, 2)"
 
 
@@ -149,7 +173,9 @@ def test_loads_of_the_simulator_are_those_of_its_tables(vessel):
 def test_tables_and_json_hold_the_same_numbers(found):
     rows = list(csv.DictReader(io.StringIO(numbers_table(found))))
     table, said = dataset(found), as_json(found)
-    assert [float(row["weather_from [deg]"]) for row in rows] == table["weather_from"].values.tolist()
+    assert [float(row["weather_from [deg]"]) for row in rows] == table[
+        "weather_from"
+    ].values.tolist()
     intact = [int(row["level 1, intact [1]"]) for row in rows]
     assert intact == found.numbers()[0].tolist() == said["numbers"][LEVEL_1]["intact"]
     assert intact == table["number"].sel(basis=LEVEL_1, case="intact").values.tolist()
@@ -162,7 +188,11 @@ def test_tables_and_json_hold_the_same_numbers(found):
 def test_the_page_of_the_docs_says_what_is_computed(found, root):
     page = (root / "docs" / "capability.md").read_text(encoding="utf-8")
     assert f"R/V Gunnerus: {notation(found)}" in page
-    rows = [line.split("|") for line in page.splitlines() if line[:5] in ("| A |", "| B |", "| C |", "| D |")]
+    rows = [
+        line.split("|")
+        for line in page.splitlines()
+        if line[:5] in ("| A |", "| B |", "| C |", "| D |")
+    ]
     assert tuple(int(row[4]) for row in rows) == found.elements()
     assert tuple(int(row[5]) for row in rows[2:]) == found.elements(most_lost=1)[2:]
 
@@ -189,7 +219,11 @@ def test_words_that_mean_nothing_are_said_with_those_that_do(system, root, tmp_p
     folder = tmp_path / "gunnerus-33m9"
     folder.mkdir()
     for file in (root / "ssp" / "ships" / "gunnerus-33m9").glob("*"):
-        text = file.read_text(encoding="utf-8").replace('"rim-driven"', '"rim"').replace('"broken"', '"sharp"')
+        text = (
+            file.read_text(encoding="utf-8")
+            .replace('"rim-driven"', '"rim"')
+            .replace('"broken"', '"sharp"')
+        )
         (folder / file.name).write_text(text, encoding="utf-8")
     said = problems_of(system, read_ship(folder))
     assert len(said) == 3 and "transmission: found 'rim'" in said[0] and "rim-driven" in said[0]
@@ -199,7 +233,9 @@ def test_words_that_mean_nothing_are_said_with_those_that_do(system, root, tmp_p
 def test_ships_of_all_parameter_sets_have_what_the_capability_needs(system, root):
     for folder in sorted((root / "ssp" / "ships").glob("gunnerus-*")):
         found = read_vessel(system, read_ship(folder))
-        assert len(found.thrusters) == 3 and any("assumed" in one.origin for one in found.particulars)
+        assert len(found.thrusters) == 3 and any(
+            "assumed" in one.origin for one in found.particulars
+        )
 
 
 def test_an_azimuth_that_cannot_turn_pushes_where_it_points(system, root):

@@ -20,7 +20,9 @@ def test_loads_of_condition_6_are_those_of_another_implementation():
         "waves": [(-24.6, 0.0, 0.0), (-4.4, 128.0, -348.1), (26.1, 0.0, 0.0)],
     }
     for name, found in level_1_parts(HULL, CONDITIONS[5], SIDES).items():
-        assert found / 1e3 == pytest.approx(np.array(published[name]) * [1, -1, -1], abs=0.051), name
+        assert found / 1e3 == pytest.approx(np.array(published[name]) * [1, -1, -1], abs=0.051), (
+            name
+        )
     total = 1.25 * level_1_loads(HULL, CONDITIONS[5], SIDES) / 1e3
     published = [(-62.1, 0, 0), (-5.5, -358.0, -509.0), (64.0, 0, 0)]
     assert total == pytest.approx(np.array(published), abs=0.051)
@@ -63,7 +65,9 @@ def test_weather_from_port_mirrors_weather_from_starboard(condition):
 
 
 def test_every_condition_is_harder_than_the_one_before():
-    sizes = np.array([np.abs(level_1_loads(HULL, c, DIRECTIONS)[:, :2]).sum(axis=1) for c in CONDITIONS])
+    sizes = np.array(
+        [np.abs(level_1_loads(HULL, c, DIRECTIONS)[:, :2]).sum(axis=1) for c in CONDITIONS]
+    )
     assert (np.diff(sizes, axis=0) > 0.0).all()
 
 

@@ -28,7 +28,9 @@ def test_nominal_thrust_is_that_published_for_such_thrusters(given, kilonewtons)
     assert nominal_thrust(*given) / 1e3 == pytest.approx(kilonewtons, abs=0.05)
 
 
-@pytest.mark.parametrize("number, published", [(6, (0.985, 0.999, 0.999)), (11, (0.725, 0.861, 0.883))])
+@pytest.mark.parametrize(
+    "number, published", [(6, (0.985, 0.999, 0.999)), (11, (0.725, 0.861, 0.883))]
+)
 def test_ventilation_in_beam_seas_is_that_of_another_implementation(number, published):
     found = [ventilation(t, HULL, CONDITIONS[number - 1], BEAM)[0] for t in THRUSTERS[1:]]
     assert found == pytest.approx(published, abs=5e-4)
@@ -61,7 +63,10 @@ def test_a_thruster_that_stands_still_costs_thrust_in_a_narrow_sector_only():
 
 def reach(parts, angle):
     """Largest thrust of an azimuth in a direction, by the corners of its pieces; the largest gap is 0.1 %."""
-    ray, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+    ray, across = (
+        np.array([np.cos(angle), np.sin(angle)]),
+        np.array([-np.sin(angle), np.cos(angle)]),
+    )
     best = 0.0
     for corners in parts:
         for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):

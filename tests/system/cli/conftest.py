@@ -82,7 +82,11 @@ during = [4.0, 5.0]
 @pytest.fixture
 def project(tmp_path, monkeypatch):
     """Folder of the project, which is the working folder of the test."""
-    files = {"fmus/lag/lag.py": FMU, "ssp/tank/SystemStructure.ssd": SSD, "scenarios/fill.toml": SCENARIO}
+    files = {
+        "fmus/lag/lag.py": FMU,
+        "ssp/tank/SystemStructure.ssd": SSD,
+        "scenarios/fill.toml": SCENARIO,
+    }
     for name, text in files.items():
         path = tmp_path / name
         path.parent.mkdir(parents=True)
@@ -137,7 +141,9 @@ def call():
 
     def call(*arguments):
         result = CliRunner().invoke(app, [str(a) for a in arguments], prog_name="shipcosim")
-        assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+        assert result.exception is None or isinstance(result.exception, SystemExit), (
+            result.exception
+        )
         return SimpleNamespace(code=result.exit_code, out=result.stdout, err=result.stderr)
 
     return call

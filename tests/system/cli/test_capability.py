@@ -21,12 +21,26 @@ def test_default_is_the_lengthened_ship(call, gunnerus):
 
 def test_parameters_and_ship_are_found_by_name_and_groups_are_added(call, gunnerus, tmp_path):
     out = tmp_path / "here"
-    options = ["--parameters", "gunnerus-28m9", "--failure", "port,starboard", "--json", "--out", str(out)]
+    options = [
+        "--parameters",
+        "gunnerus-28m9",
+        "--failure",
+        "port,starboard",
+        "--json",
+        "--out",
+        str(out),
+    ]
     done = call("capability", "gunnerus_dp", *options)
     said = json.loads(done.out)
-    assert done.code == 0 and said["schema"] == "shipcosim-capability/1" and said["ship"] == "gunnerus-28m9"
+    assert (
+        done.code == 0
+        and said["schema"] == "shipcosim-capability/1"
+        and said["ship"] == "gunnerus-28m9"
+    )
     assert "without port and starboard" in said["numbers"]["level 1"]
-    assert said["notation"] == f"DP capability-L1({said['A']}, {said['B']}, {said['C']}, {said['D']})"
+    assert (
+        said["notation"] == f"DP capability-L1({said['A']}, {said['B']}, {said['C']}, {said['D']})"
+    )
     assert sorted(path.name for path in out.iterdir()) == FILES
 
 

@@ -12,7 +12,10 @@ HEADER = "Time (s);Northing;Easting;Yaw;u (kn);v (kn);stbd RPM;shaft RPM;thr_por
 
 @pytest.fixture
 def log(tmp_path):
-    rows = [f"{t:.1f};{2 * t:.2f};0,5;{0.01 * t:.3f};4,1;0,1;60;61;1500;fine".replace(".", ",") for t in T]
+    rows = [
+        f"{t:.1f};{2 * t:.2f};0,5;{0.01 * t:.3f};4,1;0,1;60;61;1500;fine".replace(".", ",")
+        for t in T
+    ]
     path = tmp_path / "log.csv"
     path.write_text("\n".join([HEADER, *rows]), encoding="latin-1")
     return path
@@ -21,7 +24,15 @@ def log(tmp_path):
 def test_every_column_is_listed_and_the_proposed_file_reads_the_log(call, gunnerus, log):
     done = call("channels", log, "--out", "channels.toml")
     assert done.code == 0, done.err
-    for said in ("stbd RPM", "starboard_rpm", "guess", "not used", "map = ", "decimal comma", "channels.toml"):
+    for said in (
+        "stbd RPM",
+        "starboard_rpm",
+        "guess",
+        "not used",
+        "map = ",
+        "decimal comma",
+        "channels.toml",
+    ):
         assert said in done.out
     assert all(name.partition(" (")[0] in done.out for name in HEADER.split(";"))
     read = read_log(log, "channels.toml")
@@ -38,13 +49,23 @@ def test_a_log_that_is_none_ends_in_one_error(call, gunnerus, tmp_path):
 
 
 def test_the_table_of_a_run_has_a_channel_file(gunnerus, tmp_path):
-    names = ["time [s]", "vessel.x [m]", "vessel.y [m]", "vessel.psi [rad]", "vessel.u [m/s]", "port.rpm [rpm]"]
+    names = [
+        "time [s]",
+        "vessel.x [m]",
+        "vessel.y [m]",
+        "vessel.psi [rad]",
+        "vessel.u [m/s]",
+        "port.rpm [rpm]",
+    ]
     rows = np.column_stack([T, T, 0 * T, 0.1 * T, 0 * T + 1, 0 * T + 60])
     np.savetxt(tmp_path / "result.csv", rows, delimiter=",", header=",".join(names), comments="")
     found = proposed(tmp_path / "result.csv")
     (tmp_path / "channels.toml").write_text(found.text)
     log = read_log(tmp_path / "result.csv", tmp_path / "channels.toml")
-    assert log["heading"].values[10] == pytest.approx(np.degrees(0.5)) and log["port_rpm"].values[0] == 60.0
+    assert (
+        log["heading"].values[10] == pytest.approx(np.degrees(0.5))
+        and log["port_rpm"].values[0] == 60.0
+    )
 
 
 def test_names_say_centimetres_and_which_side_is_positive(tmp_path):

@@ -10,7 +10,14 @@ T = np.arange(300.0)
 
 def written(folder, header, **columns):
     path = folder / "log.csv"
-    np.savetxt(path, np.column_stack(list(columns.values())), delimiter=",", header=header, comments="", fmt="%.6f")
+    np.savetxt(
+        path,
+        np.column_stack(list(columns.values())),
+        delimiter=",",
+        header=header,
+        comments="",
+        fmt="%.6f",
+    )
     return path
 
 
@@ -33,7 +40,9 @@ def test_faults_of_a_log_are_errors_and_its_order_a_remark(held, tmp_path):
     problems = check_any(str(held), tmp_path / "channels.toml")
     assert [problem.severity for problem in problems] == ["remark", "error"]
     assert "sorted by time" in problems[0].found
-    assert "gap: values are held, 101 to 159 s" in problems[1].found and "surge" in problems[1].where
+    assert (
+        "gap: values are held, 101 to 159 s" in problems[1].found and "surge" in problems[1].where
+    )
 
 
 def test_a_table_named_by_roles_is_examined_without_a_channel_file(tmp_path):
@@ -50,4 +59,6 @@ def test_a_log_that_cannot_be_read_says_why(held, tmp_path):
 def test_a_table_without_navigation_is_only_a_table(tmp_path):
     path = written(tmp_path, "time [s],level [m]", time=T[::-1], level=T)
     problems = check_any(str(path))
-    assert [problem.severity for problem in problems] == ["error"] and "follows" in problems[0].found
+    assert [problem.severity for problem in problems] == ["error"] and "follows" in problems[
+        0
+    ].found

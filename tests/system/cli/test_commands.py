@@ -26,7 +26,9 @@ def names(folder):
 def command(*arguments, **options):
     """The command in a process of its own."""
     start = [sys.executable, "-c", "from shipcosim.cli import main; main()", *arguments]
-    return subprocess.Popen(start, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+    return subprocess.Popen(
+        start, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options
+    )
 
 
 def test_version_is_the_packages(call):
@@ -41,7 +43,9 @@ def test_console_without_our_characters_is_no_error(project):
 
 def test_help_imports_nothing_heavy():
     code = "import sys, shipcosim.cli; print(*sys.modules)"
-    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
     assert not {"numpy", "xarray", "pydantic", "rich", "fmpy", "lxml", "pint"} & set(loaded)
 
 
@@ -54,8 +58,13 @@ def test_help_of_each_command_names_the_exit_codes(call, name):
 def test_build_makes_fmus_and_systems(call, project):
     done = call("build")
     assert done.code == 0
-    assert names(project / "build" / "fmus") == ["lag.fmu"] and names(project / "build" / "ssp") == ["tank.ssp"]
-    assert done.out.split() == [os.path.join("build", "fmus", "lag.fmu"), os.path.join("build", "ssp", "tank.ssp")]
+    assert names(project / "build" / "fmus") == ["lag.fmu"] and names(
+        project / "build" / "ssp"
+    ) == ["tank.ssp"]
+    assert done.out.split() == [
+        os.path.join("build", "fmus", "lag.fmu"),
+        os.path.join("build", "ssp", "tank.ssp"),
+    ]
 
 
 def test_build_of_one_name_builds_only_that_into_the_folder_asked_for(call, project):
@@ -110,7 +119,9 @@ def test_run_with_a_missed_expectation_ends_with_1_and_keeps_the_results(call, p
     failed = call("run", "fill", "--set", "lag.time_constant=50")
     assert failed.code == 1 and "FAIL" in failed.out
     assert names(project / "results" / "fill") == RESULTS
-    assert "1 of 1 expectations missed" in (project / "results" / "fill" / "report.html").read_text(encoding="utf-8")
+    assert "1 of 1 expectations missed" in (project / "results" / "fill" / "report.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_run_of_a_folder_runs_every_scenario_and_writes_one_table(call, project):
@@ -123,7 +134,10 @@ def test_run_of_a_folder_runs_every_scenario_and_writes_one_table(call, project)
     failed = call("run", "scenarios/both")
     assert failed.code == 1 and "1 of 2 scenarios miss something: slow." in failed.out
     results = project / "results" / "both"
-    assert {name: names(results / name) for name in ("fill", "slow")} == {"fill": RESULTS, "slow": RESULTS}
+    assert {name: names(results / name) for name in ("fill", "slow")} == {
+        "fill": RESULTS,
+        "slow": RESULTS,
+    }
     page = (results / "report.html").read_text(encoding="utf-8")
     assert 'href="fill/report.html"' in page and "✗ FAIL" in page and "✓ pass" in page
 
@@ -184,10 +198,15 @@ def test_broken_scenario_says_where_and_what(call, project, old, new, complaint)
     assert not (project / "results").exists()
 
 
-def test_exception_in_an_fmu_shows_its_traceback_component_and_time_and_keeps_the_rows(call, project):
+def test_exception_in_an_fmu_shows_its_traceback_component_and_time_and_keeps_the_rows(
+    call, project
+):
     failed = call("run", "fill", "--set", "lag.fails_at=2.0")
     assert failed.code == 2
-    assert all(text in failed.err for text in ("lag", "ValueError: the pump has run dry", "lag.py", "t = 2"))
+    assert all(
+        text in failed.err
+        for text in ("lag", "ValueError: the pump has run dry", "lag.py", "t = 2")
+    )
     results = project / "results" / "fill"
     assert names(results) == ["result-partial.csv", "result-partial.html", "result-partial.nc"]
     table = read_table(results / "result-partial.nc")
@@ -195,7 +214,9 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time_and_keeps_th
     assert "PARTIAL" in (results / "result-partial.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no signal that Python could send as Ctrl-C")
+@pytest.mark.skipif(
+    sys.platform == "win32", reason="Windows has no signal that Python could send as Ctrl-C"
+)
 def test_ctrl_c_stops_at_once_and_keeps_what_there_is(project):
     running = command("run", "fill", "--set", "lag.pause=0.1", "--set", "lag.time_constant=1.0")
     deadline = time.monotonic() + 30.0
@@ -243,14 +264,25 @@ def test_fault_of_the_program_is_no_traceback_unless_asked_for(call, project, mo
     monkeypatch.setattr("shipcosim.calls.runs.read_scenario", fault)
     plain, debug = call("run", "fill"), call("run", "fill", "--debug")
     assert plain.code == debug.code == 2
-    assert "ZeroDivisionError" in plain.err and "Traceback" not in plain.err and "--debug" in plain.err
+    assert (
+        "ZeroDivisionError" in plain.err and "Traceback" not in plain.err and "--debug" in plain.err
+    )
     assert "Traceback" in debug.err
 
 
 def test_simulate_runs_any_system_with_its_input_fed_from_a_table(call, project):
     call("build")
     (project / "levels.csv").write_text("time [s],level_set [m]\n0,3\n10,3\n")
-    arguments = ("--stop-time", "10", "--step-size", "0.1", "--inputs", "levels.csv", "--out", "out")
+    arguments = (
+        "--stop-time",
+        "10",
+        "--step-size",
+        "0.1",
+        "--inputs",
+        "levels.csv",
+        "--out",
+        "out",
+    )
     done = call("simulate", "build/ssp/tank.ssp", *arguments)
     assert done.code == 0 and names(project / "out") == RESULTS
     level = read_table(project / "out" / "result.nc")["lag.y"].values[-1]
@@ -264,7 +296,16 @@ def test_simulate_with_a_parameter_set_uses_its_values(call, project):
         '<ssv:Parameters><ssv:Parameter name="lag.time_constant"><ssv:Real value="100.0"/></ssv:Parameter>'
         "</ssv:Parameters></ssv:ParameterSet>"
     )
-    arguments = ("--stop-time", "10", "--step-size", "0.01", "--parameters", "slow.ssv", "--out", "out")
+    arguments = (
+        "--stop-time",
+        "10",
+        "--step-size",
+        "0.01",
+        "--parameters",
+        "slow.ssv",
+        "--out",
+        "out",
+    )
     assert call("simulate", "ssp/tank", *arguments).code == 0
     level = read_table(project / "out" / "result.nc")["lag.y"].values[-1]
     assert level == pytest.approx(1.0 - np.exp(-0.1), abs=1e-4)
@@ -288,7 +329,9 @@ def test_unknown_engine_is_refused(call, project):
 def test_missing_fmu_is_named_with_where_it_was_sought(call, project):
     (project / "fmus" / "lag" / "lag.py").unlink()
     failed = call("run", "fill")
-    assert failed.code == 2 and "lag.fmu" in failed.err and os.path.join("build", "fmus") in failed.err
+    assert (
+        failed.code == 2 and "lag.fmu" in failed.err and os.path.join("build", "fmus") in failed.err
+    )
 
 
 def test_check_before_the_build_says_what_builds(call, project):
@@ -298,7 +341,9 @@ def test_check_before_the_build_says_what_builds(call, project):
 
 def test_check_of_sound_files_finds_nothing(call, project):
     call("build")
-    done = call("check", "ssp/tank", "build/ssp/tank.ssp", "build/fmus/lag.fmu", "scenarios/fill.toml")
+    done = call(
+        "check", "ssp/tank", "build/ssp/tank.ssp", "build/fmus/lag.fmu", "scenarios/fill.toml"
+    )
     assert done.code == 0 and done.out.count("nothing wrong") == 4
 
 
@@ -308,9 +353,14 @@ def test_check_of_an_fmu_lists_its_variables_with_unit_and_start(call, project):
     listed = [line.split() for line in lines]
     assert ["time_constant", "parameter", "Real", "s", "1.0", "time", "constant"] in listed
     (told,) = json.loads(call("check", "build/fmus/lag.fmu", "--json").out)
-    assert {"name": "y", "causality": "output", "type": "Real", "unit": "m", "start": "", "description": "output"} in [
-        *told["variables"]
-    ]
+    assert {
+        "name": "y",
+        "causality": "output",
+        "type": "Real",
+        "unit": "m",
+        "start": "",
+        "description": "output",
+    } in [*told["variables"]]
     assert ["y", "output", "Real", "m", "output"] in listed
     assert json.loads(call("check", "build/fmus/lag.fmu", "--json").out)[0]["problems"] == []
 
@@ -330,7 +380,11 @@ def test_check_reports_what_is_wrong_in_each_file(call, project):
 def test_check_of_a_table_remarks_gaps_and_missing_values(call, project):
     (project / "log.csv").write_text("time [s],x [m]\n0,1\n1,nan\n2,1\n5,1\n")
     found = call("check", "log.csv")
-    assert found.code == 0 and "3 s without a row after 2 s" in found.out and "1 row without a number" in found.out
+    assert (
+        found.code == 0
+        and "3 s without a row after 2 s" in found.out
+        and "1 row without a number" in found.out
+    )
 
 
 def test_check_of_a_file_that_is_not_there_ends_with_2(call, project):
@@ -348,14 +402,20 @@ def test_run_takes_of_a_foreign_parameter_set_what_fits_and_says_what_does_not(c
     values = REAL.format("lag.time_constant", 4.0, "") + REAL.format("tow.north", 1.0, "")
     (project / "extended.ssv").write_text(SSV.format(values), encoding="utf-8")
     plain, other = (
-        call("run", "fill", "--out", out, *more) for out, more in (("a", []), ("b", ["--parameters", "extended.ssv"]))
+        call("run", "fill", "--out", out, *more)
+        for out, more in (("a", []), ("b", ["--parameters", "extended.ssv"]))
     )
     assert plain.code == 0 and "tow.north" in other.err and "Left out" in other.err
-    slower = [float((project / out / "result.csv").read_text().split()[-1].split(",")[-1]) for out in ("a", "b")]
+    slower = [
+        float((project / out / "result.csv").read_text().split()[-1].split(",")[-1])
+        for out in ("a", "b")
+    ]
     assert slower[1] < slower[0]
 
 
 def test_run_refuses_a_parameter_set_of_which_nothing_fits(call, project):
-    (project / "extended.ssv").write_text(SSV.format(REAL.format("tow.north", 1.0, "")), encoding="utf-8")
+    (project / "extended.ssv").write_text(
+        SSV.format(REAL.format("tow.north", 1.0, "")), encoding="utf-8"
+    )
     result = call("run", "fill", "--parameters", "extended.ssv")
     assert result.code == 2 and "Nothing of it fits tank: tow.north." in result.err

@@ -155,11 +155,19 @@ def ran(like_the_root):
             patch.chdir(like_the_root)
             patch.setenv("COLUMNS", "200")
             patch.setattr(calls, "diagnose", kept)
-            result = CliRunner().invoke(app, ["diagnose", f"{name}.csv", *options], prog_name="shipcosim")
-        assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
+            result = CliRunner().invoke(
+                app, ["diagnose", f"{name}.csv", *options], prog_name="shipcosim"
+            )
+        assert result.exception is None or isinstance(result.exception, SystemExit), (
+            result.exception
+        )
         out = like_the_root / "results" / name
         return SimpleNamespace(
-            code=result.exit_code, out=result.stdout, err=result.stderr, folder=out, diagnosis=diagnoses[0]
+            code=result.exit_code,
+            out=result.stdout,
+            err=result.stderr,
+            folder=out,
+            diagnosis=diagnoses[0],
         )
 
     return run
@@ -190,18 +198,25 @@ def test_hidden_cause_is_named_with_exit_code_1_and_four_files(lossy):
     found = json.loads(lossy.out)
     assert lossy.code == 1 and names(lossy.folder) == FILES
     steps = [*STEPS, LAST_STEP]  # where no terminal is: a line for each but the first
-    assert lossy.err.splitlines() == [f"{k} of {len(steps)}: {step}" for k, step in enumerate(steps, 1)][1:]
+    assert (
+        lossy.err.splitlines()
+        == [f"{k} of {len(steps)}: {step}" for k, step in enumerate(steps, 1)][1:]
+    )
     assert found["verdict"] == "named" and len(found["findings"]) == 1
     finding = found["findings"][0]
     assert (finding["cause"], finding["component"]) == (answer.cause, answer.component)
-    assert finding["parameters"]["loss"]["estimate"] == pytest.approx(answer.parameters["loss"], rel=0.15)
+    assert finding["parameters"]["loss"]["estimate"] == pytest.approx(
+        answer.parameters["loss"], rel=0.15
+    )
 
 
 def test_json_holds_what_the_contract_says(lossy, healthy):
     Schema.model_validate_json(EXAMPLE)
     for ran in (lossy, healthy):
         Schema.model_validate_json((ran.folder / "diagnosis.json").read_text(encoding="utf-8"))
-    assert json.loads(lossy.out) == json.loads((lossy.folder / "diagnosis.json").read_text(encoding="utf-8"))
+    assert json.loads(lossy.out) == json.loads(
+        (lossy.folder / "diagnosis.json").read_text(encoding="utf-8")
+    )
 
 
 def test_named_cause_gains_over_the_plain_model_and_the_bias_observer(lossy):
@@ -209,7 +224,9 @@ def test_named_cause_gains_over_the_plain_model_and_the_bias_observer(lossy):
     assert gain["after_m"] < 0.5 * gain["before_m"] and gain["after_m"] < gain["bias_observer_m"]
     assert gain["ci95"][0] <= gain["share_of_explainable"] <= gain["ci95"][1]
     predictions = lossy.diagnosis.predictions
-    assert predictions.is_simulated and predictions.difference > 0.0  # by co-simulation of the extended system
+    assert (
+        predictions.is_simulated and predictions.difference > 0.0
+    )  # by co-simulation of the extended system
     assert all(0 < one.predictions <= MOST // 2 and one.gain for one in predictions.held_out)
 
 
@@ -229,7 +246,16 @@ def test_extended_system_differs_from_the_given_one_in_the_named_number_alone(lo
 
 def test_extended_system_runs(lossy, call, monkeypatch):
     monkeypatch.chdir(lossy.folder.parents[1])
-    run = call("simulate", lossy.folder / "extended.ssp", "--stop-time", "1", "--step-size", "0.1", "--out", "run")
+    run = call(
+        "simulate",
+        lossy.folder / "extended.ssp",
+        "--stop-time",
+        "1",
+        "--step-size",
+        "0.1",
+        "--out",
+        "run",
+    )
     assert run.code == 0, run.err
 
 
@@ -243,7 +269,14 @@ def test_summary_says_cause_size_gain_and_what_to_do(lossy, capsys, monkeypatch)
     monkeypatch.setenv("COLUMNS", "200")
     command.print_diagnosis(lossy.diagnosis, lossy.folder, False)
     said = capsys.readouterr().out
-    for text in ("NAMED ", "starboard thruster delivers", "Thrust loss of starboard", " ± ", "% ", "bias observer"):
+    for text in (
+        "NAMED ",
+        "starboard thruster delivers",
+        "Thrust loss of starboard",
+        " ± ",
+        "% ",
+        "bias observer",
+    ):
         assert text in said
     assert "What to do next" in said and "extended.ssp" in said and "report.html" in said
 
@@ -255,7 +288,9 @@ def test_summary_of_a_healthy_log_says_what_it_could_not_have_shown(healthy):
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError("disk on fire")])
-def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(lossy, like_the_root, call, monkeypatch, error):
+def test_diagnosis_that_is_cut_off_leaves_everything_as_it_was(
+    lossy, like_the_root, call, monkeypatch, error
+):
     """At the last moment, when the extended system is there and the page is written."""
 
     def known(*_, out, **__):
@@ -280,7 +315,10 @@ HEAD = "time [s],north [m],east [m],heading [deg],surge [m/s],wind_speed [m/s]"
 
 
 def table(head, rows=300):
-    return "\n".join([head, *(",".join([str(k), *["1.5"] * head.count(",")]) for k in range(rows))]) + "\n"
+    return (
+        "\n".join([head, *(",".join([str(k), *["1.5"] * head.count(",")]) for k in range(rows))])
+        + "\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -288,18 +326,31 @@ def table(head, rows=300):
     [
         ("", ["log.csv:", "is empty"]),
         (HEAD + "\n", ["log.csv:", "no row below its header"]),
-        (table(HEAD.replace("north [m],east [m],", "")), ["log.csv:", "no channel north, east", "needs north, east"]),
-        (table(HEAD.replace("time [s]", "number")), ["log.csv:", "has no column 'time'", "shipcosim channels"]),
-        (table(HEAD.replace("[m/s]", "[kg]")), ["log.csv, surge:", "log.csv, wind_speed:", "'kg' into 'm/s'"]),
+        (
+            table(HEAD.replace("north [m],east [m],", "")),
+            ["log.csv:", "no channel north, east", "needs north, east"],
+        ),
+        (
+            table(HEAD.replace("time [s]", "number")),
+            ["log.csv:", "has no column 'time'", "shipcosim channels"],
+        ),
+        (
+            table(HEAD.replace("[m/s]", "[kg]")),
+            ["log.csv, surge:", "log.csv, wind_speed:", "'kg' into 'm/s'"],
+        ),
         (table(HEAD, rows=60), ["log.csv:", "60 rows over 59 s", "at the least"]),
     ],
     ids=["empty", "only a header", "no position", "no time", "other units", "too short"],
 )
-def test_unusable_data_is_refused_and_leaves_nothing(call, like_the_root, tmp_path, monkeypatch, content, said):
+def test_unusable_data_is_refused_and_leaves_nothing(
+    call, like_the_root, tmp_path, monkeypatch, content, said
+):
     monkeypatch.chdir(like_the_root)
     (tmp_path / "log.csv").write_text(content, encoding="utf-8")
     done = call("diagnose", tmp_path / "log.csv", "--out", tmp_path / "out")
-    assert done.code == 2 and done.err.startswith("error: ") and "fault of shipcosim" not in done.err
+    assert (
+        done.code == 2 and done.err.startswith("error: ") and "fault of shipcosim" not in done.err
+    )
     for text in said:
         assert text in done.err
     assert not (tmp_path / "out").exists()
@@ -311,23 +362,32 @@ def test_unusable_data_is_refused_and_leaves_nothing(call, like_the_root, tmp_pa
         (["absent.csv"], ["absent.csv:", "no such file of measured data"]),
         (["log.csv", "--channels", "absent.toml"], ["absent.toml:", "no such channel file"]),
         (["log.csv", "--effects", "absent"], ["absent:", "no such folder of causes"]),
-        (["log.csv", "--system", "gunnerus_opn"], ["gunnerus_opn:", "no such system", "Did you mean 'gunnerus_open'?"]),
+        (
+            ["log.csv", "--system", "gunnerus_opn"],
+            ["gunnerus_opn:", "no such system", "Did you mean 'gunnerus_open'?"],
+        ),
         (["log.csv", "--system", "gunnerus_dp"], ["ssp/gunnerus_dp:", "exactly one vessel"]),
         (["log.csv", "--system", "log.csv"], ["log.csv:"]),
         (["log.csv", "--out", "log.csv"], ["log.csv", "is a file, not a folder", "--out"]),
     ],
     ids=lambda value: " ".join(value) if value[0].endswith(".csv") else "",
 )
-def test_unusable_arguments_are_refused_and_leave_nothing(call, root, built, tmp_path, monkeypatch, options, said):
+def test_unusable_arguments_are_refused_and_leave_nothing(
+    call, root, built, tmp_path, monkeypatch, options, said
+):
     for name in USED:
         (tmp_path / name).symlink_to(root / name)
     monkeypatch.chdir(tmp_path)
     Path("log.csv").write_text(table(HEAD), encoding="utf-8")
     done = call("diagnose", *options)
-    assert done.code == 2 and done.err.startswith("error: ") and "fault of shipcosim" not in done.err
+    assert (
+        done.code == 2 and done.err.startswith("error: ") and "fault of shipcosim" not in done.err
+    )
     for text in said:
         assert text in done.err
-    assert sorted(os.listdir()) == sorted(["log.csv", *USED, *(["results"] if Path("results").exists() else [])])
+    assert sorted(os.listdir()) == sorted(
+        ["log.csv", *USED, *(["results"] if Path("results").exists() else [])]
+    )
     assert not list(Path().glob("results/*"))
 
 
@@ -342,4 +402,7 @@ def test_without_a_project_the_systems_of_the_package_are_there(call, tmp_path, 
 def test_help_names_the_exit_codes_and_options(call):
     said = call("diagnose", "--help").out
     assert "Exit codes" in said
-    assert all(option in said for option in ("--channels", "--system", "--effects", "--out", "--json", "--debug"))
+    assert all(
+        option in said
+        for option in ("--channels", "--system", "--effects", "--out", "--json", "--debug")
+    )

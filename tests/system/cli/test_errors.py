@@ -25,7 +25,9 @@ OPEN = ("simulate", "ssp/gunnerus_open", "--stop-time", "1", "--step-size", "0.0
 NOISE = bytes(range(256)) * 8
 LATIN = "Gunnerus på prøvetur".encode("latin-1")
 
-needs_posix = pytest.mark.skipif(sys.platform == "win32", reason="Windows has neither these limits nor these rights")
+needs_posix = pytest.mark.skipif(
+    sys.platform == "win32", reason="Windows has neither these limits nor these rights"
+)
 
 
 def refused(result, *said):
@@ -78,22 +80,46 @@ def not_shipped():
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["--set", "vessel.x_start=nan"], ["set (--set): vessel.x_start:", "nan is not a finite number", "in m."]),
-        (["--set", "vessel.mass=inf"], ["set (--set): vessel.mass:", "inf is not a finite number", "in kg."]),
+        (
+            ["--set", "vessel.x_start=nan"],
+            ["set (--set): vessel.x_start:", "nan is not a finite number", "in m."],
+        ),
+        (
+            ["--set", "vessel.mass=inf"],
+            ["set (--set): vessel.mass:", "inf is not a finite number", "in kg."],
+        ),
         (["--set", "vessel.mas=1"], ["vessel has no variable 'mas'", "Did you mean 'mass'?"]),
-        (["--set", "vesel.mass=1"], ["There is no component or connector 'vesel'", "Did you mean 'vessel'?"]),
-        (["--set", "mass=1"], ["There is no component or connector 'mass'", "There is: allocator, "]),
-        (["--set", "vessel.tau_X_1=5"], ["It is connected: port.tau_X gives its value.", "Set what feeds it"]),
+        (
+            ["--set", "vesel.mass=1"],
+            ["There is no component or connector 'vesel'", "Did you mean 'vessel'?"],
+        ),
+        (
+            ["--set", "mass=1"],
+            ["There is no component or connector 'mass'", "There is: allocator, "],
+        ),
+        (
+            ["--set", "vessel.tau_X_1=5"],
+            ["It is connected: port.tau_X gives its value.", "Set what feeds it"],
+        ),
         (["--set", "vessel.x=3"], ["causality output", "Set parameters and inputs."]),
-        (["--set", "reference.x_set=far"], ["'far' is no Real. Give a number, with a decimal point, in m."]),
+        (
+            ["--set", "reference.x_set=far"],
+            ["'far' is no Real. Give a number, with a decimal point, in m."],
+        ),
         (["--set", "reference.x_set=1,5"], ["'1,5' is no Real", "with a decimal point"]),
         (["--set", "environment.seed=1.5"], ["1.5 is no Integer. Give a whole number."]),
         (["--set", "environment.seed=3000000000"], ["too large for an Integer", "to 2147483647"]),
         (["--set", "port.failed=1"], ["1 is no Boolean. Give true or false."]),
         (["--set", "vessel.mass=-1"], ["mass cannot be -1 kg. Allowed: at least 1 kg."]),
-        (["--set", "vessel.mass"], ["'vessel.mass' sets nothing. Right would be component.name=value."]),
+        (
+            ["--set", "vessel.mass"],
+            ["'vessel.mass' sets nothing. Right would be component.name=value."],
+        ),
         (["--engine", "fmpi"], ["There is no engine 'fmpi'", "Did you mean 'fmpy'?"]),
-        (["--until", "0.52"], ["until:", "0.52 s is no whole number of steps of 0.05 s", "0.5 s would be."]),
+        (
+            ["--until", "0.52"],
+            ["until:", "0.52 s is no whole number of steps of 0.05 s", "0.5 s would be."],
+        ),
         (["--until", "7"], ["until:", "from 0 s to 7 s", "not after the stop time, 1 s"]),
         (["--until", "nan"], ["'--until'", "Give seconds, or such as"]),
         (["--stop", "5"], ["No such option: --stop"]),
@@ -116,19 +142,37 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
         (["rnu", "short"], ["Usage: shipcosim", "No such command 'rnu'. Did you mean 'run'?"]),
         (["run"], ["Usage: shipcosim run", "Missing argument 'SCENARIO'"]),
         (["run", "shrot"], ["There is no such scenario file. There is: ", "Did you mean 'short'?"]),
-        (["run", "ssp"], ["ssp:", "There is no scenario file in this folder.", "Name a .toml file."]),
-        (["run", "scenarios", "--store", "end.state"], ["scenarios:", "a folder of scenarios", "leave out --store"]),
-        (["run", SSD], ["This is a system, not a scenario.", f"`shipcosim simulate {SSD}` runs it."]),
+        (
+            ["run", "ssp"],
+            ["ssp:", "There is no scenario file in this folder.", "Name a .toml file."],
+        ),
+        (
+            ["run", "scenarios", "--store", "end.state"],
+            ["scenarios:", "a folder of scenarios", "leave out --store"],
+        ),
+        (
+            ["run", SSD],
+            ["This is a system, not a scenario.", f"`shipcosim simulate {SSD}` runs it."],
+        ),
         (["run", SSV], [f"{SSV}, line 1:", "is no TOML", "Scenarios are text files in TOML"]),
-        (["simulate", "absent.ssp"], ["absent.ssp:", "There is no such system. There is: ", "gunnerus_dp"]),
+        (
+            ["simulate", "absent.ssp"],
+            ["absent.ssp:", "There is no such system. There is: ", "gunnerus_dp"],
+        ),
         (["simulate", SHORT], ["This is no system.", f"`shipcosim run {SHORT}`"]),
         (["simulate", "scenarios"], ["scenarios/SystemStructure.ssd:", "No such file"]),
         ([*OPEN[:-1], "0"], ["step_size (--step-size):", "greater than 0"]),
         ([*OPEN[:-1], "-0.05"], ["step_size (--step-size):", "greater than 0"]),
-        ([*OPEN[:-1], "0.3"], ["stop_time = 1 s is no multiple of the step size 0.3 s. The nearest would be 0.9 s."]),
+        (
+            [*OPEN[:-1], "0.3"],
+            ["stop_time = 1 s is no multiple of the step size 0.3 s. The nearest would be 0.9 s."],
+        ),
         ([*OPEN[:-1], "1e-12"], ["1e+12 steps", "larger steps"]),
         ([*OPEN, "--start-time", "nan"], ["'--start-time'", "Give seconds, or such as"]),
-        ([*OPEN, "--start-time", "5"], ["the run would go from 5 s to 1 s.", "Its end must lie after 5 s"]),
+        (
+            [*OPEN, "--start-time", "5"],
+            ["the run would go from 5 s to 1 s.", "Its end must lie after 5 s"],
+        ),
         ([*OPEN, "--parameters", "absent.ssv"], ["absent.ssv:", "No such file"]),
         ([*OPEN, "--parameters", SHORT], [f"{SHORT}, line 1:", "Not well-formed XML"]),
         ([*OPEN, "--inputs", "absent.csv"], ["absent.csv:", "no such file"]),
@@ -138,7 +182,9 @@ def test_options_of_a_run(call, gunnerus, arguments, said):
         (["build", "reference", "--out", SHORT], [SHORT, "cannot be written: Not a directory"]),
         (["check", "absent.ssp"], ["absent.ssp:", "There is no such file or folder."]),
     ],
-    ids=lambda value: " ".join(value[-2:]) if value[0] in ("rnu", "run", "simulate", "build", "check") else "",
+    ids=lambda value: (
+        " ".join(value[-2:]) if value[0] in ("rnu", "run", "simulate", "build", "check") else ""
+    ),
 )
 def test_arguments(call, gunnerus, arguments, said):
     assert refused(call(*arguments), *said) and not results()
@@ -150,22 +196,54 @@ def test_arguments(call, gunnerus, arguments, said):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("step_size   = 0.05", "step_size = 0", ["line 5:", "step_size = 0. It should be greater than 0."]),
+        (
+            "step_size   = 0.05",
+            "step_size = 0",
+            ["line 5:", "step_size = 0. It should be greater than 0."],
+        ),
         ("step_size   = 0.05", "step_size = -0.05", ["line 5:", "It should be greater than 0."]),
         ("step_size   = 0.05", "step_size = nan", ["line 5:", "It should be a finite number."]),
-        ("step_size   = 0.05", 'step_size = "0,05"', ["line 5:", 'step_size = "0,05".', "with a decimal point"]),
-        ("step_size   = 0.05", "step_size = 0.3", ["line 4:", "no multiple of the step size 0.3 s", "would be 0.9 s"]),
-        ("step_size   = 0.05", "step_size = 1e-30", ["line 4:", "1e+30 steps", "take larger steps"]),
+        (
+            "step_size   = 0.05",
+            'step_size = "0,05"',
+            ["line 5:", 'step_size = "0,05".', "with a decimal point"],
+        ),
+        (
+            "step_size   = 0.05",
+            "step_size = 0.3",
+            ["line 4:", "no multiple of the step size 0.3 s", "would be 0.9 s"],
+        ),
+        (
+            "step_size   = 0.05",
+            "step_size = 1e-30",
+            ["line 4:", "1e+30 steps", "take larger steps"],
+        ),
         ("stop_time   = 1.0", "stop_time = 1e300", ["line 4:", "2e+301 steps", "stop earlier"]),
         ("stop_time   = 1.0", "stop_time = -1.0", ["line 4:", "It should be greater than 0."]),
-        ("stop_time ", "stoptime ", ["line 4:", "unknown key 'stoptime'", "Did you mean 'stop_time'?"]),
-        ("time     = 0.5", "time = 0.52", ["line 11:", "no multiple of the step size 0.05 s", "would be 0.5 s"]),
+        (
+            "stop_time ",
+            "stoptime ",
+            ["line 4:", "unknown key 'stoptime'", "Did you mean 'stop_time'?"],
+        ),
+        (
+            "time     = 0.5",
+            "time = 0.52",
+            ["line 11:", "no multiple of the step size 0.05 s", "would be 0.5 s"],
+        ),
         ("time     = 0.5", "time = -0.5", ["line 11:", "greater than or equal to 0"]),
         ('x_set" = 1.0', 'x_set" = nan', ["line 12:", "nan is not a finite number"]),
-        ('x_set" = 1.0', 'xset" = 1.0', ["line 12:", "reference has no variable 'xset'", "Did you mean 'x_set'?"]),
+        (
+            'x_set" = 1.0',
+            'xset" = 1.0',
+            ["line 12:", "reference has no variable 'xset'", "Did you mean 'x_set'?"],
+        ),
         ("override", "overide", ["line 12:", "unknown key 'overide'", "Did you mean 'override'?"]),
         ('wind_speed" = 8.0', 'wind_speed" = nan', ["line 8:", "nan is not a finite number"]),
-        ('wind_speed"', 'wind_sped"', ["environment has no variable 'wind_sped'", "Did you mean 'wind_speed'?"]),
+        (
+            'wind_speed"',
+            'wind_sped"',
+            ["environment has no variable 'wind_sped'", "Did you mean 'wind_speed'?"],
+        ),
         (
             '"environment.wind_speed"',
             '"vessel.wind_north"',
@@ -174,15 +252,27 @@ def test_arguments(call, gunnerus, arguments, said):
         ('"vessel.x"', '"vessel.xx"', ["line 15:", "vessel has no variable 'xx'"]),
         ('"vessel.x"', '"vessel.mass"', ["line 15:", "is not recorded: it is a Real parameter"]),
         ("within = 5.0", "within = -5.0", ["line 17:", "greater than 0"]),
-        ("within = 5.0", "within = 5.0\nduring = [0.5]", ["line 18:", "during = [0.5].", "more values"]),
+        (
+            "within = 5.0",
+            "within = 5.0\nduring = [0.5]",
+            ["line 18:", "during = [0.5].", "more values"],
+        ),
         (
             '"gunnerus_dp"',
             '"gunerus_dp"',
             ["line 2:", "there is no system 'gunerus_dp'", "Did you mean 'gunnerus_dp'?"],
         ),
         ('"gunnerus_dp"', "7", ["line 2:", "It should be a text in quotes."]),
-        ('system      = "gunnerus_dp"', "", ["names no system. There is: blueboat_open, four_azimuths,"]),
-        ('"gunnerus-33m9"', '"gunnerus-34m"', ["line 3:", "no parameter set 'gunnerus-34m'", "gunnerus-28m9"]),
+        (
+            'system      = "gunnerus_dp"',
+            "",
+            ["names no system. There is: blueboat_open, four_azimuths,"],
+        ),
+        (
+            '"gunnerus-33m9"',
+            '"gunnerus-34m"',
+            ["line 3:", "no parameter set 'gunnerus-34m'", "gunnerus-28m9"],
+        ),
         ("step_size ", "stop_time ", ["line 5:", "is no TOML: Cannot overwrite a value."]),
         ("within = 5.0\n", 'within = "', ["is no TOML: Unterminated string"]),
     ],
@@ -200,24 +290,62 @@ CONNECTIONS = "<ssd:Connections>"
 def wired(start, end):
     """Connections with one more: ``component.connector``."""
     ends = zip(("start", "end"), (start.split("."), end.split(".")), strict=True)
-    attributes = " ".join(f'{side}Element="{element}" {side}Connector="{name}"' for side, (element, name) in ends)
+    attributes = " ".join(
+        f'{side}Element="{element}" {side}Connector="{name}"' for side, (element, name) in ends
+    )
     return f"{CONNECTIONS}<ssd:Connection {attributes}/>"
 
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        (CONNECTIONS, wired("vessel.x", "sensors.xx"), ["sensors has no input 'xx'", "Did you mean 'x'?"]),
-        (CONNECTIONS, wired("vesel.x", "sensors.x"), ["There is no element 'vesel'", "Did you mean 'vessel'?"]),
-        (CONNECTIONS, wired("vessel.y", "sensors.x"), ["A second connection into sensors.x.", "Remove one of them."]),
-        (CONNECTIONS, wired("vessel.y", "sensors.x_1_meas"), ["neither takes one", "Connect an output to an input."]),
-        (CONNECTIONS, wired("vessel.y", "vessel.tau_X_6"), ["vessel.y is in m, vessel.tau_X_6 in N; these cannot"]),
-        ('tau_X_6" kind="input"><ssc:Real unit="N"', 'tau_X_6" kind="input"><ssc:Real unit="m"', ['Write unit="N".']),
-        ("resources/sensors.fmu", "resources/sensor.fmu", ["'resources/sensor.fmu' does not exist", "Did you mean"]),
-        ("gunnerus-33m9.ssv", "gunnerus-33m.ssv", ["'resources/gunnerus-33m.ssv' does not exist", "gunnerus-33m9.ssv"]),
+        (
+            CONNECTIONS,
+            wired("vessel.x", "sensors.xx"),
+            ["sensors has no input 'xx'", "Did you mean 'x'?"],
+        ),
+        (
+            CONNECTIONS,
+            wired("vesel.x", "sensors.x"),
+            ["There is no element 'vesel'", "Did you mean 'vessel'?"],
+        ),
+        (
+            CONNECTIONS,
+            wired("vessel.y", "sensors.x"),
+            ["A second connection into sensors.x.", "Remove one of them."],
+        ),
+        (
+            CONNECTIONS,
+            wired("vessel.y", "sensors.x_1_meas"),
+            ["neither takes one", "Connect an output to an input."],
+        ),
+        (
+            CONNECTIONS,
+            wired("vessel.y", "vessel.tau_X_6"),
+            ["vessel.y is in m, vessel.tau_X_6 in N; these cannot"],
+        ),
+        (
+            'tau_X_6" kind="input"><ssc:Real unit="N"',
+            'tau_X_6" kind="input"><ssc:Real unit="m"',
+            ['Write unit="N".'],
+        ),
+        (
+            "resources/sensors.fmu",
+            "resources/sensor.fmu",
+            ["'resources/sensor.fmu' does not exist", "Did you mean"],
+        ),
+        (
+            "gunnerus-33m9.ssv",
+            "gunnerus-33m.ssv",
+            ["'resources/gunnerus-33m.ssv' does not exist", "gunnerus-33m9.ssv"],
+        ),
         ("<ssd:System ", "<!-- \0 --><ssd:System ", ["Not well-formed XML"]),
         ("</ssd:Elements>", "", ["Not well-formed XML: Opening and ending tag mismatch"]),
-        ("<ssd:SystemStructureD", '<!DOCTYPE x [<!ENTITY a "b">]><ssd:SystemStructureD', ["Remove <!DOCTYPE ...>"]),
+        (
+            "<ssd:SystemStructureD",
+            '<!DOCTYPE x [<!ENTITY a "b">]><ssd:SystemStructureD',
+            ["Remove <!DOCTYPE ...>"],
+        ),
     ],
 )
 def test_system(call, gunnerus, old, new, said):
@@ -230,13 +358,33 @@ def test_system(call, gunnerus, old, new, said):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('value="531000.0"', 'value="NaN"', ["line 4: vessel.mass:", "'NaN' is not a finite number."]),
+        (
+            'value="531000.0"',
+            'value="NaN"',
+            ["line 4: vessel.mass:", "'NaN' is not a finite number."],
+        ),
         ('value="531000.0"', 'value="heavy"', ["line 5:", "'heavy' is not a number."]),
-        ('value="531000.0"', 'value="-1"', ["vessel.mass cannot be -1 kg. Allowed: at least 1 kg."]),
-        ('unit="kg"', 'unit="m"', ["the value is in m, vessel.mass in kg; these cannot", "Correct the unit."]),
-        ("vessel.mass", "vessel.masss", ["vessel has no parameter 'vessel.masss'", "Did you mean 'vessel.mass'?"]),
+        (
+            'value="531000.0"',
+            'value="-1"',
+            ["vessel.mass cannot be -1 kg. Allowed: at least 1 kg."],
+        ),
+        (
+            'unit="kg"',
+            'unit="m"',
+            ["the value is in m, vessel.mass in kg; these cannot", "Correct the unit."],
+        ),
+        (
+            "vessel.mass",
+            "vessel.masss",
+            ["vessel has no parameter 'vessel.masss'", "Did you mean 'vessel.mass'?"],
+        ),
         ("vessel.mass", "vesel.mass", ["There is no element 'vesel'", "Did you mean 'vessel'?"]),
-        ("vessel.mass", "vessel.A11", ["The set has this parameter already, in line 4.", "Keep one of them."]),
+        (
+            "vessel.mass",
+            "vessel.A11",
+            ["The set has this parameter already, in line 4.", "Keep one of them."],
+        ),
     ],
 )
 def test_parameter_set(call, gunnerus, old, new, said):
@@ -253,7 +401,11 @@ def test_parameter_set(call, gunnerus, old, new, said):
         (SSD, NOISE, ["The file is not UTF-8.", "save it with this encoding"]),
         (SSD, b"<a>" + LATIN + b"</a>", ["The file is not UTF-8."]),
         (SSD, b"", ["Not well-formed XML: Document is empty."]),
-        (SSD, b"<a/>", ["Its outermost element is <a>. Right would be <SystemStructureDescription "]),
+        (
+            SSD,
+            b"<a/>",
+            ["Its outermost element is <a>. Right would be <SystemStructureDescription "],
+        ),
         (SSV, NOISE, ["The file is not UTF-8."]),
         (SSV, b"<a/>", ["Its outermost element is <a>. Right would be <ParameterSet "]),
         (FMU, NOISE, ["Damaged or incomplete archive", "Build, copy or export it again."]),
@@ -291,10 +443,14 @@ def test_folder_in_place_of_a_file(call, gunnerus, file):
     assert refused(call("run", "short"), SSD, said) and not results()
 
 
-def test_missing_fmu_is_named_with_the_place_that_asks_for_it_and_where_it_was_sought(call, gunnerus):
+def test_missing_fmu_is_named_with_the_place_that_asks_for_it_and_where_it_was_sought(
+    call, gunnerus
+):
     not_shipped().unlink()
     said = "In ssp/gunnerus_dp/resources and build/fmus and "
-    assert refused(call("run", "short"), f"{SSD}, line ", "'resources/own_thruster.fmu' does not exist", said)
+    assert refused(
+        call("run", "short"), f"{SSD}, line ", "'resources/own_thruster.fmu' does not exist", said
+    )
     assert not results()
 
 
@@ -303,15 +459,23 @@ def test_values_that_are_not_used_and_events_that_never_act_are_remarked(call, g
     change(SHORT, "time     = 0.5", "time = 5.0")
     done = call("run", "short")
     assert done.code == 0
-    assert f"remark: {SSV}, line 20: towed_body.mass:\nThere is no element 'towed_body' in this system" in done.err
-    assert f"remark: {SHORT}, line 11:\nthe event at 5 s never acts: the run ends at 1 s." in done.err
+    assert (
+        f"remark: {SSV}, line 20: towed_body.mass:\nThere is no element 'towed_body' in this system"
+        in done.err
+    )
+    assert (
+        f"remark: {SHORT}, line 11:\nthe event at 5 s never acts: the run ends at 1 s." in done.err
+    )
 
 
 def test_a_parameter_under_another_name_is_remarked_and_missed(call, gunnerus):
     change(SSV, "vessel.mass", "towed_body.mass")
     done = call("run", "short")
     assert done.code == 2
-    assert f"remark: {SSV}, line 4: towed_body.mass:\nThere is no element 'towed_body' in this system" in done.err
+    assert (
+        f"remark: {SSV}, line 4: towed_body.mass:\nThere is no element 'towed_body' in this system"
+        in done.err
+    )
     assert "parameters left out, which have no value of their own: mass [kg]" in done.err
 
 
@@ -328,28 +492,55 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
 @pytest.mark.parametrize(
     ("table", "said"),
     [
-        (LEVELS + "0,10\n0.5,nan\n1,10\n", ["in.csv: tunnel_rpm:", "is nan at 0.5 s.", "Fill or drop such rows"]),
+        (
+            LEVELS + "0,10\n0.5,nan\n1,10\n",
+            ["in.csv: tunnel_rpm:", "is nan at 0.5 s.", "Fill or drop such rows"],
+        ),
         (LEVELS + "0,10\n0.5,\n1,10\n", ["in.csv: tunnel_rpm:", "is nan at 0.5 s."]),
         (LEVELS + "0,10\nnan,10\n1,10\n", ["The time of row 2 is nan.", "Drop such rows."]),
-        (LEVELS + "0,10\n0.7,3\n0.5,10\n1,3\n", ["The time of row 3 is 0.5 s, after 0.7 s", "Sort the rows"]),
-        (LEVELS + "0.5,10\n1,10\n", ["The table goes from 0.5 s to 1 s, the run from 0 s to 1 s.", "Start later"]),
+        (
+            LEVELS + "0,10\n0.7,3\n0.5,10\n1,3\n",
+            ["The time of row 3 is 0.5 s, after 0.7 s", "Sort the rows"],
+        ),
+        (
+            LEVELS + "0.5,10\n1,10\n",
+            ["The table goes from 0.5 s to 1 s, the run from 0 s to 1 s.", "Start later"],
+        ),
         (LEVELS + "0,10\n0.5,10\n", ["The table goes from 0 s to 0.5 s", "stop earlier"]),
         (LEVELS, ["in.csv:", "no row"]),
         ("", ["in.csv:", "cannot be read as CSV: Empty CSV file"]),
-        (LEVELS.replace("rpm [rpm]", "rpms [rpm]") + "0,1\n1,1\n", ["no input 'tunnel_rpms'", "'tunnel_rpm'?"]),
-        (LEVELS.replace("[rpm]", "[m]") + "0,1\n1,1\n", ["cannot convert 'm' into 'rpm'", "measure different things"]),
-        (LEVELS.replace("[rpm]", "[umdr]") + "0,1\n1,1\n", ["'umdr' is not known.", "Units are written like"]),
+        (
+            LEVELS.replace("rpm [rpm]", "rpms [rpm]") + "0,1\n1,1\n",
+            ["no input 'tunnel_rpms'", "'tunnel_rpm'?"],
+        ),
+        (
+            LEVELS.replace("[rpm]", "[m]") + "0,1\n1,1\n",
+            ["cannot convert 'm' into 'rpm'", "measure different things"],
+        ),
+        (
+            LEVELS.replace("[rpm]", "[umdr]") + "0,1\n1,1\n",
+            ["'umdr' is not known.", "Units are written like"],
+        ),
         (
             LEVELS.replace("[s]", "[m]") + "0,1\n1,1\n",
             ["column 'time':", "cannot convert 'm' into 's'", "It should be in s."],
         ),
-        (LEVELS.replace("time", "t") + "0,1\n1,1\n", ["has no column 'time'", "It should have 'time [s]'."]),
-        (LEVELS + "0,10\n0.5,1,2\n1,10\n", ["Expected 2 columns, got 3", "Columns are separated by commas"]),
+        (
+            LEVELS.replace("time", "t") + "0,1\n1,1\n",
+            ["has no column 'time'", "It should have 'time [s]'."],
+        ),
+        (
+            LEVELS + "0,10\n0.5,1,2\n1,10\n",
+            ["Expected 2 columns, got 3", "Columns are separated by commas"],
+        ),
         (
             "time [s];tunnel_rpm [rpm]\n0;1,5\n1;1,5\n",
             ["Columns are separated by commas, numbers have a decimal point"],
         ),
-        (LEVELS + "0,full\n1,full\n", ["column 'tunnel_rpm':", "holds texts, not numbers, as 'full'."]),
+        (
+            LEVELS + "0,full\n1,full\n",
+            ["column 'tunnel_rpm':", "holds texts, not numbers, as 'full'."],
+        ),
         (NOISE, ["in.csv:", "is not UTF-8 text"]),
         (
             b"time [s],tunnel_rpm [\xb0]\n0,1\n1,1\n",
@@ -386,8 +577,16 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time(call, gunner
     before = old_results()
     spoil_step("if t > 0.49: raise ValueError('the shaft has broken')")
     failed = call("run", "short")
-    assert refused(failed, "error: tunnel:\n", "tunnel at t = 0.5 s: exception", "ValueError: the shaft has broken")
-    assert re.search(r'File "tunnel_thruster.py", line \d+, in step', failed.err) and "PyObject" not in failed.err
+    assert refused(
+        failed,
+        "error: tunnel:\n",
+        "tunnel at t = 0.5 s: exception",
+        "ValueError: the shaft has broken",
+    )
+    assert (
+        re.search(r'File "tunnel_thruster.py", line \d+, in step', failed.err)
+        and "PyObject" not in failed.err
+    )
     after = results()
     assert {name: after.pop(name) for name in before} == before
     assert sorted(after) == ["result-partial.csv", "result-partial.html", "result-partial.nc"]
@@ -397,19 +596,25 @@ def test_nan_in_an_fmu_is_named_with_variable_component_and_time(call, gunnerus)
     spoil("    def _write(self):\n", "    def _write(self):\n        self.power = 0.0\n")
     spoil("= powers(state, self.tunnel)", "= (float('nan') if state.torque else 0.0), 0.0")
     failed = call("run", "short")
-    assert refused(failed, "error: tunnel:\n", "tunnel at t = ", "output 'power' is nan, not a finite number")
+    assert refused(
+        failed, "error: tunnel:\n", "tunnel at t = ", "output 'power' is nan, not a finite number"
+    )
     assert "result.nc" not in results()
 
 
 def test_failure_at_the_start_has_no_rows_to_keep(call, gunnerus):
     spoil("    def start(self):\n", "    def start(self):\n        raise ValueError('no oil')\n")
-    assert refused(call("run", "short"), "error: tunnel:\nfailed at the start.", "ValueError: no oil")
+    assert refused(
+        call("run", "short"), "error: tunnel:\nfailed at the start.", "ValueError: no oil"
+    )
     assert not results()
 
 
 def test_table_in_a_parameter_that_makes_no_sense_is_shown(call, gunnerus):
     failed = call("run", "short", "--set", "vessel.wind_table=banana")
-    assert refused(failed, "error: vessel:\n", "table, row 1: 'banana' is not numbers separated by blanks.")
+    assert refused(
+        failed, "error: vessel:\n", "table, row 1: 'banana' is not numbers separated by blanks."
+    )
     assert not results()
 
 
@@ -424,8 +629,16 @@ def test_values_beyond_all_bounds_fail_by_name(call, gunnerus):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("    def step(self, t, h):\n", "    def step(self, t, h)\n", ["is not Python: expected ':'", ", line "]),
-        ("from shipcosim.fmi", "import scipy_\nfrom shipcosim.fmi", ["imports scipy_.", "An FMU has Python, NumPy"]),
+        (
+            "    def step(self, t, h):\n",
+            "    def step(self, t, h)\n",
+            ["is not Python: expected ':'", ", line "],
+        ),
+        (
+            "from shipcosim.fmi",
+            "import scipy_\nfrom shipcosim.fmi",
+            ["imports scipy_.", "An FMU has Python, NumPy"],
+        ),
         ('Input("N"', 'Input("Nn"', ["unit 'Nn'", "is not known"]),
     ],
 )
@@ -433,12 +646,19 @@ def test_fmu_that_cannot_be_built_leaves_the_old_one(call, gunnerus, old, new, s
     before = Path(FMU).read_bytes()
     spoil(old, new)
     assert refused(call("run", "short"), TUNNEL, *said) and not results()
-    assert refused(call("build", "tunnel_thruster"), TUNNEL, *said) and Path(FMU).read_bytes() == before
+    assert (
+        refused(call("build", "tunnel_thruster"), TUNNEL, *said)
+        and Path(FMU).read_bytes() == before
+    )
 
 
 def test_debug_adds_the_traceback(call, gunnerus):
     failed = call("run", "short", "--set", "vessel.mas=1", "--debug")
-    assert failed.code == 2 and failed.err.startswith("error: ") and "Traceback (most recent call last)" in failed.err
+    assert (
+        failed.code == 2
+        and failed.err.startswith("error: ")
+        and "Traceback (most recent call last)" in failed.err
+    )
 
 
 # what the machine refuses
@@ -482,7 +702,9 @@ module.{function} = limited
     ("module", "function", "file"),
     [("series", "write_table", "result.nc"), ("results.shown", "write_file", "report.html")],
 )
-def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(gunnerus, module, function, file):
+def test_full_disk_costs_no_old_result_and_leaves_no_part_of_a_new_one(
+    gunnerus, module, function, file
+):
     before = old_results()
     done = command("run", "short", before=LIMITED_WRITING.format(module=module, function=function))
     assert done.returncode == 2
@@ -496,14 +718,19 @@ def test_full_disk_for_temporary_files_is_named(gunnerus, tmp_path, monkeypatch)
     monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path / "nothing unpacked yet"))
     done = command("run", "short", preexec_fn=partial(limit_file_size, 20_000))
     assert done.returncode == 2 and not results()
-    assert re.search(r"error: .*\.fmu:\nCannot be unpacked into .*: File too large\. Make room there", done.stderr)
+    assert re.search(
+        r"error: .*\.fmu:\nCannot be unpacked into .*: File too large\. Make room there",
+        done.stderr,
+    )
 
 
 @needs_posix
 def test_full_disk_leaves_the_old_fmu(gunnerus):
     before = Path(FMU).read_bytes()
     done = command("build", "tunnel_thruster", preexec_fn=partial(limit_file_size, 20_000))
-    assert done.returncode == 2 and f"error: {FMU}:\ncannot be written: File too large." in done.stderr
+    assert (
+        done.returncode == 2 and f"error: {FMU}:\ncannot be written: File too large." in done.stderr
+    )
     assert Path(FMU).read_bytes() == before and not list(Path("build/fmus").glob("*part*"))
 
 
@@ -529,6 +756,6 @@ def test_files_without_permission_are_named(gunnerus):
     done = command("check", SHORT, SSV, FMU, preexec_fn=give_up_rights)
     assert done.returncode == 1
     for file in (SHORT, SSV, FMU):
-        assert re.search(rf"error: {re.escape(file)}:\n[Cc]annot be read: Permission denied\.", done.stdout), (
-            done.stdout
-        )
+        assert re.search(
+            rf"error: {re.escape(file)}:\n[Cc]annot be read: Permission denied\.", done.stdout
+        ), done.stdout

@@ -50,7 +50,11 @@ reset = ["port.azimuth_cmd", "tunnel.failed"]
 def test_the_dp_ship_runs_in_libcosim_from_its_own_files_with_our_digits(gunnerus, call):
     (gunnerus / "scenarios" / "happening.toml").write_text(HAPPENING)
     result = call("export", "osp", "happening", "--out", "out")
-    assert result.code == 0 and "out/OspSystemStructure.xml" in result.out and "out/scenario.json" in result.out
+    assert (
+        result.code == 0
+        and "out/OspSystemStructure.xml" in result.out
+        and "out/scenario.json" in result.out
+    )
     scenario = read_scenario("scenarios/happening.toml")
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=["build/fmus"])
     table = simulate(system, scenario)
@@ -64,13 +68,35 @@ def test_the_dp_ship_runs_in_libcosim_from_its_own_files_with_our_digits(gunneru
 def test_what_was_exported_runs_here_again_with_its_scenario(gunnerus, call):
     assert call("export", "osp", "short", "--out", "out").code == 0
     assert call("run", "short", "--out", "ours").code == 0
-    again = call("simulate", "out/OspSystemStructure.xml", "--scenario", "out/scenario.json", "--out", "again")
+    again = call(
+        "simulate",
+        "out/OspSystemStructure.xml",
+        "--scenario",
+        "out/scenario.json",
+        "--out",
+        "again",
+    )
     assert again.code == 0, again.err
-    assert (gunnerus / "ours" / "result.csv").read_text() == (gunnerus / "again" / "result.csv").read_text()
+    assert (gunnerus / "ours" / "result.csv").read_text() == (
+        gunnerus / "again" / "result.csv"
+    ).read_text()
 
 
 def test_check_takes_an_exported_structure_and_names_its_faults(gunnerus, call):
-    assert call("export", "osp", "ssp/gunnerus_dp", "--stop-time", "1", "--step-size", "0.1", "--out", "out").code == 0
+    assert (
+        call(
+            "export",
+            "osp",
+            "ssp/gunnerus_dp",
+            "--stop-time",
+            "1",
+            "--step-size",
+            "0.1",
+            "--out",
+            "out",
+        ).code
+        == 0
+    )
     assert not (gunnerus / "out" / "scenario.json").exists()
     assert call("check", "out").code == 0
     file = gunnerus / "out" / "OspSystemStructure.xml"
@@ -82,7 +108,16 @@ def test_check_takes_an_exported_structure_and_names_its_faults(gunnerus, call):
 
 def test_a_faulty_scenario_of_osp_leaves_nothing(gunnerus, call):
     (gunnerus / "events.json").write_text(json.dumps({"events": [{"time": 1.0}]}))
-    result = call("simulate", "ssp/gunnerus_dp", "--stop-time", "1", "--step-size", "0.1", "--scenario", "events.json")
+    result = call(
+        "simulate",
+        "ssp/gunnerus_dp",
+        "--stop-time",
+        "1",
+        "--step-size",
+        "0.1",
+        "--scenario",
+        "events.json",
+    )
     assert result.code == 2 and "event 1:\nIt has no model" in result.err
     assert not (gunnerus / "results").exists()
 
@@ -90,7 +125,10 @@ def test_a_faulty_scenario_of_osp_leaves_nothing(gunnerus, call):
 def test_check_for_a_tool_names_what_it_would_leave_out_and_how_to_mend_it(gunnerus, call):
     result = call("check", "ssp/gunnerus_dp", "--for", "libcosim")
     assert result.code == 1
-    assert "line 9: ParameterBinding" in result.out and "bound to a system: libcosim goes on without it" in result.out
+    assert (
+        "line 9: ParameterBinding" in result.out
+        and "bound to a system: libcosim goes on without it" in result.out
+    )
     system = sc.read("ssp/gunnerus_dp")
     system.bind_to_components()
     system.write("mended.ssp")
@@ -105,7 +143,11 @@ def test_check_holds_a_scenario_of_osp_against_the_structure_beside_it(gunnerus,
     assert call("check", "out/scenario.json").code == 0
     file.write_text(file.read_text().replace('"x_set"', '"x_sett"'))
     result = call("check", "out/scenario.json")
-    assert result.code == 1 and "reference has no variable 'x_sett'" in result.out and "scenario.json" in result.out
+    assert (
+        result.code == 1
+        and "reference has no variable 'x_sett'" in result.out
+        and "scenario.json" in result.out
+    )
     (gunnerus / "alone.yaml").write_text("events: [{time: 1, model: a, variable: b, action: rest}]")
     assert "Did you mean 'reset'?" in call("check", "alone.yaml").out
 
@@ -118,7 +160,9 @@ def test_a_scenario_of_ours_runs_an_osp_structure(gunnerus, call):
     )
     for name in ("short", "theirs"):
         assert call("run", name, "--out", name).code == 0
-    assert (gunnerus / "short" / "result.csv").read_text() == (gunnerus / "theirs" / "result.csv").read_text()
+    assert (gunnerus / "short" / "result.csv").read_text() == (
+        gunnerus / "theirs" / "result.csv"
+    ).read_text()
 
 
 def test_commands_of_the_page_run(root, gunnerus, call):
@@ -128,4 +172,6 @@ def test_commands_of_the_page_run(root, gunnerus, call):
     codes = {line: call(*line.split()).code for line in lines}
     assert set(codes.values()) == {0, 1}
     differing = ("check ssp/gunnerus_dp --for", "compare ssp/gunnerus_dp")
-    assert [line for line, code in codes.items() if code] == [line for line in lines if line.startswith(differing)]
+    assert [line for line, code in codes.items() if code] == [
+        line for line in lines if line.startswith(differing)
+    ]

@@ -8,12 +8,24 @@ def test_the_small_system_becomes_one_fmu(call, project):
     result = call("export", "fmu", "ssp/tank", "--out", "blocks", "--step-size", "0.1")
     assert result.code == 0 and result.out.strip() == "blocks/tank.fmu"
     fmu = read_fmu(project / "blocks" / "tank.fmu")
-    assert set(fmu.variables) == {"time", "level_set", "lag.y", "lag.time_constant", "lag.fails_at", "lag.pause"}
+    assert set(fmu.variables) == {
+        "time",
+        "level_set",
+        "lag.y",
+        "lag.time_constant",
+        "lag.fails_at",
+        "lag.pause",
+    }
     assert fmu.variables["level_set"].start == 1.0 and fmu.experiment["stepSize"] == 0.1
 
 
 def test_connectors_alone_and_parameters_of_a_set(call, project):
-    assert call("export", "fmu", "ssp/tank", "--connectors-only", "--unchecked", "--step-size", "0.1").code == 0
+    assert (
+        call(
+            "export", "fmu", "ssp/tank", "--connectors-only", "--unchecked", "--step-size", "0.1"
+        ).code
+        == 0
+    )
     assert set(read_fmu(project / "tank.fmu").variables) == {"time", "level_set"}
 
 
@@ -24,7 +36,10 @@ def test_what_cannot_be_expressed_is_said_and_nothing_is_left(call, project):
     system.connect("lag.y", "two.u", factor=2.0)
     system.write(project / "two.ssp")
     result = call("export", "fmu", "two.ssp", "--step-size", "0.1")
-    assert result.code == 2 and "lag.y -> two.u:\nthe value is multiplied by 2 and 0 added" in result.err
+    assert (
+        result.code == 2
+        and "lag.y -> two.u:\nthe value is multiplied by 2 and 0 added" in result.err
+    )
     assert not list(project.glob("*.fmu"))
 
 

@@ -14,7 +14,9 @@ def commands():
     """Every command by its words: ("run",), ("export", "fmu")."""
     for name, command in vars(get_command(app))["commands"].items():
         inner = getattr(command, "commands", None)
-        for words, one in [((name, n), c) for n, c in inner.items()] if inner else [((name,), command)]:
+        for words, one in (
+            [((name, n), c) for n, c in inner.items()] if inner else [((name,), command)]
+        ):
             yield pytest.param(words, one, id=" ".join(words))
 
 
@@ -29,9 +31,20 @@ def test_each_command_has_an_example_that_its_parser_takes(words, command):
 @pytest.mark.parametrize("width", [30, 60, 80, 200])
 def test_variables_are_whole_on_any_terminal(width, monkeypatch, capsys):
     monkeypatch.setattr(
-        console, "Console", lambda **given: Console(**given, force_terminal=True, width=width, no_color=True)
+        console,
+        "Console",
+        lambda **given: Console(**given, force_terminal=True, width=width, no_color=True),
     )
-    rows = [("a_very_long_name_of_a_variable_in_the_hull", "parameter", "Real", "kg.m2/s", "1234567.875", "what it is")]
+    rows = [
+        (
+            "a_very_long_name_of_a_variable_in_the_hull",
+            "parameter",
+            "Real",
+            "kg.m2/s",
+            "1234567.875",
+            "what it is",
+        )
+    ]
     console.print_variables(rows)
     said = capsys.readouterr().out
     assert all(cell in said for cell in rows[0]) and "…" not in said

@@ -8,13 +8,18 @@ PARTIAL = ["result-partial.csv", "result-partial.html", "result-partial.nc"]
 def test_results_are_the_same_and_the_exit_code_is_that_of_the_expectations(call, project):
     assert call("run", "fill", "--out", "plain").code == 0
     assert call("run", "fill", "--out", "apart", "--isolate").code == 0
-    assert (project / "plain" / "result.csv").read_bytes() == (project / "apart" / "result.csv").read_bytes()
+    assert (project / "plain" / "result.csv").read_bytes() == (
+        project / "apart" / "result.csv"
+    ).read_bytes()
 
 
 def test_a_component_that_hangs_is_named_and_the_rows_before_it_are_kept(call, project):
     failed = call("run", "fill", "--isolate", "--timeout", "5", "--set", "lag.pause=60.0")
     assert failed.code == 1
-    assert "error: lag:\nfailed in the step from t = 0 s. Its process gave no answer to DoStep within 5 s" in failed.err
+    assert (
+        "error: lag:\nfailed in the step from t = 0 s. Its process gave no answer to DoStep within 5 s"
+        in failed.err
+    )
     assert "Traceback" not in failed.err and failed.out == ""
     folder = project / "results" / "fill"
     assert sorted(file.name for file in folder.iterdir()) == PARTIAL
@@ -25,13 +30,21 @@ def test_a_component_that_hangs_is_named_and_the_rows_before_it_are_kept(call, p
 def test_an_exception_is_said_as_without_processes(call, project):
     failed = call("run", "fill", "--isolate", "--set", "lag.fails_at=2.0")
     assert failed.code == 1
-    assert all(text in failed.err for text in ("error: lag:", "ValueError: the pump has run dry", "lag.py", "t = 2"))
+    assert all(
+        text in failed.err
+        for text in ("error: lag:", "ValueError: the pump has run dry", "lag.py", "t = 2")
+    )
     assert read_table(project / "results" / "fill" / "result-partial.nc")["time"].values[-1] == 2.0
 
 
 def test_a_state_is_stored_and_continued_in_processes(call, project):
     assert call("run", "fill", "--out", "whole").code == 0
-    assert call("run", "fill", "--out", "first", "--until", "2", "--store", "half.state", "--isolate").code == 0
+    assert (
+        call(
+            "run", "fill", "--out", "first", "--until", "2", "--store", "half.state", "--isolate"
+        ).code
+        == 0
+    )
     assert call("run", "fill", "--out", "rest", "--from", "half.state", "--isolate").code == 0
     whole, rest = (read_table(project / name / "result.nc") for name in ("whole", "rest"))
     n = rest.sizes["time"]
@@ -40,6 +53,9 @@ def test_a_state_is_stored_and_continued_in_processes(call, project):
 
 
 def test_a_time_limit_alone_and_one_that_is_none_are_refused(call, project):
-    alone, none = call("run", "fill", "--timeout", "5"), call("run", "fill", "--isolate", "--timeout", "0")
+    alone, none = (
+        call("run", "fill", "--timeout", "5"),
+        call("run", "fill", "--isolate", "--timeout", "0"),
+    )
     assert (alone.code, none.code) == (2, 2)
     assert "Without isolate" in alone.err and "0 s is no time limit" in none.err

@@ -20,7 +20,10 @@ def test_earlier_results_are_kept_in_rising_numbers(tmp_path, capsys):
     for text in ("first", "second", "third"):
         written(folder, text)
     assert (folder / "result.txt").read_text() == "third"
-    assert [(tmp_path / f"calm-{n}" / "result.txt").read_text() for n in (1, 2)] == ["first", "second"]
+    assert [(tmp_path / f"calm-{n}" / "result.txt").read_text() for n in (1, 2)] == [
+        "first",
+        "second",
+    ]
     assert capsys.readouterr().err.count("Earlier results are kept in") == 2
 
 
@@ -37,7 +40,9 @@ def test_files_of_others_stay_where_they_are(tmp_path):
     (tmp_path / "notes.txt").write_text("mine")
     (tmp_path / "partial.txt").write_text("half")
     written(tmp_path, "first")
-    assert (tmp_path / "notes.txt").read_text() == "mine" and not (tmp_path / "partial.txt").exists()
+    assert (tmp_path / "notes.txt").read_text() == "mine" and not (
+        tmp_path / "partial.txt"
+    ).exists()
     assert (tmp_path.with_name(f"{tmp_path.name}-1") / "partial.txt").read_text() == "half"
 
 
@@ -46,7 +51,9 @@ def test_results_that_fail_on_their_way_leave_the_earlier_ones(tmp_path):
     with pytest.raises(ZeroDivisionError), staged(tmp_path / "calm") as stage:
         (stage / "result.txt").write_text("second")
         raise ZeroDivisionError
-    assert (tmp_path / "calm" / "result.txt").read_text() == "first" and not (tmp_path / "calm-1").exists()
+    assert (tmp_path / "calm" / "result.txt").read_text() == "first" and not (
+        tmp_path / "calm-1"
+    ).exists()
 
 
 def test_folders_and_single_files_are_kept_too(tmp_path):
@@ -75,7 +82,10 @@ def test_a_second_run_keeps_the_first_unless_forced(call, project):
 def test_what_a_part_of_a_run_does_not_reach_is_said(call, project):
     part = call("run", "fill", "--until", "4000 ms")
     said = part.out.replace("\u00a0", " ")
-    assert part.code == 0 and "Not reached: lag.y: 1 ± 0.05 m during 4 to 5 s. The run ended at 4 s." in said
+    assert (
+        part.code == 0
+        and "Not reached: lag.y: 1 ± 0.05 m during 4 to 5 s. The run ended at 4 s." in said
+    )
     assert "None of its" in part.out or "not reached" in part.out
 
 

@@ -24,10 +24,15 @@ def test_a_few_options_make_a_ship_that_is_found_checked_and_runs(project):
     assert made.exit_code == 0, made.output
     for name in ("ships/tern/ship.toml", "ssp/tern_open", "ssp/tern_dp", "scenarios/tern.toml"):
         assert (project / name).exists() and name in made.stdout
-    checked = told("check", "ships/tern/ship.toml", "scenarios/tern.toml", "ssp/tern_open", "ssp/tern_dp")
+    checked = told(
+        "check", "ships/tern/ship.toml", "scenarios/tern.toml", "ssp/tern_open", "ssp/tern_dp"
+    )
     assert checked.exit_code == 0, checked.output
     assert "vessel.A22" in checked.stdout and "Clarke" in checked.stdout
-    assert 'origin = "assumed: usual of a ship of this size"' in (project / "ships/tern/ship.toml").read_text()
+    assert (
+        'origin = "assumed: usual of a ship of this size"'
+        in (project / "ships/tern/ship.toml").read_text()
+    )
     ran = told("run", "tern", "--until", "2")
     assert "Traceback" not in ran.output and (project / "results/tern").is_dir(), ran.output
 
@@ -37,8 +42,13 @@ def test_nothing_is_written_over_without_being_told(project):
     before = (project / "ships/tern/ship.toml").read_bytes()
     again = told("new", "ship", "tern", *ASKED, "--propulsion", "screws", "--yes")
     assert again.exit_code == 2 and "there already" in again.output
-    assert (project / "ships/tern/ship.toml").read_bytes() == before and not (project / "ssp/tern_dp").exists()
-    assert told("new", "ship", "tern", *ASKED, "--propulsion", "screws", "--yes", "--force").exit_code == 0
+    assert (project / "ships/tern/ship.toml").read_bytes() == before and not (
+        project / "ssp/tern_dp"
+    ).exists()
+    assert (
+        told("new", "ship", "tern", *ASKED, "--propulsion", "screws", "--yes", "--force").exit_code
+        == 0
+    )
     assert (project / "ssp/tern_dp").is_dir()
 
 
@@ -81,16 +91,27 @@ def test_what_is_wrong_is_said_and_nothing_is_written(arguments, found, project)
     made = told("new", "ship", *arguments)
     assert made.exit_code == 2 and found in made.output, made.output
     assert (
-        "fault of shipcosim" not in made.output and not (project / "ssp").exists() and not (project / "ships").exists()
+        "fault of shipcosim" not in made.output
+        and not (project / "ssp").exists()
+        and not (project / "ships").exists()
     )
 
 
-def test_in_a_terminal_it_asks_for_what_is_not_said_and_proposes_what_is_usual(project, monkeypatch):
+def test_in_a_terminal_it_asks_for_what_is_not_said_and_proposes_what_is_usual(
+    project, monkeypatch
+):
     monkeypatch.setattr("shipcosim.cli.new_ship._is_terminal", lambda: True)
     answers = ["a ferry", "screws", "sixty", "40 m", "", "2.9 m", "", "11 kn", ""]
     made = CliRunner().invoke(app, ["new", "ship", "tern"], input="\n".join(answers) + "\n")
     assert made.exit_code == 0, made.output
     assert "'sixty'" in made.output and "Breadth [11 m]" in made.output
     text = (project / "ships/tern/ship.toml").read_text()
-    assert 'description = "a ferry"' in text and 'length = "40 m"' in text and 'draught = "2.9 m"' in text
-    assert 'breadth = { value = "11 m", origin = "assumed' in text and text.count('kind = "tunnel"') == 2
+    assert (
+        'description = "a ferry"' in text
+        and 'length = "40 m"' in text
+        and 'draught = "2.9 m"' in text
+    )
+    assert (
+        'breadth = { value = "11 m", origin = "assumed' in text
+        and text.count('kind = "tunnel"') == 2
+    )

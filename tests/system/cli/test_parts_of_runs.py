@@ -26,8 +26,27 @@ def test_simulate_replays_from_any_time_with_start_values(call, project):
     """Behind a ramp of 1 m/s a lag is late by its time constant."""
     call("build")
     (project / "levels.csv").write_text("time [s],level_set [km]\n50,0\n60,0.01\n")
-    options = ("--start-time", "50", "--stop-time", "60", "--step-size", "0.1", "--set", "lag.time_constant=0.2")
-    done = call("simulate", TANK, "--inputs", "levels.csv", "--interpolate", "level*", *options, "--out", "out")
+    options = (
+        "--start-time",
+        "50",
+        "--stop-time",
+        "60",
+        "--step-size",
+        "0.1",
+        "--set",
+        "lag.time_constant=0.2",
+    )
+    done = call(
+        "simulate",
+        TANK,
+        "--inputs",
+        "levels.csv",
+        "--interpolate",
+        "level*",
+        *options,
+        "--out",
+        "out",
+    )
     assert done.code == 0
     table = read_table(project / "out" / "result.nc")
     assert table["time"].values[[0, -1]].tolist() == [50.0, 60.0]
@@ -38,7 +57,10 @@ def test_simulate_replays_from_any_time_with_start_values(call, project):
 @pytest.mark.parametrize(
     "options, said",
     [
-        (("--inputs", "gap.csv", "--max-gap", "2"), "There is no row between 0 s and 9 s; 2 s are allowed."),
+        (
+            ("--inputs", "gap.csv", "--max-gap", "2"),
+            "There is no row between 0 s and 9 s; 2 s are allowed.",
+        ),
         (("--inputs", "gap.csv", "--interpolate", "level"), "Did you mean 'level_set'?"),
         (("--interpolate", "*"), "Give one as inputs (--inputs)."),
         (("--from", "gap.csv"), "is no snapshot of a run"),

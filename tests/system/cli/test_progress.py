@@ -27,20 +27,34 @@ def clock():
 
 def test_the_share_is_that_of_the_typical_time_of_what_is_done(clock):
     course, shares = Course(STEPS, clock), []
-    for step, *parts in [("reading",), ("searching",), ("searching", 1, 4), ("searching", 4, 4), ("predicting", 1, 2)]:
+    for step, *parts in [
+        ("reading",),
+        ("searching",),
+        ("searching", 1, 4),
+        ("searching", 4, 4),
+        ("predicting", 1, 2),
+    ]:
         course.reached(step, *parts)
         shares.append(round(course.share, 3))
     assert shares == [0.0, 0.1, 0.25, 0.7, 0.85]
 
 
 def test_the_share_never_jumps_back_or_above_the_whole(clock):
-    told = [("searching", 3, 4), ("searching", 0, 8), ("reading",), ("unheard of", 1, 1), ("searching", 9, 8)]
+    told = [
+        ("searching", 3, 4),
+        ("searching", 0, 8),
+        ("reading",),
+        ("unheard of", 1, 1),
+        ("searching", 9, 8),
+    ]
     told += [("predicting", 2, 2), ("predicting", 1, 2), ("searching",)]
     course, shares = Course(STEPS, clock), []
     for step in told:
         course.reached(*step)
         shares.append(course.share)
-    assert all(before <= after for before, after in itertools.pairwise(shares)) and shares[-1] == 1.0
+    assert (
+        all(before <= after for before, after in itertools.pairwise(shares)) and shares[-1] == 1.0
+    )
 
 
 def test_time_left_is_the_typical_one_at_first_and_then_by_the_pace(clock):
@@ -51,7 +65,9 @@ def test_time_left_is_the_typical_one_at_first_and_then_by_the_pace(clock):
     assert 9.0 * 3.5 < course.left() < 9.0 * 7.0
     before = course.left()
     clock.now += 2.0
-    assert course.left() == pytest.approx(before - 2.0)  # counts down where no step is done meanwhile
+    assert course.left() == pytest.approx(
+        before - 2.0
+    )  # counts down where no step is done meanwhile
     clock.now += 1000.0
     assert course.left() == 0.0
 

@@ -17,20 +17,31 @@ def log(gunnerus):
     """Table of a run of the Otter, whose left propeller has lost half of its thrust."""
     ship = read_system(gunnerus / "ssp" / "otter_open", fmus=[gunnerus / "build" / "fmus"])
     driven = {"left.thrust_loss": 0.5, "left_rpm": 500.0, "right_rpm": 450.0}
-    write_table(sc.simulate(with_values(ship, driven), stop_time=130.0, step_size=0.1), gunnerus / "result.nc")
+    write_table(
+        sc.simulate(with_values(ship, driven), stop_time=130.0, step_size=0.1),
+        gunnerus / "result.nc",
+    )
     (gunnerus / "extended.ssv").write_text(SSV, encoding="utf-8")
     return "result.nc"
 
 
 def test_replay_draws_the_log_before_and_after_and_leaves_page_and_tables(call, gunnerus, log):
-    done = call("replay", log, "--system", "otter_open", "--parameters", "extended.ssv", "--out", "out")
+    done = call(
+        "replay", log, "--system", "otter_open", "--parameters", "extended.ssv", "--out", "out"
+    )
     assert done.code == 0 and "before" in done.out and "after" in done.out
-    assert sorted(path.name for path in (gunnerus / "out").iterdir()) == ["errors.csv", "replay.nc", "report.html"]
+    assert sorted(path.name for path in (gunnerus / "out").iterdir()) == [
+        "errors.csv",
+        "replay.nc",
+        "report.html",
+    ]
     rows = [line.split(",") for line in (gunnerus / "out" / "errors.csv").read_text().splitlines()]
     where = rows[0].index("position")
     last = {row[0]: float(row[where]) for row in rows[1:]}
     assert last["after"] < 0.2 < last["before"]
-    assert "Measured and simulated" in (gunnerus / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Measured and simulated" in (gunnerus / "out" / "report.html").read_text(
+        encoding="utf-8"
+    )
 
 
 def test_replay_of_one_system_has_no_before(call, gunnerus, log):
@@ -39,4 +50,7 @@ def test_replay_of_one_system_has_no_before(call, gunnerus, log):
 
 
 def test_replay_refuses_what_is_not_there(call, gunnerus):
-    assert "There is no such file of measured data" in call("replay", "none.csv", "--system", "otter_open").err
+    assert (
+        "There is no such file of measured data"
+        in call("replay", "none.csv", "--system", "otter_open").err
+    )

@@ -14,7 +14,11 @@ def results(tmp_path):
     """Folders of two runs that differ by 2 m."""
     time = np.linspace(0.0, 10.0, 21)
     for name, east in (("calm", 0.0), ("windy", 2.0)):
-        signals = {"boat.x": (time, "m"), "boat.y": (0.0 * time + east, "m"), "boat.psi": (0.0 * time, "rad")}
+        signals = {
+            "boat.x": (time, "m"),
+            "boat.y": (0.0 * time + east, "m"),
+            "boat.psi": (0.0 * time, "rad"),
+        }
         columns = {k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}
         table = xr.Dataset(columns, {"time": ("time", time, {"units": "s"})})
         (tmp_path / name).mkdir()

@@ -14,8 +14,17 @@ from shipcosim.ssp import read_system, settings_of_one, with_values
 
 def test_it_runs_on_inputs_of_a_table_with_a_value_set(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "inputs.csv").write_text("time [s],u [m]\n" + "".join(f"{0.25 * i},{i}\n" for i in range(9)))
-    simulate(str(build_part("gain")), 2.0, 0.25, inputs="inputs.csv", settings=["factor=3"], out=tmp_path / "out")
+    (tmp_path / "inputs.csv").write_text(
+        "time [s],u [m]\n" + "".join(f"{0.25 * i},{i}\n" for i in range(9))
+    )
+    simulate(
+        str(build_part("gain")),
+        2.0,
+        0.25,
+        inputs="inputs.csv",
+        settings=["factor=3"],
+        out=tmp_path / "out",
+    )
     table = read_table(tmp_path / "out" / "result.nc")
     assert table["gain.y"].values == pytest.approx(3.0 * np.maximum(np.arange(9) - 1.0, 0.0))
     assert table["gain.y"].attrs["units"] == "m"
@@ -32,7 +41,9 @@ def test_parameters_are_named_with_and_without_the_component():
         with_values(system, settings_of_one(system, {"factr": 2}))
 
 
-@pytest.mark.parametrize("name", ["decay_1_cs", "decay_1_me", "decay_2_me", "decay_3_cs", "decay_3_me", "matrix"])
+@pytest.mark.parametrize(
+    "name", ["decay_1_cs", "decay_1_me", "decay_2_me", "decay_3_cs", "decay_3_me", "matrix"]
+)
 def test_every_version_and_form_runs_by_itself(name, needs, tmp_path):
     if c_fmus.compiler() is None:
         needs("a C compiler")

@@ -9,7 +9,13 @@ import pytest
 
 from shipcosim import library
 from shipcosim.cli.start.completion import LISTED
-from shipcosim.cli.start.files import notebook, project_files, scenario_files, system_files, write_new
+from shipcosim.cli.start.files import (
+    notebook,
+    project_files,
+    scenario_files,
+    system_files,
+    write_new,
+)
 from shipcosim.library import names
 from shipcosim.ssp import read_system
 
@@ -21,7 +27,11 @@ def empty(tmp_path, monkeypatch):
 
 
 def files_in(folder):
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 def test_without_arguments_it_says_what_it_can_do_and_what_is_there(call, empty):
@@ -42,7 +52,11 @@ def test_each_kind_is_listed_with_a_line_for_each_thing(call, empty):
 def test_things_of_the_project_are_listed_first_and_apart(call, empty):
     call("init", ".")
     said = call("list", "scenarios").out
-    assert said.index(f"scenarios of {empty.name}") < said.index("hold_position") < said.index("four_corner")
+    assert (
+        said.index(f"scenarios of {empty.name}")
+        < said.index("hold_position")
+        < said.index("four_corner")
+    )
 
 
 def test_kind_that_is_none_is_refused(call, empty):
@@ -54,19 +68,27 @@ def test_project_has_no_fault_and_is_not_laid_out_twice(call, empty):
     done = call("init", "mine")
     assert done.code == 0 and "cd mine" in done.out
     os.chdir("mine")
-    assert call("check", "my_ship", "hold_position", "loaded", "ssp/my_ship/resources/loaded.ssv").code == 0
+    assert (
+        call("check", "my_ship", "hold_position", "loaded", "ssp/my_ship/resources/loaded.ssv").code
+        == 0
+    )
     before = files_in(empty)
     (empty / "mine" / "README.md").unlink()
     again = call("init", ".")
     assert again.code == 2 and "It is there already" in again.err
-    assert files_in(empty) == {name: text for name, text in before.items() if name != "mine/README.md"}
+    assert files_in(empty) == {
+        name: text for name, text in before.items() if name != "mine/README.md"
+    }
 
 
 def test_parameter_set_of_a_project_reaches_the_ship(call, empty):
     call("init", ".")
     path = library.find("system", "my_ship")
     ship, fmus = path / "resources" / "loaded.ssv", library.fmus(path)
-    mass = [read_system(path, sets, fmus=fmus).components["vessel"].start["mass"] for sets in ((), [ship])]
+    mass = [
+        read_system(path, sets, fmus=fmus).components["vessel"].start["mass"]
+        for sets in ((), [ship])
+    ]
     assert mass == [531e3, 561e3]
 
 
@@ -94,7 +116,16 @@ def test_new_fmu_is_built_and_checked_by_name(call, empty):
     assert done.code == 0 and "Go on with" in done.out
     assert call("build", "deck_winch").code == 0
     assert "time_constant" in call("check", "deck_winch").out
-    alone = call("simulate", "deck_winch", "--stop-time", "10", "--step-size", "0.1", "--set", "deck_winch.u=1")
+    alone = call(
+        "simulate",
+        "deck_winch",
+        "--stop-time",
+        "10",
+        "--step-size",
+        "0.1",
+        "--set",
+        "deck_winch.u=1",
+    )
     assert alone.code == 0 and "results" in alone.out
 
 
@@ -108,15 +139,22 @@ def test_new_scenario_of_a_controlled_ship_runs_by_name(call, empty):
 def test_new_scenario_and_copy_of_every_system_have_no_fault(call, empty, system):
     assert call("new", "system", "copy", "--from", system).code == 0
     assert call("new", "scenario", "first").code == 0  # of the project's own system
-    assert 'system          = "copy"' in (empty / "scenarios" / "first.toml").read_text(encoding="utf-8")
+    assert 'system          = "copy"' in (empty / "scenarios" / "first.toml").read_text(
+        encoding="utf-8"
+    )
     assert call("check", "copy", "first").code == 0
 
 
 def test_copied_parameter_set_has_the_new_name_and_the_old_values(root, empty):
     write_new(empty, system_files("ferry", "gunnerus_dp"))
     copied = (empty / "ssp" / "ferry" / "resources" / "ferry.ssv").read_text(encoding="utf-8")
-    old = (root / "ssp" / "gunnerus_dp" / "resources" / "gunnerus-33m9.ssv").read_text(encoding="utf-8")
-    assert copied == old.replace('name="gunnerus-33m9"', 'name="ferry"') and "gunnerus" not in copied[:400]
+    old = (root / "ssp" / "gunnerus_dp" / "resources" / "gunnerus-33m9.ssv").read_text(
+        encoding="utf-8"
+    )
+    assert (
+        copied == old.replace('name="gunnerus-33m9"', 'name="ferry"')
+        and "gunnerus" not in copied[:400]
+    )
 
 
 @pytest.mark.parametrize(
@@ -169,7 +207,9 @@ def completed(shell, line):
     }[shell]
     environment = os.environ | asked | {"_SHIPCOSIM_COMPLETE": f"complete_{shell}"}
     start = [sys.executable, "-c", "from shipcosim.cli import main; main()"]
-    return subprocess.run(start, env=environment, capture_output=True, text=True, check=False).stdout
+    return subprocess.run(
+        start, env=environment, capture_output=True, text=True, check=False
+    ).stdout
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -27,7 +27,11 @@ BIN = "Scripts" if os.name == "nt" else "bin"
 def megabytes(files):
     """Room that files take on a disk with blocks of 4 KiB, as `du -sm` says it."""
     return (
-        sum(-(-file.stat().st_size // 4096) * 4096 for file in files if file.is_file() and not file.is_symlink())
+        sum(
+            -(-file.stat().st_size // 4096) * 4096
+            for file in files
+            if file.is_file() and not file.is_symlink()
+        )
         / 2**20
     )
 
@@ -49,7 +53,10 @@ def needed(requirements):
 def quickstart():
     """Commands of the README's quickstart, word by word."""
     text = (ROOT / "README.md").read_text(encoding="utf-8").partition("## Quickstart")[2]
-    return [shlex.split(line) for line in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)[0].splitlines()]
+    return [
+        shlex.split(line)
+        for line in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)[0].splitlines()
+    ]
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +64,9 @@ def wheel(tmp_path_factory):
     """Folder with the wheel, made of the repository as it is."""
     pytest.importorskip("hatchling", reason="hatchling builds the wheel: pip install -e '.[test]'")
     out = tmp_path_factory.mktemp("dist")
-    subprocess.run([sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", out], cwd=ROOT, check=True)
+    subprocess.run(
+        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", out], cwd=ROOT, check=True
+    )
     return out
 
 
@@ -66,8 +75,15 @@ def fresh(wheel, tmp_path):
     """Function that makes an environment, and one that runs a command in it, in an empty folder."""
     venv, folder = tmp_path / "venv", tmp_path / "empty"
     folder.mkdir()
-    paths = {"PATH": f"{venv / BIN}{os.pathsep}{os.environ['PATH']}", "SHIPCOSIM_CACHE": str(tmp_path / "cache")}
-    left = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_ENV"))}
+    paths = {
+        "PATH": f"{venv / BIN}{os.pathsep}{os.environ['PATH']}",
+        "SHIPCOSIM_CACHE": str(tmp_path / "cache"),
+    }
+    left = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(("PYTHON", "VIRTUAL_ENV"))
+    }
     environment = left | paths | {"PIP_FIND_LINKS": str(wheel), "COLUMNS": "200"}
 
     def run(command, here, codes=(0,)):
@@ -85,7 +101,9 @@ def follow(commands, folder, run):
         if command[0] == "cd":
             folder = folder / command[1]
             continue
-        said[" ".join(command[:3])] = run(command, folder, codes=(1,) if "diagnose" in command else (0,))
+        said[" ".join(command[:3])] = run(
+            command, folder, codes=(1,) if "diagnose" in command else (0,)
+        )
     return said
 
 
@@ -100,7 +118,10 @@ def test_what_is_installed_with_the_wheel_is_small(wheel):
     """By what the tests run with; no extra counts. The slow test below measures a fresh environment."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     names = needed(project["dependencies"])
-    sizes = {name: megabytes(Path(str(f.locate())) for f in distribution(name).files or []) for name in names}
+    sizes = {
+        name: megabytes(Path(str(f.locate())) for f in distribution(name).files or [])
+        for name in names
+    }
     (file,) = wheel.glob("*.whl")
     with zipfile.ZipFile(file) as archive:
         sizes["shipcosim"] = sum(entry.file_size for entry in archive.infolist()) / 2**20
@@ -114,17 +135,35 @@ def test_quickstart_runs_from_the_wheel_in_an_empty_folder(fresh, wheel):
     code = "import sysconfig; print(sysconfig.get_path('purelib'))"
     site = Path(run([str(venv / BIN / "python"), "-c", code], folder).strip())
     (file,) = wheel.glob("*.whl")
-    install = ["-m", "pip", "--python", str(venv), "install", "--no-deps", "--no-index", "--quiet", str(file)]
+    install = [
+        "-m",
+        "pip",
+        "--python",
+        str(venv),
+        "install",
+        "--no-deps",
+        "--no-index",
+        "--quiet",
+        str(file),
+    ]
     run([sys.executable, *install], folder)
     (site / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n", encoding="utf-8")
-    where = run([str(venv / BIN / "python"), "-c", "import shipcosim; print(shipcosim.__file__)"], folder)
+    where = run(
+        [str(venv / BIN / "python"), "-c", "import shipcosim; print(shipcosim.__file__)"], folder
+    )
     assert Path(where.strip()).is_relative_to(site)
     short = {"four_corner": ["--until", "5"], "tern": ["--until", "5"]}
-    commands = [[*command, *short.get(command[-1], [])] for command in quickstart() if command[0] != "pip"]
+    commands = [
+        [*command, *short.get(command[-1], [])] for command in quickstart() if command[0] != "pip"
+    ]
     pytest_ = ["python", "-m", "pytest", "-k", "loaded"]
-    said = follow([pytest_ if command == ["pytest"] else command for command in commands], folder, run)
+    said = follow(
+        [pytest_ if command == ["pytest"] else command for command in commands], folder, run
+    )
     check_first(said)
     assert "1 passed" in said["python -m pytest"] and "PASS" in said["shipcosim run squall"]
     assert "report.html" in said["shipcosim run tern"]
     assert len(run(["shipcosim", "list", "scenarios"], folder).splitlines()) > 30
-    assert not list((folder / "my-project").glob("build")) and list((folder.parent / "cache" / "fmus").iterdir())
+    assert not list((folder / "my-project").glob("build")) and list(
+        (folder.parent / "cache" / "fmus").iterdir()
+    )

@@ -21,7 +21,11 @@ static int completed(M* m) { return 0; }
 """
 VARIABLES = [("x", 0, "output", "Real", None), ("der(x)", 1, "local", "Real", None)]
 VARIABLES += [("u", 2, "input", "Real", 0.0), ("k", 3, "parameter", "Real", 2.0)]
-FORMS = {"cs": ("CoSimulation",), "me": ("ModelExchange",), "both": ("ModelExchange", "CoSimulation")}
+FORMS = {
+    "cs": ("CoSimulation",),
+    "me": ("ModelExchange",),
+    "both": ("ModelExchange", "CoSimulation"),
+}
 
 
 def build_c(name, folder):

@@ -110,7 +110,9 @@ class Case:
     @property
     def forms(self):
         """Names of the forms that it can have."""
-        return [name for name, (_, version, _) in list(FORMS.items())[:4] if version in self.versions]
+        return [
+            name for name, (_, version, _) in list(FORMS.items())[:4] if version in self.versions
+        ]
 
     def keywords(self):
         """What a run is told beside the system."""
@@ -119,7 +121,10 @@ class Case:
 
     def times(self):
         """Times of the rows. [s]"""
-        stop, step = self.run.get("stop_time", self.stop_time), self.run.get("step_size", self.step_size)
+        stop, step = (
+            self.run.get("stop_time", self.stop_time),
+            self.run.get("step_size", self.step_size),
+        )
         return self.start_time + step * np.arange(round((stop - self.start_time) / step) + 1)
 
     def closed_form(self, signal):
@@ -128,7 +133,9 @@ class Case:
         step = self.run.get("step_size", self.step_size)
         late = np.maximum(t - step, self.start_time)
         known = {"t": t, "h": step, "late": late, "n": np.arange(len(t)), "np": np}
-        value = eval(self.expect[signal], {"__builtins__": {}}, known)  # an expression of the case's own file
+        value = eval(
+            self.expect[signal], {"__builtins__": {}}, known
+        )  # an expression of the case's own file
         return np.broadcast_to(np.asarray(value), t.shape)
 
 
@@ -195,7 +202,9 @@ def documents(case, version="1.0", twin=None):
     texts = {name: document(name, text, version) for name, text in case.files.items()}
     if twin is not None:
         found = [name for name, text in texts.items() if twin.change in text]
-        assert len(found) == 1 and texts[found[0]].count(twin.change) == 1, f"'{twin.change}' is {len(found)} times in"
+        assert len(found) == 1 and texts[found[0]].count(twin.change) == 1, (
+            f"'{twin.change}' is {len(found)} times in"
+        )
         texts[found[0]] = texts[found[0]].replace(twin.change, twin.into)
     return texts
 

@@ -17,7 +17,11 @@ HERE = Path(__file__).resolve().parent
 
 def _frozen(how):
     """A table as something hashable."""
-    return tuple(sorted((key, _frozen(value)) for key, value in how.items())) if isinstance(how, dict) else how
+    return (
+        tuple(sorted((key, _frozen(value)) for key, value in how.items()))
+        if isinstance(how, dict)
+        else how
+    )
 
 
 def _thawed(how):
@@ -109,15 +113,26 @@ def _add_second(root, variable, other):
     root.find("ModelVariables").append(second)
 
 
-UNITS = {"km": {"m": "1", "factor": "1000"}, "deg": {"rad": "1", "factor": "0.017453292519943295"}, "rad": {"rad": "1"}}
-UNITS |= {"K": {"K": "1"}, "degC": {"K": "1", "offset": "273.15"}, "m": {"m": "1"}, "kg": {"kg": "1"}}
+UNITS = {
+    "km": {"m": "1", "factor": "1000"},
+    "deg": {"rad": "1", "factor": "0.017453292519943295"},
+    "rad": {"rad": "1"},
+}
+UNITS |= {
+    "K": {"K": "1"},
+    "degC": {"K": "1", "offset": "273.15"},
+    "m": {"m": "1"},
+    "kg": {"kg": "1"},
+}
 UNITS |= {"bar": {}}  # as tools write a base unit that they do not know
 
 
 def _define(root, name):
     listed = root.find("UnitDefinitions")
     if name in UNITS and name not in [unit.get("name") for unit in listed]:
-        ElementTree.SubElement(ElementTree.SubElement(listed, "Unit", name=name), "BaseUnit", UNITS[name])
+        ElementTree.SubElement(
+            ElementTree.SubElement(listed, "Unit", name=name), "BaseUnit", UNITS[name]
+        )
 
 
 def _make_enumeration(root, variable, items):

@@ -14,7 +14,10 @@ from contextlib import suppress
 from pathlib import Path
 
 if __name__ == "__main__":
-    sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[2])]
+    sys.path[:0] = [
+        str(Path(__file__).resolve().parents[1]),
+        str(Path(__file__).resolve().parents[2]),
+    ]
 
 import numpy as np
 from conformance.cases import cases, documents, write
@@ -30,7 +33,13 @@ FORMED = {
     "form_2": ("Packaging", "SSP 2.0", "ssp, 2.0"),
 }
 """Rows of the table for ways to write down a system, tried with the plainest case: group, feature and form."""
-RIGHT, REFUSED, WRONG, CRASHES, HANGS = "right", "refused", "*silently wrong*", "**crashes**", "**hangs**"
+RIGHT, REFUSED, WRONG, CRASHES, HANGS = (
+    "right",
+    "refused",
+    "*silently wrong*",
+    "**crashes**",
+    "**hangs**",
+)
 
 
 def rows():
@@ -68,7 +77,9 @@ def record(engine, names=None):
 def _worked(engine, folder, names):
     """Verdicts that a process gave until it ended, and what that makes of the case after those."""
     command = [sys.executable, str(Path(__file__).resolve()), engine, folder, *names]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
     said, ending = {}, (CRASHES, "")
     os.set_blocking(process.stdout.fileno(), True)
     try:
@@ -93,7 +104,13 @@ def main(engine, folder, *names):
     os.dup2(2, 1)  # engines print what they like
     for name in names:
         case = cases()["connection" if name in FORMED else name]
-        form = FORMED[name][2] if name in FORMED else "ssp, 1.0" if "1.0" in case.versions else "ssp, 2.0"
+        form = (
+            FORMED[name][2]
+            if name in FORMED
+            else "ssp, 1.0"
+            if "1.0" in case.versions
+            else "ssp, 2.0"
+        )
         path = write(case, Path(folder) / f"{engine}-{name}-{os.getpid()}", form)
         verdict = _verdict(ENGINES[engine], case, path)
         print(json.dumps([name, *verdict]), file=out, flush=True)
@@ -113,7 +130,11 @@ def _is_right(case, signal, value):
     wanted = case.closed_form(signal)[-1]
     if value is None or isinstance(wanted, str):
         return value in (wanted, str(wanted).encode())
-    return bool(np.isclose(float(value), float(wanted), rtol=(limit := max(1e-9, case.tolerance)), atol=limit))
+    return bool(
+        np.isclose(
+            float(value), float(wanted), rtol=(limit := max(1e-9, case.tolerance)), atol=limit
+        )
+    )
 
 
 def _through(engine):
@@ -133,7 +154,11 @@ def _ends(case, path):
     system = None if case.gap else read_system(path)
     for signal in case.expect:
         component, variable = signal.split(".") if case.gap else system.split(signal)
-        fmu = read_fmu(fmu_of(*next(iter(case.fmus.items())))) if case.gap else system.components[component].fmu
+        fmu = (
+            read_fmu(fmu_of(*next(iter(case.fmus.items()))))
+            if case.gap
+            else system.components[component].fmu
+        )
         yield signal, component, fmu.variables[variable]
 
 
@@ -189,7 +214,11 @@ def in_ecos(case, path):
         simulation.step()
     if abs(simulation.get_time() - case.times()[-1]) > 1e-9:
         return {}
-    get = {"Real": simulation.get_real, "Integer": simulation.get_integer, "Boolean": simulation.get_bool}
+    get = {
+        "Real": simulation.get_real,
+        "Integer": simulation.get_integer,
+        "Boolean": simulation.get_bool,
+    }
     get |= {"Enumeration": simulation.get_integer, "String": simulation.get_string}
     return {signal: get[v.kind](f"{component}::{v.name}") for signal, component, v in ends}
 

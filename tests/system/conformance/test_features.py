@@ -45,7 +45,9 @@ def check_feature(name, form, tmp_path):
 
 
 @pytest.mark.parametrize("name", [name for name, case in EACH.items() if not case.remarks])
-def test_what_is_right_makes_no_error_and_no_remark_but_of_unconnected_inputs_and_loops(name, tmp_path):
+def test_what_is_right_makes_no_error_and_no_remark_but_of_unconnected_inputs_and_loops(
+    name, tmp_path
+):
     problems = sc.read(write(EACH[name], tmp_path, EACH[name].forms[0])).check()
     expected = ("Unconnected inputs", "An algebraic loop")
     assert [str(problem) for problem in problems if not problem.found.startswith(expected)] == []
@@ -67,6 +69,10 @@ def test_read_and_written_again_it_is_the_same_system(name, form, tmp_path):
 
 def flat(system):
     """What a system is, without where it stands."""
-    parts = {name: (c.start, c.step_size, c.implementation) for name, c in system.components.items()}
-    wires = [(c.source, c.target, c.factor, c.offset, c.mapping, c.initial) for c in system.connections]
+    parts = {
+        name: (c.start, c.step_size, c.implementation) for name, c in system.components.items()
+    }
+    wires = [
+        (c.source, c.target, c.factor, c.offset, c.mapping, c.initial) for c in system.connections
+    ]
     return parts, wires, system.inputs, system.outputs, system.parameters, system.experiment

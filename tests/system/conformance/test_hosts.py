@@ -10,9 +10,13 @@ TOLD = "has to be told it in the call"
 """What the recording does tell it, unless this is what the file is to say."""
 
 
-@pytest.mark.parametrize("row", [name for name in rows() if name in FORMED or not cases()[name].gap])
+@pytest.mark.parametrize(
+    "row", [name for name in rows() if name in FORMED or not cases()[name].gap]
+)
 @pytest.mark.parametrize("host", ["libcosim", "ecos"])
-def test_check_for_a_tool_says_something_where_the_tool_is_not_right_and_nowhere_else(host, row, stated, tmp_path):
+def test_check_for_a_tool_says_something_where_the_tool_is_not_right_and_nowhere_else(
+    host, row, stated, tmp_path
+):
     case = cases()["connection" if row in FORMED else row]
     form = FORMED[row][2] if row in FORMED else "ssp, 1.0" if "1.0" in case.versions else "ssp, 2.0"
     path = str(write(case, tmp_path, form))

@@ -25,7 +25,9 @@ def path(flaw, tmp_path):
 
 def run(case, path):
     system = read_system(path)
-    return sc.simulate(system, **{"stop_time": case.stop_time, "step_size": case.step_size} | case.run)
+    return sc.simulate(
+        system, **{"stop_time": case.stop_time, "step_size": case.step_size} | case.run
+    )
 
 
 @pytest.mark.parametrize("flaw", WILD)
@@ -46,8 +48,12 @@ def test_strict_refuses_it_with_the_same_words_and_a_remedy(flaw, path):
     assert all(problem.severity == "error" and problem.remedy for problem in caught.value.problems)
 
 
-@pytest.mark.parametrize("flaw", [name for name, case in WILD.items() if case.top == "SystemStructure.ssd"])
-def test_read_for_changes_and_written_it_is_without_flaw_of_form_or_runs_the_same(flaw, path, tmp_path):
+@pytest.mark.parametrize(
+    "flaw", [name for name, case in WILD.items() if case.top == "SystemStructure.ssd"]
+)
+def test_read_for_changes_and_written_it_is_without_flaw_of_form_or_runs_the_same(
+    flaw, path, tmp_path
+):
     sc.read(path).write(tmp_path / "written.ssp")
     assert_closed_form(run(WILD[flaw], tmp_path / "written.ssp"), WILD[flaw])
 

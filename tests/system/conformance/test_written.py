@@ -8,9 +8,26 @@ import shipcosim as sc
 from shipcosim.cosim import engines_missing
 from shipcosim.ssp import check_system
 
-IGNORED = ("ssv_file", "ssv_several", "ssv_on_system", "ssv_prefix", "ssm", "ssm_transformations", "ssv_in_fmu")
+IGNORED = (
+    "ssv_file",
+    "ssv_several",
+    "ssv_on_system",
+    "ssv_prefix",
+    "ssm",
+    "ssm_transformations",
+    "ssv_in_fmu",
+)
 """Cases whose parameters libcosim does not take from where they stand."""
-TAKEN = ("connection", "linear", "feedback", "types", "names", "fmu_places", "start_values", "parameter_types")
+TAKEN = (
+    "connection",
+    "linear",
+    "feedback",
+    "types",
+    "names",
+    "fmu_places",
+    "start_values",
+    "parameter_types",
+)
 
 
 @pytest.fixture(autouse=True)
@@ -28,9 +45,15 @@ def test_changed_and_written_it_is_valid_and_runs_in_libcosim(name, tmp_path):
     first = next(iter(system.components))
     system.rename(first, "renamed")
     system.write(tmp_path / "changed.ssp")
-    assert [problem for problem in check_system(tmp_path / "changed.ssp") if problem.severity == "error"] == []
+    assert [
+        problem for problem in check_system(tmp_path / "changed.ssp") if problem.severity == "error"
+    ] == []
     follows = {signal: signal.replace(f"{first}.", "renamed.", 1) for signal in case.expect}
-    renamed = type(case)(**{**vars(case), "expect": {follows[s]: text for s, text in case.expect.items()}})
+    renamed = type(case)(
+        **{**vars(case), "expect": {follows[s]: text for s, text in case.expect.items()}}
+    )
     values = in_libcosim(renamed, tmp_path / "changed.ssp")
     for signal in renamed.expect:
-        assert float(values[signal]) == pytest.approx(float(renamed.closed_form(signal)[-1]), rel=1e-12), signal
+        assert float(values[signal]) == pytest.approx(
+            float(renamed.closed_form(signal)[-1]), rel=1e-12
+        ), signal

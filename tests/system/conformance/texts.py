@@ -10,7 +10,9 @@ NAMES = {
     "ssm": "SystemStructureParameterMapping",
     "ssb": "SystemStructureSignalDictionary",
 }
-SPACES = " ".join(f'xmlns:{prefix}="http://ssp-standard.org/SSP1/{name}"' for prefix, name in NAMES.items())
+SPACES = " ".join(
+    f'xmlns:{prefix}="http://ssp-standard.org/SSP1/{name}"' for prefix, name in NAMES.items()
+)
 SPACES += ' xmlns:osp="https://opensimulationplatform.com/SSP/OSPAnnotations"'
 DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>\n'
 ROOTS = {
@@ -29,7 +31,9 @@ def document(name, text, version):
     if Path(name).suffix == ".ssd" and not text.lstrip().startswith('<ssd:System name="case">'):
         text = f'<ssd:System name="case">\n{text.strip()}\n</ssd:System>'
     text = re.sub(r'version="1\.0"', f'version="{version}"', text)
-    return f'{DECLARATION}<{tag} version="{version}"{attributes} {SPACES}>\n{text.strip()}\n</{tag}>\n'
+    return (
+        f'{DECLARATION}<{tag} version="{version}"{attributes} {SPACES}>\n{text.strip()}\n</{tag}>\n'
+    )
 
 
 def with_other_prefixes(text):

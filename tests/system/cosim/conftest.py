@@ -160,7 +160,9 @@ def make_system(fmus, tmp_path):
     """
 
     def make(components, connections=(), connectors=None):
-        parts = {name: part if isinstance(part, tuple) else (part,) for name, part in components.items()}
+        parts = {
+            name: part if isinstance(part, tuple) else (part,) for name, part in components.items()
+        }
         folder = [fmus(part[0]) for part in parts.values()][-1]
         file = tmp_path / "SystemStructure.ssd"
         file.write_text(_ssd(parts, connections, connectors or {}, folder), encoding="utf-8")
@@ -277,7 +279,9 @@ def pythonfmu_code(tmp_path):
             folder.mkdir()
             (folder / "helper.py").write_text(helper)
             (folder / "model.py").write_text(script)
-            built = FmuBuilder.build_FMU(folder / "model.py", folder, project_files={folder / "helper.py"})
+            built = FmuBuilder.build_FMU(
+                folder / "model.py", folder, project_files={folder / "helper.py"}
+            )
             Path(built).rename(tmp_path / "resources" / f"{name}.fmu")
             for module in ("helper", "model"):
                 sys.modules.pop(module, None)

@@ -49,7 +49,9 @@ def altered(name, change):
 
 def test_installed_engines_agree(loop, make_scenario):
     comparison = compare(loop, make_scenario(5.0, 0.05))
-    assert comparison.agree and set(comparison.seconds) == set(ENGINES) - {"native"} - set(engines_missing())
+    assert comparison.agree and set(comparison.seconds) == set(ENGINES) - {"native"} - set(
+        engines_missing()
+    )
     assert not any(comparison.remarks.values())
 
 
@@ -71,7 +73,9 @@ def test_step_size_error_is_that_of_the_closed_form(loop, make_scenario):
 
 def test_half_the_step_has_the_same_rows(loop, make_scenario):
     scenario = make_scenario(1.0, 0.1)
-    np.testing.assert_array_equal(simulate(loop, halved(scenario))["time"], simulate(loop, scenario)["time"])
+    np.testing.assert_array_equal(
+        simulate(loop, halved(scenario))["time"], simulate(loop, scenario)["time"]
+    )
 
 
 def test_largest_difference_comes_first_with_its_time(loop, make_scenario, monkeypatch):
@@ -120,13 +124,17 @@ def test_difference_of_angles_is_the_shorter_way_round(loop, make_scenario, monk
 
 
 def test_no_number_is_a_difference(loop, make_scenario, monkeypatch):
-    monkeypatch.setitem(ENGINES, "broken", altered("law.y", lambda values: np.where(values < -0.2, np.nan, values)))
+    monkeypatch.setitem(
+        ENGINES, "broken", altered("law.y", lambda values: np.where(values < -0.2, np.nan, values))
+    )
     comparison = compare(loop, make_scenario(1.0, 0.1))
     assert not comparison.agree and comparison.signals[0].name == "law.y"
     assert "is no number" in " ".join(comparison.remarks["broken"])
 
 
-def test_engine_that_refuses_the_system_is_left_out_and_one_that_fails_counts(loop, make_scenario, monkeypatch):
+def test_engine_that_refuses_the_system_is_left_out_and_one_that_fails_counts(
+    loop, make_scenario, monkeypatch
+):
     def refusing(*_, **__):
         raise ShipcosimError(Problem("law", "cannot be."))
 
@@ -138,7 +146,9 @@ def test_engine_that_refuses_the_system_is_left_out_and_one_that_fails_counts(lo
     monkeypatch.setitem(ENGINES, "failing", failing)
     comparison = compare(loop, make_scenario())
     assert not comparison.agree and comparison.failed == ("failing",)
-    assert "cannot be" in comparison.left_out["refusing"] and "burst" in comparison.left_out["failing"]
+    assert (
+        "cannot be" in comparison.left_out["refusing"] and "burst" in comparison.left_out["failing"]
+    )
 
 
 TIMES = np.arange(2001) * 0.05
@@ -194,7 +204,9 @@ def packed(make_system, tmp_path):
 def test_command_shows_each_signal_and_the_verdict(packed):
     result = run_command(packed, "--stop-time", 1, "--step-size", 0.1)
     assert result.exit_code == 0, result.output
-    assert {"plant.y", "law.y"} <= {line.split()[0] for line in result.output.splitlines() if line.strip()}
+    assert {"plant.y", "law.y"} <= {
+        line.split()[0] for line in result.output.splitlines() if line.strip()
+    }
     assert "…" not in result.output
 
 

@@ -30,7 +30,10 @@ def signal(function, name):
 
 
 def simulator(name, fmu, step_size=None, **values):
-    initial = "".join(f'<InitialValue variable="{n}"><Real value="{v}"/></InitialValue>' for n, v in values.items())
+    initial = "".join(
+        f'<InitialValue variable="{n}"><Real value="{v}"/></InitialValue>'
+        for n, v in values.items()
+    )
     step = f' stepSize="{step_size}"' if step_size else ""
     return f'<Simulator name="{name}" source="{fmu}.fmu"{step}><InitialValues>{initial}</InitialValues></Simulator>'
 
@@ -53,12 +56,16 @@ def write(tmp_path, fmus):
 
 
 def joined(*pairs):
-    return "".join(f"<VariableConnection>{variable(a)}{variable(b)}</VariableConnection>" for a, b in pairs)
+    return "".join(
+        f"<VariableConnection>{variable(a)}{variable(b)}</VariableConnection>" for a, b in pairs
+    )
 
 
 def through(*pairs):
     """Connections of variables with signals of functions."""
-    return "".join(f"<SignalConnection>{variable(v)}{signal(*s)}</SignalConnection>" for v, s in pairs)
+    return "".join(
+        f"<SignalConnection>{variable(v)}{signal(*s)}</SignalConnection>" for v, s in pairs
+    )
 
 
 LOOP = (
@@ -71,7 +78,9 @@ LOOP = (
 
 def test_a_loop_with_functions_has_libcosims_digits(write, make_scenario):
     functions = '<Sum name="all" inputCount="3"/>'
-    connections = joined(("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")) + through(
+    connections = joined(
+        ("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")
+    ) + through(
         ("filter.y", ("all", "in[0]")),
         ("slow.y", ("all", "in[1]")),
         ("plant.y", ("all", "in[2]")),
@@ -88,7 +97,9 @@ def test_a_loop_with_functions_has_libcosims_digits(write, make_scenario):
 
 def test_a_linear_transformation_is_one_of_the_connection(write, make_scenario):
     functions = '<LinearTransformation name="half" factor="0.5" offset="0.1"/>'
-    connections = joined(("plant.y", "law.u")) + through(("law.y", ("half", "in")), ("plant.u", ("half", "out")))
+    connections = joined(("plant.y", "law.u")) + through(
+        ("law.y", ("half", "in")), ("plant.u", ("half", "out"))
+    )
     path = write(LOOP, functions, connections)
     system = read_system(path)
     table = simulate(system, make_scenario(1.8, 0.05))
@@ -148,8 +159,12 @@ def group(simulator, name):
 
 
 def test_groups_and_groups_in_them_are_connected_one_by_one(pairs, make_scenario):
-    simulators = simulator("one", "pair", c_start=1.0, d_start=-2.0) + simulator("two", "pair", c_start=0.5)
-    path = pairs(simulators, "", grouped("VariableGroup", group("one", "port"), group("two", "back")))
+    simulators = simulator("one", "pair", c_start=1.0, d_start=-2.0) + simulator(
+        "two", "pair", c_start=0.5
+    )
+    path = pairs(
+        simulators, "", grouped("VariableGroup", group("one", "port"), group("two", "back"))
+    )
     system = read_system(path)
     ends = {(".".join(c.source), ".".join(c.target)) for c in system.connections}
     assert ends == {("two.c", "one.a"), ("two.d", "one.b"), ("one.c", "two.a"), ("one.d", "two.b")}
@@ -158,10 +173,14 @@ def test_groups_and_groups_in_them_are_connected_one_by_one(pairs, make_scenario
 
 def test_a_vector_sum_adds_groups_number_by_number(pairs, make_scenario):
     names = {"one": 1.0, "two": 0.1, "three": 0.3}
-    simulators = "".join(simulator(n, "pair", c_start=v, d_start=-7.0 * v) for n, v in names.items())
+    simulators = "".join(
+        simulator(n, "pair", c_start=v, d_start=-7.0 * v) for n, v in names.items()
+    )
     simulators += simulator("all", "pair")
     connections = "".join(
-        grouped("SignalGroup", group(name, "given"), f'<SignalGroup function="sum" name="in[{i}]"/>')
+        grouped(
+            "SignalGroup", group(name, "given"), f'<SignalGroup function="sum" name="in[{i}]"/>'
+        )
         for i, name in enumerate(names)
     ) + grouped("SignalGroup", '<SignalGroup function="sum" name="out"/>', group("all", "taken"))
     path = pairs(simulators, '<VectorSum name="sum" inputCount="3" dimension="2"/>', connections)
@@ -173,7 +192,9 @@ def test_a_vector_sum_adds_groups_number_by_number(pairs, make_scenario):
 
 
 def test_a_sum_survives_a_stop_in_between(write, make_scenario):
-    connections = joined(("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")) + through(
+    connections = joined(
+        ("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")
+    ) + through(
         ("filter.y", ("all", "in[0]")), ("slow.y", ("all", "in[1]")), ("law.u", ("all", "out"))
     )
     system = read_system(write(LOOP, '<Sum name="all" inputCount="2"/>', connections))
@@ -196,26 +217,45 @@ def test_an_event_on_a_summed_input_acts_on_the_sum(write, make_scenario):
     assert table["law.u"].values[:4].tolist() == added[:4].tolist()
     assert table["law.u"].values[4:8].tolist() == (added[4:8] + 1.0).tolist()
     assert table["law.u"].values[8:].tolist() == [3.0] * 5
-    theirs = simulate(system, make_scenario(0.6, 0.05, events=events), RunOptions(engine="libcosim"))
-    assert all(theirs[name].values.tolist() == column.values.tolist() for name, column in table.data_vars.items())
+    theirs = simulate(
+        system, make_scenario(0.6, 0.05, events=events), RunOptions(engine="libcosim")
+    )
+    assert all(
+        theirs[name].values.tolist() == column.values.tolist()
+        for name, column in table.data_vars.items()
+    )
 
 
-def test_a_system_of_osp_is_exported_with_its_sums_and_has_libcosims_digits_again(write, make_scenario, tmp_path):
-    connections = joined(("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")) + through(
+def test_a_system_of_osp_is_exported_with_its_sums_and_has_libcosims_digits_again(
+    write, make_scenario, tmp_path
+):
+    connections = joined(
+        ("filter.u", "plant.y"), ("plant.y", "slow.u"), ("plant.u", "law.y")
+    ) + through(
         ("filter.y", ("all", "in[0]")), ("slow.y", ("all", "in[1]")), ("law.u", ("all", "out"))
     )
     simulators = LOOP.replace(' stepSize="0.15"', "")
-    system, scenario = read_system(write(simulators, '<Sum name="all" inputCount="2"/>', connections)), make_scenario()
+    system, scenario = (
+        read_system(write(simulators, '<Sum name="all" inputCount="2"/>', connections)),
+        make_scenario(),
+    )
     write_osp(system, scenario, tmp_path / "again")
-    assert '<Sum name="sum_0" inputCount="2"/>' in (tmp_path / "again" / "OspSystemStructure.xml").read_text()
+    assert (
+        '<Sum name="sum_0" inputCount="2"/>'
+        in (tmp_path / "again" / "OspSystemStructure.xml").read_text()
+    )
     assert read_system(tmp_path / "again").connections != ()
     assert_same(simulate(system, scenario), rows_of(tmp_path / "again", system, 10))
 
 
 @pytest.mark.parametrize("order", ["jacobi", "gauss-seidel"])
 def test_a_sum_is_the_closed_form_of_its_terms(write, make_scenario, order):
-    connections = through(("plant.y", ("all", "in[0]")), ("filter.y", ("all", "in[1]")), ("law.u", ("all", "out")))
-    simulators = simulator("plant", "integrator", y_start=0.25) + simulator("filter", "lag", y_start=0.5)
+    connections = through(
+        ("plant.y", ("all", "in[0]")), ("filter.y", ("all", "in[1]")), ("law.u", ("all", "out"))
+    )
+    simulators = simulator("plant", "integrator", y_start=0.25) + simulator(
+        "filter", "lag", y_start=0.5
+    )
     simulators += simulator("law", "gain", factor=2.0)
     system = read_system(write(simulators, '<Sum name="all" inputCount="2"/>', connections))
     table = simulate(system, make_scenario(1.0, 0.05), RunOptions(order=order))
@@ -237,8 +277,14 @@ def test_libcosim_refuses_a_file_without_an_algorithm_and_the_check_says_so(writ
 
 
 def test_libcosim_drops_the_second_target_of_a_function_and_the_check_says_so(write, make_scenario):
-    simulators = simulator("plant", "integrator", y_start=0.5) + simulator("one", "gain") + simulator("two", "gain")
-    connections = through(("plant.y", ("f", "in")), ("one.u", ("f", "out")), ("two.u", ("f", "out")))
+    simulators = (
+        simulator("plant", "integrator", y_start=0.5)
+        + simulator("one", "gain")
+        + simulator("two", "gain")
+    )
+    connections = through(
+        ("plant.y", ("f", "in")), ("one.u", ("f", "out")), ("two.u", ("f", "out"))
+    )
     path = write(simulators, '<LinearTransformation name="f" factor="2"/>', connections)
     system = read_system(path)
     ours, theirs = simulate(system, make_scenario()), rows_of(path, system, 10)
@@ -248,7 +294,9 @@ def test_libcosim_drops_the_second_target_of_a_function_and_the_check_says_so(wr
     assert "A second connection from f:out: libcosim goes on without it" in said
 
 
-def test_libcosim_does_not_find_groups_by_the_name_of_the_file_and_the_check_says_so(pairs, tmp_path):
+def test_libcosim_does_not_find_groups_by_the_name_of_the_file_and_the_check_says_so(
+    pairs, tmp_path
+):
     path = pairs(
         simulator("one", "pair") + simulator("two", "pair"),
         "",
@@ -262,4 +310,7 @@ def test_libcosim_does_not_find_groups_by_the_name_of_the_file_and_the_check_say
     with pytest.raises(AssertionError, match="Unable to create execution"):
         rows_of(path, read_system(path), 1)
     said = errors_for_libcosim(path)
-    assert len(said) == 2 and "one: Variable groups that are not in pair_OspModelDescription.xml" in said[0]
+    assert (
+        len(said) == 2
+        and "one: Variable groups that are not in pair_OspModelDescription.xml" in said[0]
+    )

@@ -50,7 +50,9 @@ def test_two_runs_leave_the_same_bytes(results, name):
 
 def test_a_run_is_repeated_from_its_result_file_alone(results, root, tmp_path):
     """Versions, start values, seeds, events, hashes: no scenario, no parameter set is read, only the system."""
-    again = repeat(results[0] / "result.nc", root / "ssp" / "gunnerus_dp", fmus=(root / "build" / "fmus",))
+    again = repeat(
+        results[0] / "result.nc", root / "ssp" / "gunnerus_dp", fmus=(root / "build" / "fmus",)
+    )
     write_table(again, tmp_path / "again.nc")
     assert (tmp_path / "again.nc").read_bytes() == (results[0] / "result.nc").read_bytes()
 
@@ -62,7 +64,11 @@ def test_a_result_names_versions_seeds_and_fmus(results):
     assert all(len(fmu["sha256"]) == 64 for fmu in json.loads(facts["fmus"]).values())
 
 
-PARTS = {"sum": ("integrator", {"y_start": 0.1}), "gain": ("gain", {"factor": 3.0}), "clock": "clock"}
+PARTS = {
+    "sum": ("integrator", {"y_start": 0.1}),
+    "gain": ("gain", {"factor": 3.0}),
+    "clock": "clock",
+}
 LINKS = ["push -> sum.u", "sum.y -> gain.u"]
 PUSH = {"push": ("input", "Real", "")}
 
@@ -70,10 +76,18 @@ PUSH = {"push": ("input", "Real", "")}
 @pytest.fixture
 def run(make_system, make_scenario):
     """A small run with events and a table, its table and system."""
-    events = [{"time": 0.5, "override": {"gain.y": 2.0}}, {"time": 1.0, "bias": {"push": 1.0}, "reset": ["gain.y"]}]
+    events = [
+        {"time": 0.5, "override": {"gain.y": 2.0}},
+        {"time": 1.0, "bias": {"push": 1.0}, "reset": ["gain.y"]},
+    ]
     inputs = make_table(np.linspace(0.0, 9.0, 10), [("push", np.arange(10.0), "", "")])
-    system, scenario = make_system(PARTS, LINKS, PUSH), make_scenario(5.0, output_interval=0.5, events=events)
-    table = simulate(system, scenario, RunOptions(inputs=inputs, start_time=0.4, order="gauss-seidel", until=4.4))
+    system, scenario = (
+        make_system(PARTS, LINKS, PUSH),
+        make_scenario(5.0, output_interval=0.5, events=events),
+    )
+    table = simulate(
+        system, scenario, RunOptions(inputs=inputs, start_time=0.4, order="gauss-seidel", until=4.4)
+    )
     return table, system, inputs
 
 

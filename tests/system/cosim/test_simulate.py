@@ -27,7 +27,9 @@ def test_jacobi_delays_each_link_of_a_chain_by_one_step(make_system, make_scenar
     assert np.allclose(table["c.y"], h**3 * k * (k - 1) * (k - 2) / 6)
 
 
-def test_gauss_seidel_passes_values_on_within_the_step_whatever_order_they_are_listed_in(make_system, make_scenario):
+def test_gauss_seidel_passes_values_on_within_the_step_whatever_order_they_are_listed_in(
+    make_system, make_scenario
+):
     chain = {"c": "integrator", "b": "integrator", "a": ("integrator", {"u": 1.0})}
     system = make_system(chain, ["a.y -> b.u", "b.y -> c.u"])
     table = simulate(system, make_scenario(2.0, 0.1), RunOptions(order="gauss-seidel"))
@@ -39,19 +41,26 @@ def test_gauss_seidel_passes_values_on_within_the_step_whatever_order_they_are_l
 def test_gauss_seidel_breaks_a_loop_where_the_system_lists_it_first(make_system, make_scenario):
     loop = {"first": ("integrator", {"y_start": 1.0}), "law": ("gain", {"factor": -1.0})}
     system = make_system(loop, ["first.y -> law.u", "law.y -> first.u"])
-    gauss_seidel = simulate(system, make_scenario(1.0, 0.1), RunOptions(order="gauss-seidel"))["first.y"].values
+    gauss_seidel = simulate(system, make_scenario(1.0, 0.1), RunOptions(order="gauss-seidel"))[
+        "first.y"
+    ].values
     assert np.allclose(gauss_seidel, 0.9 ** np.arange(11))
 
 
 def test_halving_the_step_halves_the_error_of_a_feedback(make_system, make_scenario):
     loop = {"tank": ("integrator", {"y_start": 1.0}), "law": ("gain", {"factor": -1.0})}
     system = make_system(loop, ["tank.y -> law.u", "law.y -> tank.u"])
-    errors = [abs(simulate(system, make_scenario(1.0, h))["tank.y"].values[-1] - math.exp(-1.0)) for h in (0.02, 0.01)]
+    errors = [
+        abs(simulate(system, make_scenario(1.0, h))["tank.y"].values[-1] - math.exp(-1.0))
+        for h in (0.02, 0.01)
+    ]
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.05)
 
 
 def test_times_are_the_nearest_doubles_over_the_whole_run(make_system, make_scenario):
-    table = simulate(make_system({"clock": "clock"}), make_scenario(1100.0, 0.05, output_interval=0.5))
+    table = simulate(
+        make_system({"clock": "clock"}), make_scenario(1100.0, 0.05, output_interval=0.5)
+    )
     expected = [k / 2 for k in range(2201)]
     assert table.time.values.tolist() == expected
     assert table["clock.time"].values.tolist() == expected
@@ -67,26 +76,32 @@ def test_units_are_converted_between_components(make_system, make_scenario):
 
 def test_linear_transformation_comes_after_the_source(make_system, make_scenario):
     link = 'a.y -> b.u | <ssc:LinearTransformation factor="3.0" offset="0.5"/>'
-    table = simulate(make_system({"a": ("gain", {"offset": 2.0}), "b": "gain"}, [link]), make_scenario(0.2, 0.1))
+    table = simulate(
+        make_system({"a": ("gain", {"offset": 2.0}), "b": "gain"}, [link]), make_scenario(0.2, 0.1)
+    )
     assert np.all(table["b.y"] == 6.5)
 
 
 def test_other_types_travel_too_and_integers_become_reals(make_system, make_scenario):
     links = ["clock.count -> meter.number", "clock.odd -> meter.flag", "clock.text -> meter.text"]
     links.append('clock.count -> meter.real | <ssc:LinearTransformation factor="1e6" offset="0"/>')
-    table = simulate(make_system({"clock": "clock", "meter": "meter"}, links), make_scenario(1.0, 0.1))
+    table = simulate(
+        make_system({"clock": "clock", "meter": "meter"}, links), make_scenario(1.0, 0.1)
+    )
     k = np.arange(1, 10)
     length = np.array([len(f"{n} of them") for n in k])
     assert table["clock.odd"].dtype == bool and table["clock.count"].dtype == np.int32
     assert np.array_equal(table["meter.number_seen"].values[2:], k)
-    assert np.allclose(table["meter.y"].values[2:], k + 1000.0 * (k % 2) + 0.001 * length + 1e6 * k, atol=1e-9)
+    assert np.allclose(
+        table["meter.y"].values[2:], k + 1000.0 * (k % 2) + 0.001 * length + 1e6 * k, atol=1e-9
+    )
 
 
 def test_mapping_replaces_values(make_system, make_scenario):
-    table_ = (
-        '<ssc:IntegerMappingTransformation><ssc:MapEntry source="2" target="-5"/></ssc:IntegerMappingTransformation>'
+    table_ = '<ssc:IntegerMappingTransformation><ssc:MapEntry source="2" target="-5"/></ssc:IntegerMappingTransformation>'
+    system = make_system(
+        {"clock": "clock", "meter": "meter"}, [f"clock.count -> meter.number | {table_}"]
     )
-    system = make_system({"clock": "clock", "meter": "meter"}, [f"clock.count -> meter.number | {table_}"])
     table = simulate(system, make_scenario(0.5, 0.1))
     assert table["meter.number_seen"].values.tolist() == [0, 0, 1, -5, 3, 4]
 
@@ -109,7 +124,9 @@ def test_slow_components_step_and_exchange_at_their_own_rate(make_system, make_s
 
 def test_output_interval_thins_the_rows_only(make_system, make_scenario):
     system = make_system({"lag": ("lag", {"u": 1.0})})
-    every, thin = (simulate(system, make_scenario(1.0, 0.1, output_interval=i)) for i in (None, 0.3))
+    every, thin = (
+        simulate(system, make_scenario(1.0, 0.1, output_interval=i)) for i in (None, 0.3)
+    )
     assert thin.time.values.tolist() == [0.0, 0.3, 0.6, 0.9]
     assert np.array_equal(thin["lag.y"], every["lag.y"].values[::3])
 
@@ -122,7 +139,10 @@ def test_connectors_of_the_system_are_fed_by_a_table_and_shown(make_system, make
     }
     links = ["held -> shaft.angle", "ramp -> gain.u", "gain.y -> seen"]
     system = make_system({"shaft": "shaft", "gain": "gain"}, links, connectors)
-    columns = [("held", np.array([0.1, 0.2, 0.3]), "rad", ""), ("ramp", np.array([0.0, 1.0, 3.0]), "", "")]
+    columns = [
+        ("held", np.array([0.1, 0.2, 0.3]), "rad", ""),
+        ("ramp", np.array([0.0, 1.0, 3.0]), "", ""),
+    ]
     inputs = make_table(np.array([0.0, 0.5, 1.0]), columns)
     inputs["ramp"].attrs["interpolation"] = "linear"
     table = simulate(system, make_scenario(1.0, 0.1), RunOptions(inputs=inputs))
@@ -130,15 +150,21 @@ def test_connectors_of_the_system_are_fed_by_a_table_and_shown(make_system, make
     ramp = np.interp(np.arange(11) * 0.1, [0.0, 0.5, 1.0], [0.0, 1.0, 3.0])
     assert np.allclose(table["held"], degrees) and table["held"].attrs["units"] == "deg"
     assert np.allclose(table["shaft.torque"].values[1:], degrees[:-1])
-    assert np.allclose(table["gain.y"].values[1:], ramp[:-1]) and np.array_equal(table["seen"], table["gain.y"])
+    assert np.allclose(table["gain.y"].values[1:], ramp[:-1]) and np.array_equal(
+        table["seen"], table["gain.y"]
+    )
 
 
-def test_connectors_that_nothing_feeds_leave_the_components_start_values(make_system, make_scenario):
+def test_connectors_that_nothing_feeds_leave_the_components_start_values(
+    make_system, make_scenario
+):
     parts = {"a": ("gain", {"u": 1.0}), "b": ("gain", {"u": 2.0})}
     system = make_system(parts, ["both -> a.u", "both -> b.u"], {"both": ("input", "Real", "")})
     table = simulate(system, make_scenario(0.2, 0.1))
     assert (
-        "both" not in table and table["a.u"].values.tolist() == [1.0] * 3 and table["b.y"].values.tolist() == [2.0] * 3
+        "both" not in table
+        and table["a.u"].values.tolist() == [1.0] * 3
+        and table["b.y"].values.tolist() == [2.0] * 3
     )
 
 
@@ -160,7 +186,11 @@ def test_inputs_that_do_not_fit_are_refused(make_system, make_scenario, time, na
 def test_start_values_come_from_the_system_and_the_scenario_over_it(make_system, make_scenario):
     system = make_system({"a": ("lag", {"y_start": 1.0, "u": 5.0}), "b": ("lag", {"y_start": 1.0})})
     table = simulate(system, make_scenario(0.1, 0.1, set={"b.y_start": 2.0}))
-    assert (table["a.y"].values[0], table["b.y"].values[0], table["a.u"].values[0]) == (1.0, 2.0, 5.0)
+    assert (table["a.y"].values[0], table["b.y"].values[0], table["a.u"].values[0]) == (
+        1.0,
+        2.0,
+        5.0,
+    )
     known = json.loads(table.attrs["start_values"])
     assert known["b.y_start"] == 2.0 and known["b.time_constant"] == 1.0
 
@@ -168,7 +198,9 @@ def test_start_values_come_from_the_system_and_the_scenario_over_it(make_system,
 def test_many_instances_of_one_fmu_keep_apart(make_system, make_scenario):
     parts = {f"c{i}": ("integrator", {"u": float(i)}) for i in range(10)}
     table = simulate(make_system(parts), make_scenario(1.0, 0.1))
-    assert [round(float(table[f"c{i}.y"][-1]), 12) for i in range(10)] == [float(i) for i in range(10)]
+    assert [round(float(table[f"c{i}.y"][-1]), 12) for i in range(10)] == [
+        float(i) for i in range(10)
+    ]
 
 
 def test_same_run_gives_the_same_bytes(make_system, make_scenario, tmp_path):
@@ -187,13 +219,20 @@ def test_table_says_what_is_needed_to_repeat_the_run(make_system, make_scenario,
     digest = hashlib.sha256(system.components["a"].fmu.path.read_bytes()).hexdigest()
     assert json.loads(about["fmus"]) == {"a": {"file": "lag.fmu", "sha256": digest}}
     assert json.loads(about["events"])[0]["override"] == {"a.u": 2.0}
-    assert (about["step_size"], about["engine"], about["complete"], about["description"]) == (0.1, "fmpy", 1, "a step")
+    assert (about["step_size"], about["engine"], about["complete"], about["description"]) == (
+        0.1,
+        "fmpy",
+        1,
+        "a step",
+    )
 
 
 def test_progress_is_told_sparsely_and_to_the_end(make_system, make_scenario):
     told = []
     simulate(
-        make_system({"clock": "clock"}), make_scenario(50.0, 0.01), RunOptions(progress=lambda *done: told.append(done))
+        make_system({"clock": "clock"}),
+        make_scenario(50.0, 0.01),
+        RunOptions(progress=lambda *done: told.append(done)),
     )
     assert told[0] == (0, 5000) and told[-1] == (5000, 5000) and len(told) < 50
 

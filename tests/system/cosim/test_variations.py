@@ -32,8 +32,12 @@ def compiler(needs):
 
 @pytest.fixture(scope="module")
 def dp(root):
-    scenario = read_scenario(root / "scenarios" / "gust.toml").model_copy(update={"stop_time": 12.0, "events": []})
-    return with_values(system_of(scenario), scenario.set), scenario.model_copy(update={"expect": [], "set": {}})
+    scenario = read_scenario(root / "scenarios" / "gust.toml").model_copy(
+        update={"stop_time": 12.0, "events": []}
+    )
+    return with_values(system_of(scenario), scenario.set), scenario.model_copy(
+        update={"expect": [], "set": {}}
+    )
 
 
 def test_each_variation_is_its_run_alone_bit_for_bit_in_any_number_of_threads(dp):
@@ -51,16 +55,27 @@ def test_each_variation_is_its_run_alone_bit_for_bit_in_any_number_of_threads(dp
 
 
 @pytest.mark.parametrize("engine", ["native", "fmpy"])
-def test_a_run_goes_in_the_arrays_of_the_one_before_where_numbers_alone_differ(dp, monkeypatch, engine):
+def test_a_run_goes_in_the_arrays_of_the_one_before_where_numbers_alone_differ(
+    dp, monkeypatch, engine
+):
     system, scenario = dp
     events = [Event(time=1.0, bias={"port.thrust_cmd": 500.0})]
     scenario = scenario.model_copy(update={"stop_time": 3.0, "events": events})
     made, options = [], RunOptions(engine=engine)
     monkeypatch.setattr(
-        many_module, "Simulation", lambda *all, **more: made.append(Simulation(*all, **more)) or made[-1]
+        many_module,
+        "Simulation",
+        lambda *all, **more: made.append(Simulation(*all, **more)) or made[-1],
     )
-    values = [SEEDS[0], SEEDS[1], SEEDS[0] | {"vessel.mass": 5.1e5, "reference.x_set": 2.0}, SEEDS[0]]
-    runs = simulate_many(system, scenario, [Variation(one, scenario) for one in values], options, workers=1)
+    values = [
+        SEEDS[0],
+        SEEDS[1],
+        SEEDS[0] | {"vessel.mass": 5.1e5, "reference.x_set": 2.0},
+        SEEDS[0],
+    ]
+    runs = simulate_many(
+        system, scenario, [Variation(one, scenario) for one in values], options, workers=1
+    )
     assert len(made) == 1
     for number, one in enumerate(values):
         alone = simulate(system, scenario.model_copy(update={"set": one}), options)
@@ -73,7 +88,12 @@ def test_what_differs_in_numbers_alone_is_compiled_once(dp, monkeypatch):
     system, scenario = dp
     simulate_many(system, scenario, [Variation({}, scenario)], NATIVE)
     monkeypatch.setattr(component, "trace", None)  # nothing is recorded again
-    values = {"environment.seed": 4321, "sensors.seed": 77, "vessel.mass": 5.1e5, "controller.position_noise": 0.3}
+    values = {
+        "environment.seed": 4321,
+        "sensors.seed": 77,
+        "vessel.mass": 5.1e5,
+        "controller.position_noise": 0.3,
+    }
     runs = simulate_many(system, scenario, [Variation(values, scenario)], NATIVE)
     assert json.loads(runs.attrs["remarks"]) == []
 
@@ -83,11 +103,23 @@ def test_one_that_fails_says_why_and_keeps_its_rows(make_system, make_scenario):
         make_system({"lag": ("lag", {"u": 1.0}), "engine": ("failing", {"how": "warn"})}),
         make_scenario(1.0, 0.1),
     )
-    how = [{}, {"engine.how": "raise"}, {"engine.how": "start"}, {"lag.time_constant": 2.0}, {"engine.when": "1 kg"}]
-    runs = simulate_many(system, scenario, [Variation(values, scenario) for values in how], NATIVE, workers=2)
+    how = [
+        {},
+        {"engine.how": "raise"},
+        {"engine.how": "start"},
+        {"lag.time_constant": 2.0},
+        {"engine.when": "1 kg"},
+    ]
+    runs = simulate_many(
+        system, scenario, [Variation(values, scenario) for values in how], NATIVE, workers=2
+    )
     errors = runs.error.values.tolist()
     assert errors[0] == errors[3] == ""
-    assert "50%s of it is wrong" in errors[1] and "50%s of the start is wrong" in errors[2] and "kg" in errors[4]
+    assert (
+        "50%s of it is wrong" in errors[1]
+        and "50%s of the start is wrong" in errors[2]
+        and "kg" in errors[4]
+    )
     assert runs["lag.y"].notnull().sum("time").values.tolist() == [11, 6, 0, 11, 0]
     assert runs["lag.y"][3, -1] == pytest.approx(-np.expm1(-0.5))
     with pytest.raises(ShipcosimError, match="(?s)All 1 variations fail, the first with: .*50%s"):
@@ -97,10 +129,17 @@ def test_one_that_fails_says_why_and_keeps_its_rows(make_system, make_scenario):
 def test_what_does_not_fit_ends_all_before_the_first(dp):
     system, scenario = dp
     with pytest.raises(ShipcosimError, match="vessel has no variable 'mas'.*Did you mean 'mass'"):
-        simulate_many(system, scenario, [Variation({}, scenario), Variation({"vessel.mas": 1.0}, scenario)], NATIVE)
+        simulate_many(
+            system,
+            scenario,
+            [Variation({}, scenario), Variation({"vessel.mas": 1.0}, scenario)],
+            NATIVE,
+        )
 
 
-def test_without_a_compiler_python_steps_and_the_remarks_say_so(make_system, make_scenario, monkeypatch):
+def test_without_a_compiler_python_steps_and_the_remarks_say_so(
+    make_system, make_scenario, monkeypatch
+):
     system, scenario = make_system({"lag": ("lag", {"u": 3.0})}), make_scenario()
     variations = [Variation({"lag.time_constant": float(n)}, scenario) for n in range(1, 4)]
     compiled_runs = simulate_many(system, scenario, variations, NATIVE, workers=2)
@@ -113,8 +152,12 @@ def test_without_a_compiler_python_steps_and_the_remarks_say_so(make_system, mak
 def test_a_table_of_values_with_gaps_own_events_and_an_own_end(root):
     mass = [5.5e5, np.nan, 6.0e5]
     table = pandas.DataFrame({"vessel.mass": mass, "environment.seed": [1, 1, 2]})
-    runs = shipcosim.simulate_many("gunnerus_dp", "gust", table, record=["vessel.x", "port"], stop_time=5.0)
-    assert {str(name).partition(".")[0] for name in runs} == {"vessel", "port"} and runs.sizes["variation"] == 3
+    runs = shipcosim.simulate_many(
+        "gunnerus_dp", "gust", table, record=["vessel.x", "port"], stop_time=5.0
+    )
+    assert {str(name).partition(".")[0] for name in runs} == {"vessel", "port"} and runs.sizes[
+        "variation"
+    ] == 3
     again = shipcosim.simulate_many(
         "gunnerus_dp",
         "gust",
@@ -127,10 +170,17 @@ def test_a_table_of_values_with_gaps_own_events_and_an_own_end(root):
     shorter = root / "ssp" / "gunnerus_dp" / "resources" / "gunnerus-28m9.ssv"
     stopped = {"time": 2.0, "override": {"port.failed": True}}
     own = [{}, {"events": [stopped]}, {"stop_time": 3.0}, {"parameters": [shorter]}]
-    runs = shipcosim.simulate_many("gunnerus_dp", "gust", own, record=["vessel.x", "port.thrust"], stop_time=5.0)
+    runs = shipcosim.simulate_many(
+        "gunnerus_dp", "gust", own, record=["vessel.x", "port.thrust"], stop_time=5.0
+    )
     x, thrust = runs["vessel.x"].values, runs["port.thrust"].values
-    assert np.array_equal(x[0, runs.time <= 2.0], x[1, runs.time <= 2.0]) and not np.array_equal(thrust[0], thrust[1])
-    assert np.array_equal(x[0, runs.time <= 3.0], x[2, runs.time <= 3.0]) and np.isnan(x[2, runs.time > 3.01]).all()
+    assert np.array_equal(x[0, runs.time <= 2.0], x[1, runs.time <= 2.0]) and not np.array_equal(
+        thrust[0], thrust[1]
+    )
+    assert (
+        np.array_equal(x[0, runs.time <= 3.0], x[2, runs.time <= 3.0])
+        and np.isnan(x[2, runs.time > 3.01]).all()
+    )
     assert not np.array_equal(x[0], x[3]) and runs.error.values.tolist() == [""] * 4
 
 

@@ -89,7 +89,9 @@ def commands(time, seed):
 
 def wind(time, seed):
     """Velocity of the air towards north and east. [m/s]"""
-    gusts = gaussian_filter1d(np.random.default_rng(seed).standard_normal((2, time.size)), 10.0 / (time[1] - time[0]))
+    gusts = gaussian_filter1d(
+        np.random.default_rng(seed).standard_normal((2, time.size)), 10.0 / (time[1] - time[0])
+    )
     gusts /= gusts.std(axis=1, keepdims=True)
     speed, from_ = SEA[0] + 1.2 * gusts[0], SEA[1] + 0.1 * gusts[1]
     return -speed * np.cos(from_), -speed * np.sin(from_)
@@ -111,14 +113,30 @@ def log(minutes=20.0, seed=0, boat=None, rate=1.0, off=None):
     time, random = np.arange(0.0, 60.0 * minutes + STEP / 2, STEP), np.random.default_rng(seed)
     told, air = commands(time, seed), wind(time, seed + 1)
     columns = [(name, values, "rpm", "") for name, values in told.items()]
-    columns += [(f"wind_{axis}", values, "m/s", "") for axis, values in zip(("north", "east"), air, strict=True)]
-    run = sc.simulate(boat or structure(), stop_time=float(time[-1]), step_size=STEP, inputs=make_table(time, columns))
+    columns += [
+        (f"wind_{axis}", values, "m/s", "")
+        for axis, values in zip(("north", "east"), air, strict=True)
+    ]
+    run = sc.simulate(
+        boat or structure(),
+        stop_time=float(time[-1]),
+        step_size=STEP,
+        inputs=make_table(time, columns),
+    )
     rows = slice(None, None, round(rate / STEP))
     seen = np.stack([run[f"boat.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")])
     seen[2] = np.unwrap(seen[2])
     seen = seen + WHITE[:, None] * random.standard_normal(seen.shape)
-    listed = [(r, k * v, u, "") for (r, u), k, v in zip(twin.ROLES.items(), twin.TO_LOG, seen, strict=True)]
-    listed += [(name, values[rows] + (off or {}).get(name, 0.0), "rpm", "") for name, values in told.items()]
+    listed = [
+        (r, k * v, u, "")
+        for (r, u), k, v in zip(twin.ROLES.items(), twin.TO_LOG, seen, strict=True)
+    ]
+    listed += [
+        (name, values[rows] + (off or {}).get(name, 0.0), "rpm", "")
+        for name, values in told.items()
+    ]
     for role, unit, scale in (("speed", "m/s", 1.0), ("from", "deg", 180.0 / np.pi)):
-        listed.append((f"wind_{role}", scale * run[f"boat.apparent_wind_{role}"].values[rows], unit, ""))
+        listed.append(
+            (f"wind_{role}", scale * run[f"boat.apparent_wind_{role}"].values[rows], unit, "")
+        )
     return make_table(run["time"].values[rows], listed)

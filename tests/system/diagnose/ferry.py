@@ -119,7 +119,9 @@ def under_dp(ferry):
             ferry.connect(name, f"helm.{name}")
         for number, unit in enumerate(UNITS, start=1):
             for kind in ("rpm", "azimuth"):
-                for source, target in [pair for pair in ferry.connections if pair[0] == f"{unit}_{kind}"]:
+                for source, target in [
+                    pair for pair in ferry.connections if pair[0] == f"{unit}_{kind}"
+                ]:
                     ferry.disconnect(source, target)
                     ferry.connect(f"helm.{kind}_{number}", target)
     return ferry
@@ -136,7 +138,9 @@ def plan(time, legs):
 
 def weather(time, seed, speed=9.0, from_=2.0):
     """Wind over ground with gusts: speed, direction. [m/s, rad]"""
-    gusts = gaussian_filter1d(np.random.default_rng(seed).standard_normal((2, time.size)), 12.0 / (time[1] - time[0]))
+    gusts = gaussian_filter1d(
+        np.random.default_rng(seed).standard_normal((2, time.size)), 12.0 / (time[1] - time[0])
+    )
     gusts /= gusts.std(axis=1, keepdims=True)
     return speed * (1.0 + 0.13 * gusts[0]), from_ + 0.08 * gusts[1]
 
@@ -169,10 +173,22 @@ def log(kind="trial", minutes=30.0, seed=0, ferry=None, errors=None, push=(), fr
         for name, value in zip(("north", "east", "x"), push, strict=True):
             ferry.set(f"line.{name}", value)
     wish, (speed, from_) = plan(time, LEGS[kind]), weather(time, seed + 1)
-    on = 1.0 - np.any([(time > a) & (time < b) for a, b in free] or [np.zeros(time.size, bool)], axis=0)
-    columns = [("x_d", wish[0], "m", ""), ("y_d", wish[1], "m", ""), ("psi_d", wish[2], "rad", ""), ("on", on, "1", "")]
-    columns += [("true_wind_speed", speed, "m/s", ""), ("true_wind_from", np.degrees(from_), "deg", "")]
-    run = sc.simulate(ferry, stop_time=float(time[-1]), step_size=STEP, inputs=make_table(time, columns))
+    on = 1.0 - np.any(
+        [(time > a) & (time < b) for a, b in free] or [np.zeros(time.size, bool)], axis=0
+    )
+    columns = [
+        ("x_d", wish[0], "m", ""),
+        ("y_d", wish[1], "m", ""),
+        ("psi_d", wish[2], "rad", ""),
+        ("on", on, "1", ""),
+    ]
+    columns += [
+        ("true_wind_speed", speed, "m/s", ""),
+        ("true_wind_from", np.degrees(from_), "deg", ""),
+    ]
+    run = sc.simulate(
+        ferry, stop_time=float(time[-1]), step_size=STEP, inputs=make_table(time, columns)
+    )
     rows = slice(None, None, round(1.0 / STEP))
     seen = twin.seen(run, "ship", rows, errors)
     seen += noise(seen.shape[1], seen[2], random)
@@ -189,20 +205,31 @@ def noise(n, psi, random, waves=0.05):
         angle = frequency * np.arange(n) + random.uniform(0.0, 2.0 * np.pi, (6, 1))
         found[3 + axis] += 0.5 * waves * (frequency * np.cos(angle)).sum(0)
         towards = psi + axis * 0.5 * np.pi
-        found[:2] += 0.5 * waves * np.sin(angle).sum(0) * np.stack([np.cos(towards), np.sin(towards)])
+        found[:2] += (
+            0.5 * waves * np.sin(angle).sum(0) * np.stack([np.cos(towards), np.sin(towards)])
+        )
     return found
 
 
 def table(run, rows, seen, random):
     """The log of a run, what is seen of the motion given."""
-    listed = [(r, k * v, u, "") for (r, u), k, v in zip(twin.ROLES.items(), twin.TO_LOG, seen, strict=True)]
+    listed = [
+        (r, k * v, u, "")
+        for (r, u), k, v in zip(twin.ROLES.items(), twin.TO_LOG, seen, strict=True)
+    ]
     for number, unit in enumerate(UNITS, start=1):
         rpm, azimuth = (run[f"helm.{kind}_{number}"].values[rows] for kind in ("rpm", "azimuth"))
         listed.append((f"{unit}_rpm", np.round(rpm, 1), "rpm", ""))
         listed.append((f"{unit}_azimuth", np.round(np.degrees(azimuth), 1), "deg", ""))
     speed, from_ = (run[f"ship.apparent_wind_{name}"].values for name in ("speed", "from"))
     air, width = speed * np.exp(1j * from_), round(3.0 / STEP)  # the sensor averages over 3 s
-    mean = np.convolve(np.append(np.full(width - 1, air[0]), air), np.full(width, 1.0 / width), "valid")[rows]
-    listed.append(("wind_speed", np.abs(mean) * (1.0 + 0.02 * random.standard_normal(mean.size)), "m/s", ""))
-    listed.append(("wind_from", np.degrees(np.angle(mean)) + random.standard_normal(mean.size), "deg", ""))
+    mean = np.convolve(
+        np.append(np.full(width - 1, air[0]), air), np.full(width, 1.0 / width), "valid"
+    )[rows]
+    listed.append(
+        ("wind_speed", np.abs(mean) * (1.0 + 0.02 * random.standard_normal(mean.size)), "m/s", "")
+    )
+    listed.append(
+        ("wind_from", np.degrees(np.angle(mean)) + random.standard_normal(mean.size), "deg", "")
+    )
     return make_table(run["time"].values[rows], listed)

@@ -62,7 +62,9 @@ class Helm(Fmu):
         slow = there @ self.rate - [self.u, self.v, self.r]
         w = self.frequency
         self.integral = np.clip(self.integral + 0.1 * h * w**3 * error, -0.05, 0.05)
-        load = np.array([self.mass, self.mass, self.inertia]) * (w * w * error + 1.6 * w * slow + self.integral)
+        load = np.array([self.mass, self.mass, self.inertia]) * (
+            w * w * error + 1.6 * w * slow + self.integral
+        )
         forces = (self.shared @ load).reshape(4, 2)
         forces[:, 0] += self.apart * np.array([-1.0, -1.0, 1.0, 1.0])
         return forces if self.on > 0.5 else 0.0 * forces

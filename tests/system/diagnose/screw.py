@@ -20,7 +20,9 @@ class Screw(Fmu):
     def start(self):
         n = self.shaft / 6.283185307179586
         speed = (1.0 - self.wake) * (self.way - self.aside * self.swing)
-        self.push = self.gain * ((1.0 if n > 0.0 else self.astern) * n * abs(n) - abs(n) * speed / self.slip)
+        self.push = self.gain * (
+            (1.0 if n > 0.0 else self.astern) * n * abs(n) - abs(n) * speed / self.slip
+        )
         self.twist = -self.aside * self.push
 
     def step(self, t, h):

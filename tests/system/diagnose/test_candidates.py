@@ -13,15 +13,23 @@ SURE = 0.99
 
 def agrees(found):
     """What is said of causes does not contradict itself."""
-    candidates = {one.cause: one.probability for one in (*found.candidates, *found.indistinguishable)}
+    candidates = {
+        one.cause: one.probability for one in (*found.candidates, *found.indistinguishable)
+    }
     said = {*candidates, *(finding.cause for finding in found.findings)}
     assert not said & {*found.not_testable}, found.verdict
-    assert found.verdict != "unknown" or all(chance < SURE for chance in candidates.values()), candidates
+    assert found.verdict != "unknown" or all(chance < SURE for chance in candidates.values()), (
+        candidates
+    )
 
 
 def of_craft(seed, fault, change):
     drawn = draw_craft(seed, fault=fault, change=change)
-    return stated(verdict_on(problem_of(ReadLog(read_log(drawn.log), drawn.model, read_catalogue())), lambda *_: None))
+    return stated(
+        verdict_on(
+            problem_of(ReadLog(read_log(drawn.log), drawn.model, read_catalogue())), lambda *_: None
+        )
+    )
 
 
 def test_candidates_of_a_drawn_craft_do_not_contradict_what_is_not_testable():

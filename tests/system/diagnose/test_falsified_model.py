@@ -33,7 +33,9 @@ def falsified(root, tmp_path):
         for path, factor in factors.items():
             component, name = path.split(".")
             value = factor * right.components[component].start_value(name)
-            lines.append(f'<ssv:Parameter name={quoteattr(path)}><ssv:Real value="{value}"/></ssv:Parameter>')
+            lines.append(
+                f'<ssv:Parameter name={quoteattr(path)}><ssv:Real value="{value}"/></ssv:Parameter>'
+            )
         file = tmp_path / "falsified.ssv"
         file.write_text(SSV.format("".join(lines)), encoding="utf-8")
         return read_system(place, [file], fmus=fmus)
@@ -48,4 +50,6 @@ def named(diagnosis):
 def test_a_wrong_coefficient_of_the_tunnel_is_found_there(log, falsified):
     diagnosis = find_causes(log, falsified({"tunnel.thrust_coefficient": 1.4}))
     assert named(diagnosis) == [("thrust_loss", "tunnel")]
-    assert diagnosis.findings[0].parameters["loss"].estimate == pytest.approx(1.0 - 1.0 / 1.4, abs=0.06)
+    assert diagnosis.findings[0].parameters["loss"].estimate == pytest.approx(
+        1.0 - 1.0 / 1.4, abs=0.06
+    )

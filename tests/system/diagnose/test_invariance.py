@@ -15,7 +15,10 @@ MINUTES = 20
 
 @pytest.fixture(scope="module")
 def drawn():
-    return {cause: draw("trial", seed, among=[cause], minutes=MINUTES).log for cause, seed in LOGS.items()}
+    return {
+        cause: draw("trial", seed, among=[cause], minutes=MINUTES).log
+        for cause, seed in LOGS.items()
+    }
 
 
 @pytest.fixture(scope="module")
@@ -40,14 +43,22 @@ def agree(base, variant, turn, within):
     assert variant["verdict"] == base["verdict"] == "named"
     found = {(f["cause"], f["component"]): f["parameters"] for f in variant["findings"]}
     expected = [
-        turn(f["cause"], f["component"], {name: value["estimate"] for name, value in f["parameters"].items()})
+        turn(
+            f["cause"],
+            f["component"],
+            {name: value["estimate"] for name, value in f["parameters"].items()},
+        )
         for f in base["findings"]
     ]
     assert set(found) == {(cause, component) for cause, component, _ in expected}
     for cause, component, values in expected:
         for name, value in values.items():
             entry = found[cause, component][name]
-            assert entry["estimate"] == pytest.approx(value, abs=within * entry["std"]), (cause, component, name)
+            assert entry["estimate"] == pytest.approx(value, abs=within * entry["std"]), (
+                cause,
+                component,
+                name,
+            )
 
 
 def test_turning_the_earth_turns_a_force_over_ground(answer):

@@ -43,7 +43,10 @@ def test_a_propeller_that_nothing_turns_pushes_where_the_system_points_it():
     np.testing.assert_allclose(record.units["left"][1], LEFT_TOE)
     assert X > 0.0 and pytest.approx(np.tan(LEFT_TOE)) == Y / X
     assert pytest.approx(-2.2 * Y + 0.7 * X) == N
-    assert (dp_thruster_of(model, "left").axis, dp_thruster_of(model, "left").turns) == (LEFT_TOE, False)
+    assert (dp_thruster_of(model, "left").axis, dp_thruster_of(model, "left").turns) == (
+        LEFT_TOE,
+        False,
+    )
 
 
 def test_a_propeller_that_nothing_turns_can_lose_thrust_astern_and_has_no_offset_of_direction():
@@ -69,7 +72,9 @@ def _integrated(motion, record, model, row):
         here = Inputs(inputs.time[row], units, inputs.wind_speed[row], inputs.wind_from[row])
         return np.array(motion_rates(Motion(*state), here, model)) * record.step
 
-    return solve_ivp(rates, (0.0, 1.0), [value[row] for value in motion], rtol=1e-8, atol=1e-10).y[:, -1]
+    return solve_ivp(rates, (0.0, 1.0), [value[row] for value in motion], rtol=1e-8, atol=1e-10).y[
+        :, -1
+    ]
 
 
 def test_columns_of_a_small_craft_are_what_her_motion_changes_by():
@@ -82,7 +87,9 @@ def test_columns_of_a_small_craft_are_what_her_motion_changes_by():
         real = np.stack(advanced(start, record, other)) - np.stack(advanced(start, record, model))
         told = -np.moveaxis(linear.driven[:, :6, column], 0, -1)
         apart = np.sqrt(((real - told) ** 2).sum(1) / (real**2).sum(1))
-        assert apart[3] < 0.3 and (column == 2 or apart[5] < 0.4)  # surge; yaw rate, which drag hardly changes
+        assert apart[3] < 0.3 and (
+            column == 2 or apart[5] < 0.4
+        )  # surge; yaw rate, which drag hardly changes
 
 
 def test_a_ship_of_our_own_size_is_still_moved_by_one_step_a_row():
@@ -102,18 +109,26 @@ def test_the_slipstream_is_that_of_the_unit_which_the_system_wires():
 
 
 def test_what_no_set_says_is_known_in_proportion_to_the_ship():
-    models = along(ferry.structure, short_ferry)[0], along(usv.structure, short_usv)[0], twin.model()
+    models = (
+        along(ferry.structure, short_ferry)[0],
+        along(usv.structure, short_usv)[0],
+        twin.model(),
+    )
     at = {"hull": ("fore_port", "ship"), "usv": ("left", "hull"), "ours": ("port", "vessel")}
     for model, (unit, vessel) in zip(models, at.values(), strict=True):
         known = 0.1 if model.vessel == "vessel" else 5e-4 * model.get(f"{unit}.rpm_max")
         assert model.tolerances[f"{unit}.rpm_offset"] == pytest.approx(known)
         length = model.get(f"{vessel}.length") / 33.9
         assert model.get("water.drift_yaw_arm") == pytest.approx(-1.5 * length)
-        lever = next(s for s in hypotheses_of(read_catalogue(), model) if s.cause == "lever_arm").parameters[0]
+        lever = next(
+            s for s in hypotheses_of(read_catalogue(), model) if s.cause == "lever_arm"
+        ).parameters[0]
         assert lever.typical == pytest.approx(4.0 * length, rel=1e-3)
     without = usv.structure()
     without.set("hull.N_vvv", -80.0)
-    assert ship_model_of(without.checked()).tolerances["hull.N_vvv"] == pytest.approx(4.0)  # 5 %: ours has none
+    assert ship_model_of(without.checked()).tolerances["hull.N_vvv"] == pytest.approx(
+        4.0
+    )  # 5 %: ours has none
 
 
 def test_the_wind_that_a_fast_craft_meets_is_no_fault_of_its_labels():
@@ -123,9 +138,17 @@ def test_the_wind_that_a_fast_craft_meets_is_no_fault_of_its_labels():
 @pytest.mark.parametrize(
     "finding",
     [
-        Finding("tow", parameters={n: ParameterEstimate(v, 200.0, "N") for n, v in (("north", -12e3), ("east", 8e3))}),
         Finding(
-            "wave_drift", parameters={n: ParameterEstimate(v, 200.0, "N") for n, v in (("north", -9e3), ("east", 8e3))}
+            "tow",
+            parameters={
+                n: ParameterEstimate(v, 200.0, "N") for n, v in (("north", -12e3), ("east", 8e3))
+            },
+        ),
+        Finding(
+            "wave_drift",
+            parameters={
+                n: ParameterEstimate(v, 200.0, "N") for n, v in (("north", -9e3), ("east", 8e3))
+            },
         ),
         Finding("thruster_interaction", parameters={"loss": LOSS}),
         Finding("thrust_loss", "aft_port", parameters={"loss": LOSS}),
@@ -134,7 +157,9 @@ def test_the_wind_that_a_fast_craft_meets_is_no_fault_of_its_labels():
 )
 def test_the_ferry_with_a_cause_runs(finding, tmp_path):
     extension = extend(ferry.structure(), [finding], tmp_path)
-    run = sc.simulate(sc.read(extension.ssp), stop_time=20.0, set={"fore_port_rpm": 60.0, "aft_port_rpm": 90.0})
+    run = sc.simulate(
+        sc.read(extension.ssp), stop_time=20.0, set={"fore_port_rpm": 60.0, "aft_port_rpm": 90.0}
+    )
     assert np.isfinite(run["ship.x"].values).all() and run["ship.u"].values[-1] > 0.0
     if finding.cause == "wave_drift":
         assert extension.values["wave_drift.yaw_arm"] == pytest.approx(-1.5 * 96.0 / 33.9)

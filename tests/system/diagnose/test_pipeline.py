@@ -55,7 +55,11 @@ def test_a_healthy_log_is_consistent_and_progress_is_told_in_words(tmp_path):
     write_table(twin.logs()["healthy"], path)
     diagnosis = find_causes(path, twin.system(), progress=said.append)
     assert len(said) >= 3 and all(" " in words for words in said)
-    assert (diagnosis.verdict, diagnosis.findings, diagnosis.prescription) == ("consistent", (), None)
+    assert (diagnosis.verdict, diagnosis.findings, diagnosis.prescription) == (
+        "consistent",
+        (),
+        None,
+    )
     assert max(diagnosis.basis.unmodelled.values()) <= 0.0 and diagnosis.basis.fit.hypotheses == ()
 
 
@@ -64,7 +68,14 @@ def test_what_a_diagnosis_rests_on_comes_with_it(diagnosed):
     basis, found = diagnosis.basis, diagnosis.basis.explained.identification
     assert basis.fit in basis.fits and basis.fit.label == "current"
     assert found.log.sizes["time"] == found.repaired.sizes["time"] == 361
-    kinds = {"slow", "with the heading", "periodic", "in a channel", "from part to part", "beyond tolerances"}
+    kinds = {
+        "slow",
+        "with the heading",
+        "periodic",
+        "in a channel",
+        "from part to part",
+        "beyond tolerances",
+    }
     assert set(basis.unmodelled) == kinds
     assert "current" not in diagnosis.not_testable
     gain = basis.fit.score - next(fit.score for fit in basis.fits if not fit.hypotheses)
@@ -84,7 +95,9 @@ def test_a_log_that_lacks_what_drives_a_thruster_names_no_cause_and_says_what_wo
     assert (diagnosis.verdict, diagnosis.findings, diagnosis.candidates) == ("unknown", (), ())
     obstacles = diagnosis.obstacles
     assert {"thrust_loss", "current", "drag"} <= set(diagnosis.not_testable)
-    assert len(obstacles) == len(absent) and all(name in said for name, said in zip(absent, obstacles, strict=True))
+    assert len(obstacles) == len(absent) and all(
+        name in said for name, said in zip(absent, obstacles, strict=True)
+    )
     assert [fit.hypotheses for fit in diagnosis.basis.fits] == [()]
 
 
@@ -93,12 +106,17 @@ def test_a_parked_ship_can_show_little(tmp_path):
     random, log = np.random.default_rng(0), twin.logs()["healthy"]
     still = {role: 0.0 * log[role] for role in log.data_vars}
     noise = dict(zip(twin.ROLES, twin.WHITE * np.array(twin.TO_LOG), strict=True))
-    still |= {role: 0.0 * log[role] + std * random.standard_normal(log.sizes["time"]) for role, std in noise.items()}
+    still |= {
+        role: 0.0 * log[role] + std * random.standard_normal(log.sizes["time"])
+        for role, std in noise.items()
+    }
     path = tmp_path / "log.csv"
     write_table(log.assign(still), path)
     diagnosis = find_causes(path, twin.system())
     assert not [finding for finding in diagnosis.findings if finding.kind == "physics"]
-    assert {"mass", "drag", "crossflow", "thrust_loss", "velocity_scale"} <= set(diagnosis.not_testable)
+    assert {"mass", "drag", "crossflow", "thrust_loss", "velocity_scale"} <= set(
+        diagnosis.not_testable
+    )
 
 
 def test_a_log_that_is_too_short_is_refused(tmp_path):
@@ -113,10 +131,17 @@ def test_from_python_one_value_has_findings_extended_system_and_all_that_the_pag
     said = []
     log, system = twin.logs()["current"], twin.system()
     diagnosis = shipcosim.diagnose(log, system, progress=lambda *doing: said.append(doing[0]))
-    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == ("named", ["current"])
+    assert (diagnosis.verdict, [finding.label for finding in diagnosis.findings]) == (
+        "named",
+        ["current"],
+    )
     assert diagnosis.extension.ssp.is_file() and diagnosis.changes
-    speed = np.hypot(*(diagnosis.findings[0].parameters[name].estimate for name in ("north", "east")))
-    assert {change.name: change.after for change in diagnosis.changes}["current_speed"] == pytest.approx(speed)
+    speed = np.hypot(
+        *(diagnosis.findings[0].parameters[name].estimate for name in ("north", "east"))
+    )
+    assert {change.name: change.after for change in diagnosis.changes}[
+        "current_speed"
+    ] == pytest.approx(speed)
     assert diagnosis.evidence.sets[0].is_chosen and diagnosis.evidence.gains[0].gain > 100.0
     assert "extending the system" in said and diagnosis.log.measured.sizes["time"] == 361
     assert "diagnose" in dir(shipcosim) and diagnosis.as_json()["verdict"] == "named"

@@ -31,8 +31,13 @@ def module_of(root):
 
 def called(function):
     """Names of the functions that one calls, in the order in which the calls end in the text."""
-    calls = [n for n in ast.walk(function) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)]
-    return [call.func.id for call in sorted(calls, key=lambda call: (call.end_lineno, call.end_col_offset))]
+    calls = [
+        n for n in ast.walk(function) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+    ]
+    return [
+        call.func.id
+        for call in sorted(calls, key=lambda call: (call.end_lineno, call.end_col_offset))
+    ]
 
 
 def way(module_of, depth=1):
@@ -53,7 +58,9 @@ def way(module_of, depth=1):
         trail.append(module)
 
     follow(*START, 0)
-    return [module for module, before in zip(trail, [None, *trail], strict=False) if module != before]
+    return [
+        module for module, before in zip(trail, [None, *trail], strict=False) if module != before
+    ]
 
 
 def test_a_log_reaches_its_verdict_through_few_files_with_few_returns(module_of):

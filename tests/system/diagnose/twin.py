@@ -34,7 +34,14 @@ FINE = 0.25  # s
 WHITE = np.array([0.2, 0.2, np.radians(0.1), 0.02, 0.02, np.radians(0.05)])
 JOLT = np.array([1e-3, 1e-3, 1e-4])
 TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
-ROLES = {"north": "m", "east": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
+ROLES = {
+    "north": "m",
+    "east": "m",
+    "heading": "deg",
+    "surge": "m/s",
+    "sway": "m/s",
+    "yaw_rate": "deg/s",
+}
 WIND = 9.0, 2.0  # m/s, rad it comes from, before gusts
 
 PLANTED = {
@@ -56,7 +63,9 @@ def seen(run, ship, rows, errors=None):
     """
     motion = [run[f"{ship}.{name}"].values[rows] for name in ("x", "y", "psi", "u", "v", "r")]
     motion[2] = np.unwrap(motion[2])
-    given = {"heading_bias": 0.0, "lever_x": 0.0, "lever_y": 0.0, "velocity_scale": 1.0} | (errors or {})
+    given = {"heading_bias": 0.0, "lever_x": 0.0, "lever_y": 0.0, "velocity_scale": 1.0} | (
+        errors or {}
+    )
     found = np.stack(instruments.readings(*motion, **given))
     found[2] = motion[2] + given["heading_bias"]
     return found
@@ -84,8 +93,14 @@ def commands(time, seed=0):
 
     a, b, c = random.uniform(0.0, 40.0, 3)
     return {
-        "port": (held([110.0, 60.0, -80.0, 90.0, 40.0], 45.0, a), held([0.2, -0.9, 0.3, 1.1], 70.0, b)),
-        "starboard": (held([90.0, -60.0, 100.0, 50.0], 55.0, b), held([-0.3, 0.8, -1.0, 0.1, 0.5], 60.0, c)),
+        "port": (
+            held([110.0, 60.0, -80.0, 90.0, 40.0], 45.0, a),
+            held([0.2, -0.9, 0.3, 1.1], 70.0, b),
+        ),
+        "starboard": (
+            held([90.0, -60.0, 100.0, 50.0], 55.0, b),
+            held([-0.3, 0.8, -1.0, 0.1, 0.5], 60.0, c),
+        ),
         "tunnel": (held([700.0, -900.0, 300.0, -500.0, 1000.0], 50.0, c), np.zeros(time.size)),
     }
 
@@ -110,7 +125,10 @@ def sailed(problems, minutes=6.0, seed=0, push=None):
     random, m = np.random.default_rng(seed), len(problems)
     paths = {path for values in problems.values() for path in values}
     ship = model(minutes).with_values(
-        {path: np.array([values.get(path, model().get(path)) for values in problems.values()]) for path in paths}
+        {
+            path: np.array([values.get(path, model().get(path)) for values in problems.values()])
+            for path in paths
+        }
     )
     time = np.arange(0.0, 60.0 * minutes + FINE / 2, FINE)
     units = commands(time, seed)
@@ -120,17 +138,31 @@ def sailed(problems, minutes=6.0, seed=0, push=None):
     jolts = random.standard_normal((time.size, 3, 1)) * (JOLT * np.sqrt(FINE))[:, None]
     motion, rows, winds = Motion(*np.zeros((6, m))), [], []
     for k, t in enumerate(time):
-        wind = apparent_wind(motion.psi, motion.u, motion.v, -speed[k] * np.cos(from_[k]), -speed[k] * np.sin(from_[k]))
+        wind = apparent_wind(
+            motion.psi,
+            motion.u,
+            motion.v,
+            -speed[k] * np.cos(from_[k]),
+            -speed[k] * np.sin(from_[k]),
+        )
         rows.append(np.stack(motion))
         winds.append(np.stack(wind))
-        inputs = Inputs(t, {name: (n[k] / 60.0, azimuth[k]) for name, (n, azimuth) in units.items()}, *wind)
+        inputs = Inputs(
+            t, {name: (n[k] / 60.0, azimuth[k]) for name, (n, azimuth) in units.items()}, *wind
+        )
         extra = push(t) if push else (0.0, 0.0, 0.0)
         first = motion_rates(motion, inputs, ship, extra)
-        middle = Motion(*(value + 0.5 * FINE * rate for value, rate in zip(motion, first, strict=True)))
+        middle = Motion(
+            *(value + 0.5 * FINE * rate for value, rate in zip(motion, first, strict=True))
+        )
         rates = motion_rates(middle, inputs, ship, extra)
         motion = Motion(*(value + FINE * rate for value, rate in zip(motion, rates, strict=True)))
-        motion = motion._replace(u=motion.u + jolts[k, 0], v=motion.v + jolts[k, 1], r=motion.r + jolts[k, 2])
-    seen = np.stack(readings(Motion(*np.moveaxis(np.stack(rows), 1, 0)), ship))[:, :: round(1 / FINE)]
+        motion = motion._replace(
+            u=motion.u + jolts[k, 0], v=motion.v + jolts[k, 1], r=motion.r + jolts[k, 2]
+        )
+    seen = np.stack(readings(Motion(*np.moveaxis(np.stack(rows), 1, 0)), ship))[
+        :, :: round(1 / FINE)
+    ]
     noise = WHITE[:, None] * random.standard_normal((6, seen.shape[1]))
     table = _table(time, seen + noise[..., None], np.stack(winds), units)
     return {name: table(i) for i, name in enumerate(problems)}
@@ -142,8 +174,14 @@ def _table(time, seen, winds, units):
     winds = (trailing[10:] - trailing[:-10])[::every] / 10.0  # a sensor that averages over 2.5 s
 
     def of(i):
-        values = [(role, scale * seen[j, :, i], unit, role) for j, ((role, unit), scale) in enumerate(_scaled())]
-        values += [("wind_speed", winds[:, 0, i], "m/s", ""), ("wind_from", np.degrees(winds[:, 1, i]), "deg", "")]
+        values = [
+            (role, scale * seen[j, :, i], unit, role)
+            for j, ((role, unit), scale) in enumerate(_scaled())
+        ]
+        values += [
+            ("wind_speed", winds[:, 0, i], "m/s", ""),
+            ("wind_from", np.degrees(winds[:, 1, i]), "deg", ""),
+        ]
         for name, (n, azimuth) in units.items():
             values.append((f"{name}_rpm", n[::every], "rpm", ""))
             if name != "tunnel":

@@ -101,19 +101,34 @@ def log(minutes=20.0, seed=0, usv=None, rate=1.0, errors=None, current=(0.0, 0.0
     time, random = np.arange(0.0, 60.0 * minutes + STEP / 2, STEP), np.random.default_rng(seed)
     told, air = commands(time, seed), wind(time, seed + 1)
     columns = [(name, values, "rpm", "") for name, values in told.items()]
-    columns += [(f"wind_{axis}", values, "m/s", "") for axis, values in zip(("north", "east"), air, strict=True)]
     columns += [
-        (f"current_{a}", np.full(time.size, v), "m/s", "") for a, v in zip(("north", "east"), current, strict=True)
+        (f"wind_{axis}", values, "m/s", "")
+        for axis, values in zip(("north", "east"), air, strict=True)
     ]
-    run = sc.simulate(usv or structure(), stop_time=float(time[-1]), step_size=STEP, inputs=make_table(time, columns))
+    columns += [
+        (f"current_{a}", np.full(time.size, v), "m/s", "")
+        for a, v in zip(("north", "east"), current, strict=True)
+    ]
+    run = sc.simulate(
+        usv or structure(),
+        stop_time=float(time[-1]),
+        step_size=STEP,
+        inputs=make_table(time, columns),
+    )
     rows = slice(None, None, round(rate / STEP))
     seen = twin.seen(run, "hull", rows, errors)
     seen = seen + boat.WHITE[:, None] * random.standard_normal(seen.shape)
     slow = gaussian_filter1d(random.standard_normal((2, seen.shape[1])), 100.0 / rate)
     seen[:2] += 0.1 * slow / slow.std(axis=1, keepdims=True)
-    listed = [(r, k * v, u, "") for (r, u), k, v in zip(twin.ROLES.items(), twin.TO_LOG, seen, strict=True)]
+    listed = [
+        (r, k * v, u, "")
+        for (r, u), k, v in zip(twin.ROLES.items(), twin.TO_LOG, seen, strict=True)
+    ]
     listed += [(name, values[rows], "rpm", "") for name, values in told.items()]
-    for role, unit, scale, sure in (("speed", "m/s", 1.0, 0.2), ("from", "deg", 180.0 / np.pi, 2.0)):
+    for role, unit, scale, sure in (
+        ("speed", "m/s", 1.0, 0.2),
+        ("from", "deg", 180.0 / np.pi, 2.0),
+    ):
         air = scale * run[f"hull.apparent_wind_{role}"].values[rows]
         listed.append((f"wind_{role}", air + sure * random.standard_normal(air.size), unit, ""))
     return make_table(run["time"].values[rows], listed)

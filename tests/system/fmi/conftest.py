@@ -89,7 +89,9 @@ class Host:
         )
         self.callbacks = fmi2CallbackFunctions()
         self.callbacks.logger = fmi2CallbackLoggerTYPE(
-            lambda _, instance, status, category, message: self.messages.append((status, message.decode()))
+            lambda _, instance, status, category, message: self.messages.append(
+                (status, message.decode())
+            )
         )
         self.callbacks.allocateMemory, self.callbacks.freeMemory = (
             defaultCallbacks.allocateMemory,
@@ -134,7 +136,9 @@ def compiled(tmp_path_factory, needs):
         compiler = shutil.which("cc") or shutil.which("gcc") or needs("a C compiler")
         target = tmp_path_factory.mktemp("program") / Path(source).stem
         source = Path(__file__).with_name(source)
-        subprocess.run([compiler, "-std=gnu11", "-w", "-o", target, source, "-ldl", "-lpthread"], check=True)
+        subprocess.run(
+            [compiler, "-std=gnu11", "-w", "-o", target, source, "-ldl", "-lpthread"], check=True
+        )
         return target
 
     return compiled

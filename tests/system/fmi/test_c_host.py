@@ -19,7 +19,11 @@ from shipcosim.native.export.packing import build_native_fmu
 from shipcosim.series import read_table
 from shipcosim.ssp import read_system
 
-FMUS = sorted(path.stem for path in Path(__file__).parents[3].glob("fmus/*/*.py") if path.stem == path.parent.name)
+FMUS = sorted(
+    path.stem
+    for path in Path(__file__).parents[3].glob("fmus/*/*.py")
+    if path.stem == path.parent.name
+)
 
 NATIVE = (
     "allocator azimuth_thruster dp_controller dp_predictor drift_force earth_force environment fixed_thruster harbour "
@@ -47,7 +51,12 @@ class Loaded:
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
         self.name, self.folder = name, folder
         identifier = self.description.coSimulation.modelIdentifier
-        self.load = [name, str(folder / f"binaries/linux64/{identifier}.so"), self.description.guid, folder.as_uri()]
+        self.load = [
+            name,
+            str(folder / f"binaries/linux64/{identifier}.so"),
+            self.description.guid,
+            folder.as_uri(),
+        ]
         self.load[-1] += "/resources"
 
     def set(self, **values):
@@ -58,7 +67,12 @@ class Loaded:
 
     def get(self, *names):
         for name in names:
-            yield "get", self.name, self.variables[name].type, str(self.variables[name].valueReference)
+            yield (
+                "get",
+                self.name,
+                self.variables[name].type,
+                str(self.variables[name].valueReference),
+            )
 
     def steps(self, count, *names, first=0, h=0.1):
         """Steps, each followed by reading variables."""
@@ -156,7 +170,9 @@ class Reference:
     def rows(self, first, last):
         for row in range(first, last):
             yield from self._set(row - 1)
-            yield from self.fmu.then("step", self.times[row - 1], self.times[row] - self.times[row - 1])
+            yield from self.fmu.then(
+                "step", self.times[row - 1], self.times[row] - self.times[row - 1]
+            )
             yield from self.fmu.get(*self.outputs)
 
     def check(self, lines):
@@ -184,7 +200,9 @@ def test_every_fmu_of_the_project_gives_its_reference_result(name, root, loaded,
 
 
 @pytest.mark.parametrize("name", NATIVE_IN_CI)
-def test_a_native_fmu_gives_the_reference_result_where_there_is_no_python(name, root, loaded, host, native):
+def test_a_native_fmu_gives_the_reference_result_where_there_is_no_python(
+    name, root, loaded, host, native
+):
     check_native(name, loaded(native(name)), root, host)
 
 
@@ -197,7 +215,9 @@ def check_native(name, fmu, root, host):
     assert found == "maps 0"
 
 
-def test_a_state_of_a_native_fmu_goes_on_in_another_process_bit_for_bit(root, loaded, host, tmp_path, native):
+def test_a_state_of_a_native_fmu_goes_on_in_another_process_bit_for_bit(
+    root, loaded, host, tmp_path, native
+):
     check_state("reference", loaded(native("reference")), root, host, tmp_path)
 
 
@@ -206,21 +226,36 @@ def check_state(name, fmu, root, host, tmp_path):
     reference, file = Reference(name, fmu, root), tmp_path / "state"
     half, end = len(reference.times) // 2, len(reference.times)
     save = fmu.then("save", file)
-    whole = host(reference.start(), reference.rows(1, half), save, reference.rows(half, end), fmus=[fmu])
+    whole = host(
+        reference.start(), reference.rows(1, half), save, reference.rows(half, end), fmus=[fmu]
+    )
     begin = fmu.set(**reference.parameters), fmu.then("begin"), fmu.then("restore", file)
     rest = host(*begin, reference.rows(half, end), fmus=[fmu])[1:]
     assert len(rest) == (end - half) * len(reference.outputs) and rest == whole[-len(rest) :]
 
 
-def test_states_of_a_native_fmu_and_of_the_one_in_python_are_told_apart(root, loaded, host, tmp_path, native):
-    ours, python = loaded(native("reference"), "ours"), loaded(build_stale(root) / "reference.fmu", "python")
+def test_states_of_a_native_fmu_and_of_the_one_in_python_are_told_apart(
+    root, loaded, host, tmp_path, native
+):
+    ours, python = (
+        loaded(native("reference"), "ours"),
+        loaded(build_stale(root) / "reference.fmu", "python"),
+    )
     reference = Reference("reference", ours, root)
-    for first, second, words in ((ours, python, "reference_"), (python, ours, "native reference {")):
+    for first, second, words in (
+        (ours, python, "reference_"),
+        (python, ours, "native reference {"),
+    ):
         file = tmp_path / f"{words.strip('{ ')}.state"
-        begin = {fmu: (fmu.set(**reference.parameters), fmu.then("begin")) for fmu in (first, second)}
+        begin = {
+            fmu: (fmu.set(**reference.parameters), fmu.then("begin")) for fmu in (first, second)
+        }
         host(*begin[first], first.then("save", file), fmus=[first])
         log = " ".join(host(*begin[second], second.then("restore", file), fmus=[second]))
-        assert "the state cannot be restored: this is a state of '" in log and f"wanted is one of '{words}" in log
+        assert (
+            "the state cannot be restored: this is a state of '" in log
+            and f"wanted is one of '{words}" in log
+        )
 
 
 def test_native_instances_keep_to_themselves(root, loaded, host, native):
@@ -228,14 +263,18 @@ def test_native_instances_keep_to_themselves(root, loaded, host, native):
     one, two = loaded(native("reference"), "one"), loaded(native("reference"), "two")
 
     def run(fmu, goal):
-        yield from fmu.set(**Reference("reference", fmu, root).parameters | {"x_start": 1.0, "x_set": goal})
+        yield from fmu.set(
+            **Reference("reference", fmu, root).parameters | {"x_start": 1.0, "x_set": goal}
+        )
         yield from fmu.then("begin")
         yield from fmu.steps(30, "x_d", h=1.0)
 
     turns = [line for pair in zip(run(one, 50.0), run(two, -20.0), strict=True) for line in pair]
     alone = host(run(one, 50.0), fmus=[one])[1:], host(run(two, -20.0), fmus=[two])[1:]
     together = host(turns, fmus=[one, two])[2:]
-    assert (together[::2], together[1::2]) == alone and float(together[-1]) < 0.0 < float(together[-2])
+    assert (together[::2], together[1::2]) == alone and float(together[-1]) < 0.0 < float(
+        together[-2]
+    )
 
 
 def test_a_state_of_an_fmu_goes_on_in_another_process_bit_for_bit(root, loaded, host, tmp_path):
@@ -274,15 +313,30 @@ class Talker(Fmu):
 """
     fmu = loaded(build("talker", script))
     steps = [list(fmu.steps(1, first=k, h=1.0)) for k in range(4)]
-    lines = host(fmu.then("begin"), steps[0], fmu.then("log", 1), steps[1], fmu.then("log", 0), *steps[2:], fmus=[fmu])
+    lines = host(
+        fmu.then("begin"),
+        steps[0],
+        fmu.then("log", 1),
+        steps[1],
+        fmu.then("log", 0),
+        *steps[2:],
+        fmus=[fmu],
+    )
     assert [line.partition("t = ")[2] for line in lines[1:]] == ["1 s: step 2", "2 s: soon"]
 
 
 def test_names_of_folders_do_not_depend_on_the_hosts_locale(lag, host, tmp_path):
     fmu = Loaded(lag, tmp_path / "sj\u00f8 \u6d77", "one")
     fmu.load[3] = f"file://{fmu.folder}/resources"
-    assert host(fmu.then("begin"), fmu.steps(2, "steps"), fmus=[fmu]) == ["one instantiated", "1", "2"]
-    assert host(fmu.then("begin"), fmu.steps(1, "steps"), fmus=[fmu], LC_ALL="C") == ["one instantiated", "1"]
+    assert host(fmu.then("begin"), fmu.steps(2, "steps"), fmus=[fmu]) == [
+        "one instantiated",
+        "1",
+        "2",
+    ]
+    assert host(fmu.then("begin"), fmu.steps(1, "steps"), fmus=[fmu], LC_ALL="C") == [
+        "one instantiated",
+        "1",
+    ]
 
 
 def test_what_an_fmu_prints_is_not_lost(build, loaded, host):
@@ -303,13 +357,21 @@ class Talker(Fmu):
 def test_the_commands_of_the_page_run(root, program, only_numpy, tmp_path, needs):
     """In a folder in which the project's own are found; what they build goes elsewhere."""
     text = (root / "docs" / "portable-fmus.md").read_text(encoding="utf-8")
-    commands = next(block for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL) if "step_thruster" in block)
+    commands = next(
+        block
+        for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL)
+        if "step_thruster" in block
+    )
     (tmp_path / "docs").symlink_to(root / "docs")
     (tmp_path / "build").mkdir()
     (tmp_path / "build" / "fmus").symlink_to(build_stale(root))
     path = f"{only_numpy}{os.pathsep}{os.environ['PATH']}"
     done = subprocess.run(
-        ["sh", "-ec", commands], cwd=tmp_path, capture_output=True, text=True, env=os.environ | {"PATH": path}
+        ["sh", "-ec", commands],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PATH": path},
     )
     assert (done.returncode, done.stdout) == (0, "20000 N\n"), done.stderr
 
@@ -337,14 +399,24 @@ class Asks(Fmu):
 """
     fmu = loaded(build("asks", script))
     expected = ["one instantiated", str(only_numpy.parent), "numpy"]
-    named = [{"path": "/nowhere", "SHIPCOSIM_PYTHON": str(only_numpy / "python")}, {"SHIPCOSIM_PYTHON": "python"}]
+    named = [
+        {"path": "/nowhere", "SHIPCOSIM_PYTHON": str(only_numpy / "python")},
+        {"SHIPCOSIM_PYTHON": "python"},
+    ]
     for where in ({}, *named):
-        assert host(fmu.then("begin"), fmu.steps(1, "prefix", "found"), fmus=[fmu], **where) == expected
+        assert (
+            host(fmu.then("begin"), fmu.steps(1, "prefix", "found"), fmus=[fmu], **where)
+            == expected
+        )
 
 
-def test_where_there_is_no_python_the_logger_says_so_and_there_is_no_instance(lag, loaded, host, tmp_path):
+def test_where_there_is_no_python_the_logger_says_so_and_there_is_no_instance(
+    lag, loaded, host, tmp_path
+):
     said = refusal(host(fmus=[loaded(lag)], path=tmp_path))
-    assert said.startswith("there is no Python for this FMU. It needs Python 3.11 or newer, with NumPy")
+    assert said.startswith(
+        "there is no Python for this FMU. It needs Python 3.11 or newer, with NumPy"
+    )
     assert "nothing, there is no python3 in it" in said and "SHIPCOSIM_PYTHON" in said
 
 
@@ -353,13 +425,18 @@ def test_where_there_is_no_python_the_logger_says_so_and_there_is_no_instance(la
     [
         ("shipcosim 3.10 /p /lib.so NumPy -", "is Python 3.10, which is too old"),
         ("shipcosim 3.12 /p /lib.so - -", "is Python 3.12 without NumPy"),
-        ("shipcosim 3.12 /p - NumPy -", "is Python 3.12 without a shared library (Debian: package libpython3.12"),
+        (
+            "shipcosim 3.12 /p - NumPy -",
+            "is Python 3.12 without a shared library (Debian: package libpython3.12",
+        ),
         ("shipcosim 3.13 /p /lib.so NumPy t", "is Python 3.13 without a global lock"),
         ("Python 2.7", "does not answer as Python 3 does"),
         ("", "does not answer as Python 3 does"),
     ],
 )
-def test_a_python_that_cannot_do_it_is_named_with_the_reason(lag, loaded, host, tmp_path, answer, why):
+def test_a_python_that_cannot_do_it_is_named_with_the_reason(
+    lag, loaded, host, tmp_path, answer, why
+):
     """From PATH, and where the user has named it: then it is the only one that is tried."""
     lines = "".join(f"{word.strip('-')}\\n" for word in answer.split(" "))
     fake = tmp_path / "bin" / "python3"
@@ -367,14 +444,18 @@ def test_a_python_that_cannot_do_it_is_named_with_the_reason(lag, loaded, host, 
     fake.write_text(f"#!/bin/sh\nprintf '{lines}'\n")
     fake.chmod(0o755)
     assert f"|  {fake} {why}" in refusal(host(fmus=[loaded(lag)], path=fake.parent))
-    assert f" SHIPCOSIM_PYTHON names|  {fake} {why}" in refusal(host(fmus=[loaded(lag)], SHIPCOSIM_PYTHON=str(fake)))
+    assert f" SHIPCOSIM_PYTHON names|  {fake} {why}" in refusal(
+        host(fmus=[loaded(lag)], SHIPCOSIM_PYTHON=str(fake))
+    )
 
 
 def test_a_suitable_python_later_in_path_is_found(lag, loaded, host, tmp_path, only_numpy):
     fake = tmp_path / "python3"
     fake.write_text("#!/bin/sh\nexit 1\n")
     fake.chmod(0o755)
-    assert host(fmus=[loaded(lag)], path=f"{tmp_path}{os.pathsep}{only_numpy}") == ["one instantiated"]
+    assert host(fmus=[loaded(lag)], path=f"{tmp_path}{os.pathsep}{only_numpy}") == [
+        "one instantiated"
+    ]
 
 
 def test_a_library_that_is_none_of_python_does_no_harm(lag, loaded, host, tmp_path):
@@ -383,7 +464,9 @@ def test_a_library_that_is_none_of_python_does_no_harm(lag, loaded, host, tmp_pa
     fake = tmp_path / "python3"
     fake.write_text(f"#!/bin/sh\nprintf 'shipcosim\\n3.12\\n{fake}\\n{library}\\nNumPy\\n\\n'\n")
     fake.chmod(0o755)
-    assert f"the library of {fake} cannot be loaded: {library}:" in refusal(host(fmus=[loaded(lag)], path=tmp_path))
+    assert f"the library of {fake} cannot be loaded: {library}:" in refusal(
+        host(fmus=[loaded(lag)], path=tmp_path)
+    )
 
 
 @pytest.mark.parametrize("started", ["0", "1"])
@@ -394,7 +477,11 @@ def test_python_that_the_host_has_for_itself_alone_is_used(lag, loaded, host, st
     path = {"0": {}, "1": {"PYTHONPATH": str(packages), "path": "/nowhere"}}[started]
     fmu = loaded(lag)
     lines = host(
-        fmu.then("begin"), fmu.steps(2, "steps"), before=[["python", str(library), started]], fmus=[fmu], **path
+        fmu.then("begin"),
+        fmu.steps(2, "steps"),
+        before=[["python", str(library), started]],
+        fmus=[fmu],
+        **path,
     )
     assert lines == ["one instantiated", "1", "2"]
 
@@ -408,19 +495,39 @@ def test_an_fmu_whose_other_binary_is_missing_says_so(lag, loaded, host):
 # several in one process
 
 
-@pytest.mark.parametrize("before", [[], [["global"]]], ids=["each for itself", "for everybody's use"])
+@pytest.mark.parametrize(
+    "before", [[], [["global"]]], ids=["each for itself", "for everybody's use"]
+)
 def test_many_fmus_side_by_side_have_their_own_code_and_state(build, sources, loaded, host, before):
     """Two versions of one FMU, two FMUs with a module of the same name, instances of one; stepped in turns."""
     script = sources.adder.format(module="amounts", name="Adder")
     fmus = [
-        loaded(build("adder", script, out=f"out{amount}", amounts=f"def amount():\n    return {amount}.0\n"), name)
+        loaded(
+            build(
+                "adder",
+                script,
+                out=f"out{amount}",
+                amounts=f"def amount():\n    return {amount}.0\n",
+            ),
+            name,
+        )
         for name, amount in (("one", 1), ("two", 2), ("again", 1))
     ]
     fmus.append(loaded(build("other", script, amounts="def amount():\n    return 4.0\n"), "four"))
     starts = [line for fmu in fmus for line in fmu.then("begin")]
-    turns = [line for k in range(3) for fmu in fmus for line in fmu.steps(1 + (fmu.name == "again"), "total", first=k)]
+    turns = [
+        line
+        for k in range(3)
+        for fmu in fmus
+        for line in fmu.steps(1 + (fmu.name == "again"), "total", first=k)
+    ]
     lines = host(
-        starts, turns, *(fmu.then("free") for fmu in fmus[:2]), fmus[2].steps(1, "total"), fmus=fmus, before=before
+        starts,
+        turns,
+        *(fmu.then("free") for fmu in fmus[:2]),
+        fmus[2].steps(1, "total"),
+        fmus=fmus,
+        before=before,
     )
     values = list(map(float, lines[4:]))
     assert sorted(lines[:4]) == sorted(f"{fmu.name} instantiated" for fmu in fmus)
@@ -443,7 +550,10 @@ class Adder(Fmu):
     for version in (1, 2):
         own_shipcosim(f"v{version}", amounts=f"def amount():\n    return {version}.0\n")
         fmus.append(loaded(build("adder", script, out=f"out{version}"), f"v{version}"))
-    starts, turns = (fmu.then("begin") for fmu in fmus), (fmu.steps(1, "total") for fmu in (*fmus, *fmus))
+    starts, turns = (
+        (fmu.then("begin") for fmu in fmus),
+        (fmu.steps(1, "total") for fmu in (*fmus, *fmus)),
+    )
     assert host(*starts, *turns, fmus=fmus)[2:] == ["1", "2", "2", "4"]
 
 
@@ -458,7 +568,9 @@ def test_fmus_may_be_loaded_by_many_threads_at_once(lag, build, sources, loaded,
 
 def test_an_fmu_is_loaded_again_after_it_was_freed(lag, loaded, host):
     one, same = loaded(lag, "one"), loaded(lag, "same")
-    lines = host(one.then("begin"), one.then("free"), [["load", *same.load]], same.then("begin"), fmus=[one])
+    lines = host(
+        one.then("begin"), one.then("free"), [["load", *same.load]], same.then("begin"), fmus=[one]
+    )
     assert lines == ["one instantiated", "same instantiated"]
 
 
@@ -466,10 +578,21 @@ def test_the_whole_dp_ship_as_one_fmu_gives_the_digits_that_fmpy_gets(root, load
     """Ten components in one block, two of them instances of one FMU."""
     ship = read_system(root / "ssp" / "gunnerus_dp", fmus=[build_stale(root)])
     export_fmu(ship, tmp_path / "ship.fmu", step_size=0.05, check=False)
-    signals, fmu = ["vessel.x", "vessel.psi", "port.thrust", "predictor.x_10"], loaded(tmp_path / "ship.fmu")
-    rows = simulate_fmu(str(tmp_path / "ship.fmu"), stop_time=2.0, step_size=0.05, output_interval=0.05, output=signals)
+    signals, fmu = (
+        ["vessel.x", "vessel.psi", "port.thrust", "predictor.x_10"],
+        loaded(tmp_path / "ship.fmu"),
+    )
+    rows = simulate_fmu(
+        str(tmp_path / "ship.fmu"),
+        stop_time=2.0,
+        step_size=0.05,
+        output_interval=0.05,
+        output=signals,
+    )
     lines = host(fmu.then("begin"), fmu.steps(40, h=0.05), fmu.get(*signals), fmus=[fmu])
-    assert [float(line) for line in lines if not line.startswith(("log", "one"))] == list(rows[-1])[1:]
+    assert [float(line) for line in lines if not line.startswith(("log", "one"))] == list(rows[-1])[
+        1:
+    ]
 
 
 # state
@@ -481,7 +604,9 @@ def test_a_state_goes_to_another_process_bit_for_bit(lag, loaded, host, load, tm
     start = [*fmu.set(value_in=1.0), *fmu.then("begin"), *fmu.steps(5)]
     whole = host(start, fmu.then("save", file), fmu.steps(20, "value", first=5), fmus=[fmu])[1:]
     assert len(whole) == 20 == len(set(whole))
-    again = host(fmu.then("begin"), fmu.then("restore", file), fmu.steps(20, "value", first=5), fmus=[fmu])[1:]
+    again = host(
+        fmu.then("begin"), fmu.then("restore", file), fmu.steps(20, "value", first=5), fmus=[fmu]
+    )[1:]
     assert again == whole
     python = load(lag).start()
     python.slave.setFMUstate(python.slave.deSerializeFMUstate(file.read_bytes()))
@@ -490,6 +615,10 @@ def test_a_state_goes_to_another_process_bit_for_bit(lag, loaded, host, load, tm
 
 def test_rolled_back_and_repeated_it_gives_the_same_bits(lag, loaded, host, tmp_path):
     fmu, file = loaded(lag), tmp_path / "state"
-    again = [line for _ in range(2) for line in (*fmu.then("restore", file), *fmu.steps(9, "value", first=1))]
+    again = [
+        line
+        for _ in range(2)
+        for line in (*fmu.then("restore", file), *fmu.steps(9, "value", first=1))
+    ]
     lines = host(fmu.then("begin"), fmu.steps(1), fmu.then("save", file), again, fmus=[fmu])[1:]
     assert lines[:9] == lines[9:] and len(set(lines)) == 9

@@ -79,7 +79,9 @@ def test_the_start_is_computed_again_where_a_value_has_changed_and_only_there():
         ship.set_real([4], [mass])
         assert ship.get_real([2]) == [force / mass]
     ship.exit_initialization_mode()
-    assert [hull.mass for hull in hulls] == [5e5, 5e5, 5e5, 1e6] and hulls[0] is hulls[1] is hulls[2]
+    assert [hull.mass for hull in hulls] == [5e5, 5e5, 5e5, 1e6] and hulls[0] is hulls[1] is hulls[
+        2
+    ]
 
 
 def test_two_objects_share_no_value():
@@ -92,7 +94,9 @@ def test_subclasses_inherit_variables_and_may_change_a_start_value():
     class Tug(Ship):
         limit = Parameter(5.0, "m/s", "largest speed")
 
-    assert [variable.name for variable in Tug.variables] == [variable.name for variable in Ship.variables]
+    assert [variable.name for variable in Tug.variables] == [
+        variable.name for variable in Ship.variables
+    ]
     assert Tug().limit == 5.0 and Ship().limit == 10.0
 
 
@@ -123,13 +127,19 @@ def test_bounds_of_parameters_hold_at_initialisation():
     with pytest.raises(FmuError) as caught:
         ship.exit_initialization_mode()
     text = str(caught.value)
-    assert "port" in text and "'limit' is 30, above its maximum 20 [m/s]" in text and "'mass' is 0, below" in text
+    assert (
+        "port" in text
+        and "'limit' is 30, above its maximum 20 [m/s]" in text
+        and "'mass' is 0, below" in text
+    )
 
 
 def test_messages_are_printf_formats_that_name_the_component():
     ship = Ship("port")
     ship.log("half of 100 %", "warning")
-    assert ship.messages[0].msg == "port at t = 0 s: half of 100 %%" and ship.messages[0].status == 1
+    assert (
+        ship.messages[0].msg == "port at t = 0 s: half of 100 %%" and ship.messages[0].status == 1
+    )
 
 
 @pytest.mark.parametrize("value", [None, "fast", math.inf])
@@ -208,7 +218,8 @@ def test_what_describes_a_ship_starts_at_a_value_that_is_none_within_its_bounds(
 def test_an_fmu_refuses_to_start_and_names_all_that_was_left_out():
     screw = Screw("port")
     with pytest.raises(
-        FmuError, match=r"port at t = 0 s: parameters left out.*: speed \[rpm\], diameter \[m\], astern \[N\], curve\."
+        FmuError,
+        match=r"port at t = 0 s: parameters left out.*: speed \[rpm\], diameter \[m\], astern \[N\], curve\.",
     ):
         screw.enter_initialization_mode()
         screw.exit_initialization_mode()

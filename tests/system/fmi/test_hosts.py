@@ -16,7 +16,9 @@ from shipcosim.library import build_stale
 def run(*code, path):
     """Run Python that finds only what is in a folder, without site packages and environment."""
     text = "\n".join([f"import sys; sys.path.append({str(path)!r})", *map(textwrap.dedent, code)])
-    done = subprocess.run([sys.executable, "-I", "-S", "-c", text], capture_output=True, text=True, timeout=600)
+    done = subprocess.run(
+        [sys.executable, "-I", "-S", "-c", text], capture_output=True, text=True, timeout=600
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -75,7 +77,9 @@ def test_a_fork_at_time_t_goes_on_bit_for_bit(lag, load):
     host.slave.freeFMUstate(state)
 
 
-def test_a_state_moves_to_another_instance_and_to_another_process(lag, load, bare_packages, tmp_path):
+def test_a_state_moves_to_another_instance_and_to_another_process(
+    lag, load, bare_packages, tmp_path
+):
     host = load(lag, "one").start(value_in=1.0)
     host.step(5)
     state = host.slave.getFMUstate()
@@ -167,7 +171,9 @@ def test_an_exception_reaches_the_user_with_traceback_component_and_time(lag, lo
     with pytest.raises(FMICallException):
         host.slave.doStep(1.5, 0.1)
     status, text = host.messages[-1]
-    line = 1 + next(number for number, line in enumerate(sources.lag.splitlines()) if "raise" in line)
+    line = 1 + next(
+        number for number, line in enumerate(sources.lag.splitlines()) if "raise" in line
+    )
     assert status >= 3
     assert "port at t = 1.5 s: exception" in text and "100 % sure" in text
     assert f'File "lag.py", line {line}, in step\n    raise RuntimeError("100 %s broken")' in text
@@ -336,7 +342,9 @@ def given_to(names, root):
 def test_all_fmus_of_the_project_run_with_python_numpy_and_fmpy_alone(root, bare_packages):
     """For 10 s each, through FMPy's own master; nothing else of what is installed here can be found."""
     fmus = build_stale(root)
-    names = sorted(path.parent.name for path in (root / "fmus").glob("*/*.py") if path.stem == path.parent.name)
+    names = sorted(
+        path.parent.name for path in (root / "fmus").glob("*/*.py") if path.stem == path.parent.name
+    )
     printed = run(
         f"names, folder, given = {names!r}, {str(fmus)!r}, {given_to(names, root)!r}",
         """

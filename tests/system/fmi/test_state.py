@@ -29,7 +29,12 @@ def there_and_back(content):
 
 
 def test_plain_data_arrays_and_own_classes_come_back():
-    content = {"a": (1, 2.5, True, None, b"x", 1j), "b": {1, 2}, "c": deque([1], maxlen=3), "d": Own(1.5)}
+    content = {
+        "a": (1, 2.5, True, None, b"x", 1j),
+        "b": {1, 2},
+        "c": deque([1], maxlen=3),
+        "d": Own(1.5),
+    }
     assert there_and_back(content) == content
     array = there_and_back(np.arange(6.0).reshape(2, 3)[:, ::2])
     assert np.array_equal(array, [[0, 2], [3, 5]]) and array.dtype == float

@@ -13,7 +13,9 @@ from shipcosim.library import build_stale
 from shipcosim.series import read_table
 
 ROOT = Path(__file__).parents[3]
-FMUS = sorted(folder.name for folder in (ROOT / "fmus").iterdir() if (folder / f"{folder.name}.py").is_file())
+FMUS = sorted(
+    folder.name for folder in (ROOT / "fmus").iterdir() if (folder / f"{folder.name}.py").is_file()
+)
 SETTERS = {"Real": "setReal", "Integer": "setInteger", "Boolean": "setBoolean"}
 GETTERS = {"Real": "getReal", "Integer": "getInteger", "Boolean": "getBoolean"}
 
@@ -46,7 +48,9 @@ def test_every_real_variable_has_a_unit_and_every_variable_a_description(name, f
 
 @pytest.mark.parametrize("name", FMUS)
 def test_readme_lists_the_variables_of_the_fmu(name, documents):
-    assert (ROOT / "fmus" / name / "README.md").read_text(encoding="utf-8") == documents.readme(name)
+    assert (ROOT / "fmus" / name / "README.md").read_text(encoding="utf-8") == documents.readme(
+        name
+    )
 
 
 @pytest.mark.parametrize("name", FMUS)
@@ -89,7 +93,9 @@ def _stepped(fmu, variables, reference):
     for row, time in enumerate(times):
         for v in inputs:
             value = reference[v.name].values[max(row - 1, 0)]
-            getattr(fmu, SETTERS[v.type])([v.valueReference], [float(value) if v.type == "Real" else int(value)])
+            getattr(fmu, SETTERS[v.type])(
+                [v.valueReference], [float(value) if v.type == "Real" else int(value)]
+            )
         if row == 0:
             fmu.exitInitializationMode()
         else:

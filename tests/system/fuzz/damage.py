@@ -111,13 +111,27 @@ def spliced(rng, data):
     """A piece of it taken out, doubled, or put elsewhere."""
     a, b = sorted(rng.randrange(len(data) + 1) for _ in range(2))
     where = rng.randrange(len(data) + 1)
-    return rng.choice((data[:a] + data[b:], data[:b] + data[a:], data[:where] + data[a:b] + data[where:]))
+    return rng.choice(
+        (data[:a] + data[b:], data[:b] + data[a:], data[:where] + data[a:b] + data[where:])
+    )
 
 
 def inserted(rng, data):
     where = rng.randrange(len(data) + 1)
     what = rng.choice(
-        (b"\x00", b"\xff\xfe", b"\xc3\x28", b"\xed\xa0\x80", b"&#0;", b"&x;", b"<", b">", b'"', b"<!--", b"<![CDATA[")
+        (
+            b"\x00",
+            b"\xff\xfe",
+            b"\xc3\x28",
+            b"\xed\xa0\x80",
+            b"&#0;",
+            b"&x;",
+            b"<",
+            b">",
+            b'"',
+            b"<!--",
+            b"<![CDATA[",
+        )
     )
     return data[:where] + what + data[where:]
 
@@ -132,7 +146,9 @@ def encoded(rng, data):
 
 
 def emptied(rng, data):
-    return rng.choice((b"", b"\n", b"\x00" * 1000, b"<", b"<x/>", b"[]", b"{}", b"PK\x03\x04", data * 50))
+    return rng.choice(
+        (b"", b"\n", b"\x00" * 1000, b"<", b"<x/>", b"[]", b"{}", b"PK\x03\x04", data * 50)
+    )
 
 
 BYTES = (truncated, flipped, spliced, inserted, encoded, emptied)

@@ -51,14 +51,20 @@ def archive(rng, files):
         files = {
             name.replace(
                 "SystemStructure.ssd",
-                rng.choice(("systemstructure.ssd", "x/SystemStructure.ssd", "SystemStructure.ssd/")),
+                rng.choice(
+                    ("systemstructure.ssd", "x/SystemStructure.ssd", "SystemStructure.ssd/")
+                ),
             ): data
             for name, data in files.items()
         }
     elif how == 7:
         return rng.choice(BYTES)(rng, zipped(files))
     elif how == 8:
-        return b"#!/bin/sh\n" + zipped(files) + rng.choice((b"", b"trailing", b"PK\x05\x06" + b"\x00" * 18))
+        return (
+            b"#!/bin/sh\n"
+            + zipped(files)
+            + rng.choice((b"", b"trailing", b"PK\x05\x06" + b"\x00" * 18))
+        )
     elif how == 9:
         return _wrong_sizes(rng, zipped(files))
     else:
@@ -90,7 +96,9 @@ def _flagged(rng, files):
 
 def _with_bomb(rng, files):
     name = rng.choice((*files, "resources/zeros"))
-    data = io.BytesIO(zeros(name, rng.choice((1, 50, 50, 200)) if name in files else rng.choice((200, 1100))))
+    data = io.BytesIO(
+        zeros(name, rng.choice((1, 50, 50, 200)) if name in files else rng.choice((200, 1100)))
+    )
     with zipfile.ZipFile(data, "a", zipfile.ZIP_DEFLATED) as out:
         for other, content in files.items():
             if other != name:
@@ -102,7 +110,10 @@ def _with_bomb(rng, files):
 def zeros(name, size):
     """Bytes of an archive with one file of so many MiB of zeros."""
     data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as out, out.open(name, "w", force_zip64=True) as file:
+    with (
+        zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as out,
+        out.open(name, "w", force_zip64=True) as file,
+    ):
         for _ in range(size):
             file.write(bytes(1 << 20))
     return data.getvalue()

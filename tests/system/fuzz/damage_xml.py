@@ -23,7 +23,9 @@ def entities(rng, data):
     """With a document type and a reference to an entity."""
     head, _, body = data.partition(b"\n")
     doctype = rng.choice(DOCTYPES).encode()
-    body = body.replace(b'name="', b'name="&' + rng.choice((b"a", b"l", b"m", b"zz")) + b";", rng.choice((0, 1)))
+    body = body.replace(
+        b'name="', b'name="&' + rng.choice((b"a", b"l", b"m", b"zz")) + b";", rng.choice((0, 1))
+    )
     return head + b"\n" + doctype + body
 
 
@@ -86,7 +88,13 @@ def nested_systems(rng, data):
         return tree_changed(rng, data)
     start, end = data.index(marks[0]) + len(marks[0]), data.rindex(marks[1])
     opened = b"".join(b'<ssd:System name="s"><ssd:Elements>' for _ in range(depth))
-    return data[:start] + opened + b"</ssd:Elements></ssd:System>" * depth + data[start:end] + data[end:]
+    return (
+        data[:start]
+        + opened
+        + b"</ssd:Elements></ssd:System>" * depth
+        + data[start:end]
+        + data[end:]
+    )
 
 
 def many(rng, data):
@@ -102,7 +110,9 @@ def many(rng, data):
     child, count = rng.choice(list(parent)), rng.choice((100, 1000, 5000))
     renamed = rng.random() < 0.5
     for i in range(count):
-        copy = ElementTree.Element(child.tag, {**child.attrib, **({"name": f"n{i}"} if renamed else {})})
+        copy = ElementTree.Element(
+            child.tag, {**child.attrib, **({"name": f"n{i}"} if renamed else {})}
+        )
         copy.extend(list(child))
         parent.append(copy)
     return ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)

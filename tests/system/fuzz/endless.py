@@ -18,7 +18,10 @@ def endless_systems(rng):
 
 
 def _containing(inner):
-    parts = [f'<ssd:Component name="{n}" type="application/x-ssp-definition" source="{inner}"/>' for n in "ab"]
+    parts = [
+        f'<ssd:Component name="{n}" type="application/x-ssp-definition" source="{inner}"/>'
+        for n in "ab"
+    ]
     text = f"<ssd:Elements>{''.join(parts)}</ssd:Elements>" if inner else ""
     return f"{HEAD}{text}{TAIL}".encode()
 
@@ -42,5 +45,7 @@ def _forking(name, kind):
     connectors = "".join(f'<ssd:Connector name="{n}" kind="{kind}"/>' for n, kind in kinds.items())
     pairs = ("ac", "ad", "bc", "bd")
     links = "".join(f'<ssd:Connection startConnector="{a}" endConnector="{b}"/>' for a, b in pairs)
-    inside = f"<ssd:Connectors>{connectors}</ssd:Connectors><ssd:Connections>{links}</ssd:Connections>"
+    inside = (
+        f"<ssd:Connectors>{connectors}</ssd:Connectors><ssd:Connections>{links}</ssd:Connections>"
+    )
     return f'<ssd:System name="{name}">{inside}</ssd:System>'

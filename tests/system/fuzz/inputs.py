@@ -100,7 +100,10 @@ def _scenario(rng, name, data):
     """A scenario beside its system."""
     mutate = rng.choice(damage.TEXT)
     folder, files = "ssp/case/", dict(rng.choice(seeds()["ssp"])[1])
-    made = {f"scenarios/{name}": mutate(rng, data), **{folder + file: content for file, content in files.items()}}
+    made = {
+        f"scenarios/{name}": mutate(rng, data),
+        **{folder + file: content for file, content in files.items()},
+    }
     return made, mutate.__name__
 
 

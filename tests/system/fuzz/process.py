@@ -31,7 +31,9 @@ from shipcosim.series import read_columns
 
 LONGEST = 10.0  # s of processor time
 LARGEST = 2**30  # bytes
-LONGEST_TEXT = 100_000  # characters of all that is said about one input: more than that nobody reads
+LONGEST_TEXT = (
+    100_000  # characters of all that is said about one input: more than that nobody reads
+)
 ABSOLUTE = Path("/evil-from-archive")  # named by some archives
 
 
@@ -57,7 +59,11 @@ def main(seed, first, last, around):
             ended = f"took {took:.1f} s"
         if (written := _files(around) ^ before) or ABSOLUTE.exists():
             ended = f"wrote {[name for name, *_ in written][:3] or ABSOLUTE}"
-        print(json.dumps({"number": number, "how": how, "took": took, "ended": ended}), file=out, flush=True)
+        print(
+            json.dumps({"number": number, "how": how, "took": took, "ended": ended}),
+            file=out,
+            flush=True,
+        )
 
 
 def _empty(inside):
@@ -70,7 +76,9 @@ def _empty(inside):
 def _files(folder):
     """Names, sizes and times of all files but those that the program is told to write."""
     paths = [os.path.join(top, name) for top, _, names in os.walk(folder) for name in names]
-    looked = [(path, os.stat(path)) for path in paths if f"{os.sep}inside{os.sep}out{os.sep}" not in path]
+    looked = [
+        (path, os.stat(path)) for path in paths if f"{os.sep}inside{os.sep}out{os.sep}" not in path
+    ]
     return {(path, stat.st_size, stat.st_mtime_ns) for path, stat in looked}
 
 
@@ -104,7 +112,9 @@ def _ended(path, inside, is_sabotaged=True):
             problems += error.problems
         except BaseException as error:
             frames = traceback.extract_tb(error.__traceback__)
-            place = next((frame for frame in reversed(frames) if "shipcosim" in frame.filename), frames[-1])
+            place = next(
+                (frame for frame in reversed(frames) if "shipcosim" in frame.filename), frames[-1]
+            )
             what = f"{type(error).__name__} in {Path(place.filename).name}, line {place.lineno}: {str(error)[:200]}"
             return what, time.process_time() - start
         longest = max(longest, time.process_time() - start)

@@ -8,7 +8,15 @@ from pathlib import Path
 from conformance.cases import cases, documents
 from conformance.fmus import build_part, fmu_of
 
-CASES = ("ssm", "nested_parameters", "dictionary_file", "units", "other_ssd", "enumeration_mapping", "step_component")
+CASES = (
+    "ssm",
+    "nested_parameters",
+    "dictionary_file",
+    "units",
+    "other_ssd",
+    "enumeration_mapping",
+    "step_component",
+)
 """Conformance cases that have, together, most elements of the standard."""
 
 SCENARIO = """description = "Stationkeeping while the wind turns"
@@ -37,7 +45,9 @@ within = 1.0
 during = [1.0, 6.0]
 """
 HEADER = "time [s],north [m],east [m],heading [deg],surge [m/s],sway [m/s],yaw_rate [deg/s],wind_speed,port_rpm"
-ROWS = [f"{0.5 * i},{0.1 * i},-{0.2 * i},{i % 360},0.2,-0.1,2.0,8.5,{90 + i % 3}" for i in range(200)]
+ROWS = [
+    f"{0.5 * i},{0.1 * i},-{0.2 * i},{i % 360},0.2,-0.1,2.0,8.5,{90 + i % 3}" for i in range(200)
+]
 LOG = "\n".join([HEADER, *ROWS])
 OSP = """<?xml version="1.0" encoding="UTF-8"?>
 <OspSystemStructure xmlns="http://opensimulationplatform.com/MSMI/OSPSystemStructure" version="0.1">
@@ -91,7 +101,9 @@ def seeds():
         found["ssp"].append(("system.ssp", texts | fmus(case)))
         for file, text in texts.items():
             found[Path(file).suffix[1:]].append((Path(file).name, text))
-    found["fmu"] = [(f"{name}.fmu", zipped(contents(build_part(name)))) for name in ("ramp", "echo")]
+    found["fmu"] = [
+        (f"{name}.fmu", zipped(contents(build_part(name)))) for name in ("ramp", "echo")
+    ]
     found["toml"] = [("case.toml", SCENARIO.encode())]
     found["csv"] = [("log.csv", LOG.encode()), ("log.csv.gz", LOG.encode())]
     parts = {f"{name}.fmu": zipped(contents(build_part(name))) for name in ("ramp", "gain")}

@@ -38,7 +38,9 @@ def survive(seed, first, last):
 def _watch(seed, first, last, around, failures, counts):
     """Follow one process until it ends or is to be ended; the number of the input that comes next."""
     command = [sys.executable, str(PROCESS), str(seed), str(first), str(last), str(around)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
     beat, done = [time.monotonic()], threading.Event()
     threading.Thread(target=_end_if_silent, args=(process, beat, done), daemon=True).start()
     current = None
@@ -56,7 +58,11 @@ def _watch(seed, first, last, around, failures, counts):
     if process.wait() != 0:
         if current is None:
             raise RuntimeError(f"the process does not start: {' '.join(command)}")
-        what = "killed after no word for too long" if process.returncode == -9 else f"died ({process.returncode})"
+        what = (
+            "killed after no word for too long"
+            if process.returncode == -9
+            else f"died ({process.returncode})"
+        )
         failures.append({**current, "ended": what})
         return current["number"] + 1
     return last

@@ -61,10 +61,13 @@ def test_four_hundred_systems_whose_connectors_fork_and_join(tmp_path, kind, cir
 
 
 def test_a_set_bound_five_thousand_times(tmp_path):
-    name, files = next((n, f) for n, f in seeds()["ssp"] if b"ParameterBinding" in f["SystemStructure.ssd"])
+    name, files = next(
+        (n, f) for n, f in seeds()["ssp"] if b"ParameterBinding" in f["SystemStructure.ssd"]
+    )
     rng = random.Random(3)
     data = max(
-        (many(rng, files["SystemStructure.ssd"]) for _ in range(40)), key=lambda d: d.count(b"ParameterBinding ")
+        (many(rng, files["SystemStructure.ssd"]) for _ in range(40)),
+        key=lambda d: d.count(b"ParameterBinding "),
     )
     assert data.count(b"ParameterBinding ") >= 1000
     _, took = checked(tmp_path, {name: zipped(files | {"SystemStructure.ssd": data})})
@@ -75,7 +78,9 @@ def test_a_mapping_of_enumerations_without_a_source(tmp_path):
     files = next(f for _, f in seeds()["ssp"] if b"EnumerationMapping" in f["SystemStructure.ssd"])
     for version in ("1.0", "2.0"):
         data = files["SystemStructure.ssd"].replace(b'source="off" ', b"")
-        data = data.replace(b'Description version="1.0"', f'Description version="{version}"'.encode())
+        data = data.replace(
+            b'Description version="1.0"', f'Description version="{version}"'.encode()
+        )
         found, _ = checked(tmp_path, {"system.ssp": zipped(files | {"SystemStructure.ssd": data})})
         assert "The attribute 'source' is required but missing. Add it." in found
 
@@ -92,11 +97,15 @@ def test_an_archive_whose_directory_states_absurd_places_and_sizes(tmp_path, fie
 def test_a_log_of_few_rows(tmp_path, rows):
     text = "time,north,east,heading\n" + "".join(f"{i},0.0,0.0,{359 - i}\n" for i in range(rows))
     found, _ = checked(tmp_path, {"log.csv": text.encode()})
-    assert ("fewer than two" in found or "no row" in found or "empty" in found.lower()) == (rows < 2), found
+    assert ("fewer than two" in found or "no row" in found or "empty" in found.lower()) == (
+        rows < 2
+    ), found
 
 
 def test_a_log_whose_clock_jumps_to_the_end_of_time(tmp_path):
-    text = "time,north,east,heading\n" + "".join(f"{t},0.0,0.0,0\n" for t in (0, 1, 2, 3, 1e30, 5, -1e30))
+    text = "time,north,east,heading\n" + "".join(
+        f"{t},0.0,0.0,0\n" for t in (0, 1, 2, 3, 1e30, 5, -1e30)
+    )
     found, _ = checked(tmp_path, {"log.csv": text.encode()})
     assert "time: is 1e+30 s in row 6. Times are at most 1e+19 s" in found
 
@@ -121,12 +130,16 @@ def test_texts_that_a_reader_does_not_come_to_an_end_with(tmp_path, name, text, 
 
 def test_a_table_of_very_many_columns(tmp_path):
     head = "time,north,east," + ",".join(f"c{i}" for i in range(10_000))
-    found, took = checked(tmp_path, {"log.csv": "\n".join([head, *[",".join(["1"] * 10_003)] * 3]).encode()})
+    found, took = checked(
+        tmp_path, {"log.csv": "\n".join([head, *[",".join(["1"] * 10_003)] * 3]).encode()}
+    )
     assert "fewer than two different times" in found and took < 10.0
 
 
 def test_names_without_end_are_told_in_short(tmp_path):
-    element = f'<ssd:Elements><ssd:Component name="{"x" * 1_000_000}" source="y.fmu"/></ssd:Elements>'
+    element = (
+        f'<ssd:Elements><ssd:Component name="{"x" * 1_000_000}" source="y.fmu"/></ssd:Elements>'
+    )
     found, took = checked(tmp_path, {"SystemStructure.ssd": (HEAD + element + TAIL).encode()})
     assert "does not exist" in found and len(found) < 20_000 and took < 10.0
 
@@ -135,7 +148,10 @@ def test_of_very_many_problems_the_first_are_told_and_the_number_of_the_others()
     problems = [Problem("x", str(i)) for i in range(10_000)]
     error = ShipcosimError(problems)
     assert len(error.problems) == 10_000
-    assert str(error).splitlines()[-1] == f"And {10_000 - MOST_SHOWN} more." and str(error).count("\n") == MOST_SHOWN
+    assert (
+        str(error).splitlines()[-1] == f"And {10_000 - MOST_SHOWN} more."
+        and str(error).count("\n") == MOST_SHOWN
+    )
 
 
 def test_a_netcdf_file_of_a_few_kilobytes_that_declares_eight_tebibytes(tmp_path):
@@ -167,7 +183,9 @@ def test_a_netcdf_file_whose_fill_value_is_a_text(tmp_path):
 def test_a_stored_state_with_a_value_of_another_kind(name, value, said, tmp_path):
     _, files = running()
     facts = json.loads(files["snapshot.json"]) | {name: value}
-    (tmp_path / "x.state").write_bytes(zipped(files | {"snapshot.json": json.dumps(facts).encode()}))
+    (tmp_path / "x.state").write_bytes(
+        zipped(files | {"snapshot.json": json.dumps(facts).encode()})
+    )
     with pytest.raises(ShipcosimError, match=said):
         read_snapshot(tmp_path / "x.state")
 

@@ -9,7 +9,9 @@ import pytest
 from fuzz.inputs import KINDS, write_input
 from fuzz.survive import survive
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="memory is limited and measured as Linux does it")
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="memory is limited and measured as Linux does it"
+)
 SEED, NUMBER, IN_CI = 0, 10_000, 300
 TYPED, TYPED_NUMBER, TYPED_IN_CI, TYPED_AT_ONCE = "typed-0", 2900, 100, 200
 """Seed and numbers of well-formed files whose types and sizes are not those meant: `fuzz.typed`.
@@ -26,7 +28,9 @@ def test_a_few_hundred_damaged_files_end_in_a_clear_error_or_are_harmless():
     failures, counts = survive(SEED, 0, IN_CI)
     assert failures == [], shown(failures)
     assert sum(counts.values()) == IN_CI
-    assert counts["clear error"] > IN_CI / 3 and counts["success"] > 0  # neither everything nor nothing is refused
+    assert (
+        counts["clear error"] > IN_CI / 3 and counts["success"] > 0
+    )  # neither everything nor nothing is refused
 
 
 def test_a_hundred_files_of_wrong_types_and_sizes_end_in_a_clear_error_or_are_harmless():
@@ -40,7 +44,12 @@ def test_an_input_is_the_same_whenever_it_is_made(tmp_path):
     for folder in ("one", "two"):
         ways = [write_input(number, tmp_path / folder / str(number)) for number in range(40)]
         files = sorted(path for path in (tmp_path / folder).rglob("*") if path.is_file())
-        made.append(([how for _, how in ways], [(p.relative_to(tmp_path / folder), p.stat().st_size) for p in files]))
+        made.append(
+            (
+                [how for _, how in ways],
+                [(p.relative_to(tmp_path / folder), p.stat().st_size) for p in files],
+            )
+        )
     assert made[0] == made[1]
 
 

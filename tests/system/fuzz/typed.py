@@ -41,7 +41,20 @@ OTHERS = (
     {"": 0},
     {"x": {}},
 )
-NAMES = ("", "time", "x", "a.b", "\x00", "\u202e", "é" * 300, "__proto__", "../x", "ramp.y", "position_x", "heading")
+NAMES = (
+    "",
+    "time",
+    "x",
+    "a.b",
+    "\x00",
+    "\u202e",
+    "é" * 300,
+    "__proto__",
+    "../x",
+    "ramp.y",
+    "position_x",
+    "heading",
+)
 ROWS_OF_TYPED = 50
 
 
@@ -75,7 +88,8 @@ def retyped(rng, value, share=0.1):
         return odd(rng)
     if isinstance(value, dict):
         made = {
-            key if rng.random() > share / 3 else rng.choice(NAMES): retyped(rng, v, share) for key, v in value.items()
+            key if rng.random() > share / 3 else rng.choice(NAMES): retyped(rng, v, share)
+            for key, v in value.items()
         }
         if rng.random() < share and made:
             made.pop(rng.choice(list(made)))
@@ -88,7 +102,14 @@ def retyped(rng, value, share=0.1):
 def nested(rng):
     """JSON nested deeper than any reader goes, or a very long number."""
     depth = rng.choice((50, 2000, 100_000))
-    return rng.choice((b"[" * depth, b'{"a":' * depth + b"1" + b"}" * depth, b"[" * depth + b"]" * depth, b"9" * depth))
+    return rng.choice(
+        (
+            b"[" * depth,
+            b'{"a":' * depth + b"1" + b"}" * depth,
+            b"[" * depth + b"]" * depth,
+            b"9" * depth,
+        )
+    )
 
 
 def _json(rng, value, share=0.1):
@@ -97,7 +118,11 @@ def _json(rng, value, share=0.1):
 
 def _scenario(rng):
     name, files = seeds()["osp"][0]
-    how, data = ("nested", nested(rng)) if rng.random() < 0.2 else ("retyped", _json(rng, json.loads(EVENTS)))
+    how, data = (
+        ("nested", nested(rng))
+        if rng.random() < 0.2
+        else ("retyped", _json(rng, json.loads(EVENTS)))
+    )
     files = {file: content for file, content in files.items() if file != "events.json"}
     return {"events.json": data, **files}, how
 
@@ -117,9 +142,13 @@ def _snapshot(rng):
     _, files = running()
     files = dict(files)
     facts = json.loads(files["snapshot.json"])
-    files["snapshot.json"] = nested(rng) if rng.random() < 0.1 else _json(rng, facts, rng.choice((0.0, 0.02, 0.1)))
+    files["snapshot.json"] = (
+        nested(rng) if rng.random() < 0.1 else _json(rng, facts, rng.choice((0.0, 0.02, 0.1)))
+    )
     if rng.random() < 0.3:
-        files[rng.choice(list(files)[1:])] = rng.choice((b"", b"\x80\x04.", b"x" * 1000, b"{}", b"[]", b'{"x": 1e999}'))
+        files[rng.choice(list(files)[1:])] = rng.choice(
+            (b"", b"\x80\x04.", b"x" * 1000, b"{}", b"[]", b'{"x": 1e999}')
+        )
     if rng.random() < 0.1:
         files.pop(rng.choice(list(files)))
     data = zipped(files)
@@ -133,7 +162,9 @@ def _cut_member(rng, data):
     for _ in range(rng.choice((1, 5, 50))):
         changed[rng.randrange(30, max(at, 31))] = rng.randrange(256)
     if rng.random() < 0.5:
-        struct.pack_into("<I", changed, at + rng.choice((20, 24, 42)), rng.choice((0, 2**31, 2**32 - 1)))
+        struct.pack_into(
+            "<I", changed, at + rng.choice((20, 24, 42)), rng.choice((0, 2**31, 2**32 - 1))
+        )
     return bytes(changed)
 
 
@@ -176,17 +207,33 @@ def _variable(rng, file, name):
         made = file.create_dataset(name, data=odd_numbers(rng, n), maxshape=(None,), chunks=(8,))
     elif how < 0.6:
         text = h5py.string_dtype()
-        made = file.create_dataset(name, data=np.array(["a", "\u00e9"] * n, dtype=object), dtype=text)
+        made = file.create_dataset(
+            name, data=np.array(["a", "\u00e9"] * n, dtype=object), dtype=text
+        )
     else:
         type_ = rng.choice(TYPES) if rng.random() < 0.4 else "f8"
         values = np.arange(n, dtype="f8") if rng.random() < 0.6 else odd_numbers(rng, n)
         with np.errstate(all="ignore"):
-            made = file.create_dataset(name, data=values.astype(type_) if type_ not in ("V8", "O") else values)
+            made = file.create_dataset(
+                name, data=values.astype(type_) if type_ not in ("V8", "O") else values
+            )
     if rng.random() < 0.6 and isinstance(made, h5py.Dataset):
         made.make_scale(rng.choice((name, "time", "")))
-    if isinstance(made, h5py.Dataset) and name != "time" and rng.random() < 0.7 and _is_scale(file.get("time")):
+    if (
+        isinstance(made, h5py.Dataset)
+        and name != "time"
+        and rng.random() < 0.7
+        and _is_scale(file.get("time"))
+    ):
         made.dims[0].attach_scale(file["time"])
-    for key in ("units", "_FillValue", "scale_factor", "missing_value", "_Netcdf4Dimid", "coordinates"):
+    for key in (
+        "units",
+        "_FillValue",
+        "scale_factor",
+        "missing_value",
+        "_Netcdf4Dimid",
+        "coordinates",
+    ):
         if rng.random() < 0.15:
             made.attrs[key] = rng.choice(
                 (b"\xff", "s", "furlongs", 1e400, 0, np.arange(5), "time", "days since x", [""])
@@ -203,7 +250,9 @@ def odd_numbers(rng, n):
     values = np.arange(n, dtype="f8")
     for _ in range(rng.randrange(5)):
         if n:
-            values[rng.randrange(n)] = rng.choice((np.nan, np.inf, -np.inf, 1e308, -1e308, 0.0, 5e-324))
+            values[rng.randrange(n)] = rng.choice(
+                (np.nan, np.inf, -np.inf, 1e308, -1e308, 0.0, 5e-324)
+            )
     return values
 
 
@@ -220,12 +269,20 @@ CHANNELS = {
 def _toml(value):
     """A value as TOML, or as what is none where TOML has no such thing."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{json.dumps(str(key))} = {_toml(one)}" for key, one in value.items()) + "}"
+        return (
+            "{"
+            + ", ".join(f"{json.dumps(str(key))} = {_toml(one)}" for key, one in value.items())
+            + "}"
+        )
     if isinstance(value, list):
         return "[" + ", ".join(map(_toml, value)) + "]"
     if isinstance(value, str):
         return json.dumps(value)
-    return {None: "none"}.get(value, str(value).lower()) if not isinstance(value, float) else repr(value)
+    return (
+        {None: "none"}.get(value, str(value).lower())
+        if not isinstance(value, float)
+        else repr(value)
+    )
 
 
 def _channels(rng):
@@ -271,7 +328,9 @@ REFERENCE = {
 
 
 def _reference(rng):
-    data = nested(rng) if rng.random() < 0.3 else _json(rng, REFERENCE, rng.choice((0.02, 0.1, 0.3)))
+    data = (
+        nested(rng) if rng.random() < 0.3 else _json(rng, REFERENCE, rng.choice((0.02, 0.1, 0.3)))
+    )
     return {"x.reference": data}, "reference"
 
 

@@ -14,7 +14,11 @@ from shipcosim.interfaces.geometry import check_geometry
 
 NAMED = ("allocator", "extended_allocator", "optimal_allocator")
 NUMBERED = ("fixed_angle_allocator", "optimal_units_allocator", "neural_units_allocator")
-FOUR = (("x", (-14.02, -14.02, 11.0, 11.0)), ("y", (-2.0, 2.0, -1.5, 1.5)), ("azimuth", (-0.785, 0.785, -0.785, 0.785)))
+FOUR = (
+    ("x", (-14.02, -14.02, 11.0, 11.0)),
+    ("y", (-2.0, 2.0, -1.5, 1.5)),
+    ("azimuth", (-0.785, 0.785, -0.785, 0.785)),
+)
 
 
 @pytest.fixture
@@ -22,12 +26,22 @@ def allocator(root):
     """Function from the name of an FMU to its object, with the parameters of R/V Gunnerus where it is a named one."""
 
     def make(name):
-        spec = importlib.util.spec_from_file_location(f"under_test_{name}", root / "fmus" / name / f"{name}.py")
+        spec = importlib.util.spec_from_file_location(
+            f"under_test_{name}", root / "fmus" / name / f"{name}.py"
+        )
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         bases = (NamedAllocator, NumberedAllocator)
-        kind = next(c for c in vars(module).values() if isinstance(c, type) and issubclass(c, bases) and c not in bases)
-        return equipped(kind(), "allocator") if issubclass(kind, NamedAllocator) else with_four_units(kind())
+        kind = next(
+            c
+            for c in vars(module).values()
+            if isinstance(c, type) and issubclass(c, bases) and c not in bases
+        )
+        return (
+            equipped(kind(), "allocator")
+            if issubclass(kind, NamedAllocator)
+            else with_four_units(kind())
+        )
 
     return make
 
@@ -36,7 +50,12 @@ def with_four_units(fmu):
     """Four azimuths as those of the system four_azimuths, for a law that turns units and for one that does not."""
     for k in range(4):
         values = {name: places[k] for name, places in FOUR}
-        values |= {"thrust_min": -30e3, "thrust_max": 60e3, "thrust_rate": 1000.0, "azimuth_rate": 0.17}
+        values |= {
+            "thrust_min": -30e3,
+            "thrust_max": 60e3,
+            "thrust_rate": 1000.0,
+            "azimuth_rate": 0.17,
+        }
         values |= {"thrust_least": 1000.0}
         for name, value in values.items():
             if hasattr(fmu, f"{name}_{k + 1}"):
@@ -79,7 +98,9 @@ def test_a_request_that_is_no_number_is_refused_by_its_name(value, allocator):
 @pytest.mark.parametrize("value", [2, 0.5, "maybe"])
 def test_availability_is_true_or_false(value):
     event = {"time": 0.0, "override": {"allocator.port_available": value}}
-    with pytest.raises(ShipcosimError, match="'allocator.port_available' with .* Override it with true or false"):
+    with pytest.raises(
+        ShipcosimError, match="'allocator.port_available' with .* Override it with true or false"
+    ):
         shipcosim.run("stationkeeping", events=[event], stop_time=0.1)
 
 
@@ -92,7 +113,10 @@ def test_a_geometry_that_controls_no_axis_ends_a_run_with_one_sentence(name):
         shipcosim.run("stationkeeping", components={"allocator": name}, set=given, stop_time=0.1)
     (problem,) = error.value.problems
     assert problem.where == "allocator" and "cannot give a yaw moment by itself" in problem.found
-    assert "Right would be units at different places" in problem.found and "Traceback" not in problem.found
+    assert (
+        "Right would be units at different places" in problem.found
+        and "Traceback" not in problem.found
+    )
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -108,7 +132,9 @@ def test_units_at_one_place_are_refused_with_the_loads_that_they_cannot_give(nam
     fmu = allocator(name)
     fmu.port_x = fmu.starboard_x = fmu.tunnel_x = -10.0
     fmu.port_y = fmu.starboard_y = 0.0
-    with pytest.raises(FmuError, match="cannot give a force to starboard or a yaw moment by itself"):
+    with pytest.raises(
+        FmuError, match="cannot give a force to starboard or a yaw moment by itself"
+    ):
         fmu.start()
 
 
@@ -126,7 +152,9 @@ def test_numbered_units_are_checked_too(allocator):
 
 
 def test_a_ship_with_all_three_loads_passes():
-    check_geometry([(1.0, 0.0, 2.0), (1.0, 0.0, -2.0), (0.0, 1.0, 10.0), (0.0, 1.0, 0.0)], [1.0, 1.0, 1.0, 0.0])
+    check_geometry(
+        [(1.0, 0.0, 2.0), (1.0, 0.0, -2.0), (0.0, 1.0, 10.0), (0.0, 1.0, 0.0)], [1.0, 1.0, 1.0, 0.0]
+    )
 
 
 @pytest.mark.parametrize("name", NAMED)
@@ -148,23 +176,37 @@ def test_the_loss_of_a_request_beyond_reach_is_shared_as_the_lever_says(name, al
 @pytest.mark.parametrize("name", NAMED)
 def test_the_controllers_integral_does_not_run_away_while_thrust_is_at_its_limits(name):
     """20 m/s on the beam, more than the thrusters hold at first: the bias load sinks although much is missed."""
-    calm = {"environment.wind_speed": 20.0, "environment.significant_wave_height": 0.0, "environment.gust_scale": 0.0}
+    calm = {
+        "environment.wind_speed": 20.0,
+        "environment.significant_wave_height": 0.0,
+        "environment.gust_scale": 0.0,
+    }
     run = shipcosim.run("stationkeeping", components={"allocator": name}, set=calm, stop_time=90.0)
     early, late = run.sel(time=40.0), run.sel(time=90.0)
     assert float(abs(early["allocator.slack_Y"])) > 5e3
     for axis in "YN":
-        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
+        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(
+            early[f"controller.tau_{axis}_bias"]
+        )
 
 
 @pytest.mark.parametrize("name", ["optimal_units_allocator", "neural_units_allocator"])
 def test_the_controllers_integral_does_not_run_away_with_numbered_units(name):
     """The same: 17 kN and 150 kNm are missed after 20 s, and the bias load is gone at 60 s."""
-    calm = {"environment.wind_speed": 20.0, "environment.significant_wave_height": 0.0, "environment.gust_scale": 0.0}
-    run = shipcosim.run("allocation/four_azimuths", components={"allocator": name}, set=calm, stop_time=60.0)
+    calm = {
+        "environment.wind_speed": 20.0,
+        "environment.significant_wave_height": 0.0,
+        "environment.gust_scale": 0.0,
+    }
+    run = shipcosim.run(
+        "allocation/four_azimuths", components={"allocator": name}, set=calm, stop_time=60.0
+    )
     early, late = run.sel(time=20.0), run.sel(time=60.0)
     assert float(abs(early["allocator.slack_Y"])) > 5e3
     for axis in "YN":
-        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(early[f"controller.tau_{axis}_bias"])
+        assert abs(late[f"controller.tau_{axis}_bias"]) < 0.6 * abs(
+            early[f"controller.tau_{axis}_bias"]
+        )
 
 
 @pytest.mark.parametrize("name", NUMBERED)
@@ -176,7 +218,9 @@ def test_numbered_units_share_the_loss_as_the_lever_says(name, allocator):
         fmu.start()
         asked(fmu, 0.0, 250e3, 1.5e6, steps=1000)
         missed[lever] = hypot(fmu.slack_X, fmu.slack_Y), abs(fmu.slack_N)
-        assert fmu.saturated or name == "neural_units_allocator"  # its units still turn by a degree back and forth
+        assert (
+            fmu.saturated or name == "neural_units_allocator"
+        )  # its units still turn by a degree back and forth
     assert missed[1.0][1] < 0.8 * missed[300.0][1]  # heading first
     assert missed[300.0][0] < 0.8 * missed[1.0][0]  # position first
 

@@ -18,7 +18,9 @@ def predicted(root):
     given = read_table(root / "fmus" / "dp_predictor" / "reference.csv")
 
     def predict(name, **held):
-        spec = importlib.util.spec_from_file_location(f"predicting_{name}", root / "fmus" / name / f"{name}.py")
+        spec = importlib.util.spec_from_file_location(
+            f"predicting_{name}", root / "fmus" / name / f"{name}.py"
+        )
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
         fmu = equipped(getattr(module, NAMES[name])(), "predictor")

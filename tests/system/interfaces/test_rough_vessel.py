@@ -13,10 +13,16 @@ def sailed(root):
     """Function from the name of an FMU and changed parameters to its outputs over 60 s in wind, waves and a current."""
 
     def sail(name, **changed):
-        spec = importlib.util.spec_from_file_location(f"sailed_{name}", root / "fmus" / name / f"{name}.py")
+        spec = importlib.util.spec_from_file_location(
+            f"sailed_{name}", root / "fmus" / name / f"{name}.py"
+        )
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
-        kind = next(c for c in vars(module).values() if isinstance(c, type) and issubclass(c, Ship) and c is not Ship)
+        kind = next(
+            c
+            for c in vars(module).values()
+            if isinstance(c, type) and issubclass(c, Ship) and c is not Ship
+        )
         fmu = equipped(kind(), "vessel")
         for key, value in {"u_start": 0.5, "r_start": 0.01, **changed}.items():
             setattr(fmu, key, value)
@@ -27,7 +33,13 @@ def sailed(root):
         for k in range(600):
             fmu.tau_X_1 = 2e3 * (k > 100)
             fmu.step(0.1 * k, 0.1)
-            rows.append([getattr(fmu, variable.name) for variable in fmu.variables if variable.causality == "output"])
+            rows.append(
+                [
+                    getattr(fmu, variable.name)
+                    for variable in fmu.variables
+                    if variable.causality == "output"
+                ]
+            )
         return rows
 
     return sail

@@ -22,7 +22,9 @@ def test_walks_stay_in_their_ranges_fill_them_and_take_no_step_that_is_too_long(
 
 
 def test_a_walk_turns_back_at_the_end_of_its_range():
-    drawn = random_walks(np.array([1.0]), np.array([0.5]), 1, 2000, np.random.default_rng(0))[0, :, 0]
+    drawn = random_walks(np.array([1.0]), np.array([0.5]), 1, 2000, np.random.default_rng(0))[
+        0, :, 0
+    ]
     assert drawn.max() > 0.9 and drawn.min() < -0.9
 
 

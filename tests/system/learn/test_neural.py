@@ -27,7 +27,9 @@ REPORTED = (*range(1, 9), *range(7200, 7208))
 
 
 def report_of(kind, root):
-    return json.loads((root / "fmus" / FMUS[kind] / "weights" / f"{kind}.json").read_text(encoding="utf-8"))
+    return json.loads(
+        (root / "fmus" / FMUS[kind] / "weights" / f"{kind}.json").read_text(encoding="utf-8")
+    )
 
 
 def weights_of(kind, root):
@@ -69,7 +71,11 @@ def test_recipe_of_four_azimuths_has_her_units():
         **{f.name: said[f.name].value for f in fields(NeuralUnitsParameters) if f.name in said},
         **{f"diameter_{k}": neural.DIAMETER for k in range(1, 5)},
     )
-    same(neural.RECIPES["neural-four-azimuths"].units, numbered_units_of(made, (neural.POWER[0],) * 6)[0], "azimuth")
+    same(
+        neural.RECIPES["neural-four-azimuths"].units,
+        numbered_units_of(made, (neural.POWER[0],) * 6)[0],
+        "azimuth",
+    )
 
 
 def same(one, other, but=""):
@@ -87,16 +93,28 @@ def test_weights_cost_what_their_report_says_and_no_more_than_untrained_ones(kin
         found = neural.cost(recipe, units, weights_of(kind, root), checked.draw(), checked.interval)
     objective, costs = float(found["objective"]), [epoch["objective"] for epoch in report["epochs"]]
     assert objective == pytest.approx(min(costs), abs=1e-3)
-    assert min(abs(objective - cost) for cost in costs) < 1e-6  # in double precision on any processor
+    assert (
+        min(abs(objective - cost) for cost in costs) < 1e-6
+    )  # in double precision on any processor
     assert min(costs) <= costs[0]
     assert report["settings"]["iterations"] == recipe.iterations and report["seed"] == recipe.seed
     assert report["time_s"] < 1200.0
 
 
 def test_price_of_power_goes_back_to_the_weights():
-    recipe = replace(neural.RECIPES["neural-slipstreams"], batch=16, steps=8, settling=2, hidden=(8,))
+    recipe = replace(
+        neural.RECIPES["neural-slipstreams"], batch=16, steps=8, settling=2, hidden=(8,)
+    )
     with repeatable(1):
         weights, drawn = neural.first_weights(recipe), neural.Sequences(recipe, held_out=False)
-        parts = neural.cost(recipe, neural.tensors(recipe.units), neural.paired(weights), drawn.draw(), drawn.interval)
+        parts = neural.cost(
+            recipe,
+            neural.tensors(recipe.units),
+            neural.paired(weights),
+            drawn.draw(),
+            drawn.interval,
+        )
         parts["power"].backward()
-    assert all(torch.isfinite(weight.grad).all() and weight.grad.abs().max() > 0.0 for weight in weights)
+    assert all(
+        torch.isfinite(weight.grad).all() and weight.grad.abs().max() > 0.0 for weight in weights
+    )

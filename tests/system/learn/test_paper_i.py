@@ -23,7 +23,9 @@ def test_exercise_has_the_papers_rows_its_limits_and_its_rates(exercise):
     np.testing.assert_allclose(commands.max(axis=0), [204, 204, 276, 276, 28.7, 28.7])
     np.testing.assert_allclose(commands.min(axis=0), [-204, -204, -276, -276, -21.5, -21.5])
     quickest = np.abs(np.diff(commands, axis=0)).max(axis=0) / 0.05
-    np.testing.assert_allclose(quickest, [parameters(MapParameters, "osv", name).command_rate for name in THRUSTERS])
+    np.testing.assert_allclose(
+        quickest, [parameters(MapParameters, "osv", name).command_rate for name in THRUSTERS]
+    )
 
 
 def test_thrusters_work_one_after_the_other_but_for_the_main_propellers(exercise):
@@ -62,5 +64,7 @@ def check_weights(kind, allocator, signals, exercise):
     shipped = {name: every[f"{allocator}.{signals}.{name}"] for name in trained}
     for name in ("scale", "hidden", "bias"):
         np.testing.assert_array_equal(trained[name], shipped[name])
-    again, before = (paper_i.hidden_layer(one, inputs) @ one["output"].T for one in (trained, shipped))
+    again, before = (
+        paper_i.hidden_layer(one, inputs) @ one["output"].T for one in (trained, shipped)
+    )
     np.testing.assert_allclose(again, before, atol=1e-3)

@@ -52,7 +52,9 @@ def test_torch_and_numpy_evaluate_the_same():
 def test_the_thrusters_are_where_the_ship_has_them():
     ship = parameters(pseudo_inverse.AllocationParameters, "thesis-28m9")
     b = pseudo_inverse.effect(replace(ship, port_azimuth=0.3, starboard_azimuth=-1.1))
-    commands = torch.tensor([700.0, 200.0, np.degrees(0.3), -400.0, np.degrees(-1.1)], dtype=torch.float64)
+    commands = torch.tensor(
+        [700.0, 200.0, np.degrees(0.3), -400.0, np.degrees(-1.1)], dtype=torch.float64
+    )
     wanted = pseudo_inverse.load((200.0, -400.0, 700.0), b)
     np.testing.assert_allclose(paper_v.generalised_force(commands).numpy(), wanted, rtol=1e-9)
 
@@ -72,12 +74,19 @@ def test_commands_that_meet_the_request_within_all_limits_lose_their_power_alone
     commands = [[[4000.0, 900.0, 45.0, -400.0, -45.0]] * 5]
     found = losses_of(commands)
     assert found["k4 L4"] == pytest.approx(4000**1.5 + 900**1.5 + 400**1.5, rel=1e-5)
-    assert [found[name] for name in ("k0 L0", "k2 L2", "k3 L3", "k5 L5")] == pytest.approx([0.0] * 4, abs=1e-3)
+    assert [found[name] for name in ("k0 L0", "k2 L2", "k3 L3", "k5 L5")] == pytest.approx(
+        [0.0] * 4, abs=1e-3
+    )
 
 
 def test_errors_of_the_force_count_in_standardised_units():
     forces = torch.tensor([[[1.0, -2.0, 0.5]]])
-    found = losses_of([[[0.0, 0.0, 0.0, 0.0, 0.0]]], forces, decoded=(0.0, 0.0, 1.5), std=torch.tensor([3e3, 5e3, 9e4]))
+    found = losses_of(
+        [[[0.0, 0.0, 0.0, 0.0, 0.0]]],
+        forces,
+        decoded=(0.0, 0.0, 1.5),
+        std=torch.tensor([3e3, 5e3, 9e4]),
+    )
     assert found["k0 L0"] == pytest.approx(1.0 + 4.0 + 0.25)
     assert found["k1 L1"] == pytest.approx(1.0 + 4.0 + 1.0)
 

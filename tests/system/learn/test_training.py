@@ -9,7 +9,13 @@ from shipcosim.learn import paper_v
 from shipcosim.learn.results import Trained, npz_bytes, report_of, write_trained
 from shipcosim.learn.training import Schedule, fit, repeatable
 
-TINY = replace(paper_v.RECIPES["paper-v"], batches=20, sequences=4, samples=16, schedule=Schedule(most_epochs=2))
+TINY = replace(
+    paper_v.RECIPES["paper-v"],
+    batches=20,
+    sequences=4,
+    samples=16,
+    schedule=Schedule(most_epochs=2),
+)
 
 
 def quiet(done, total):
@@ -24,7 +30,9 @@ def test_a_second_training_gives_the_same_bytes():
 
 def test_another_seed_gives_other_weights():
     other = replace(TINY, schedule=replace(TINY.schedule, seed=2))
-    assert npz_bytes(paper_v.train(TINY, quiet).arrays) != npz_bytes(paper_v.train(other, quiet).arrays)
+    assert npz_bytes(paper_v.train(TINY, quiet).arrays) != npz_bytes(
+        paper_v.train(other, quiet).arrays
+    )
 
 
 def fitted(held_out, most_epochs=50):
@@ -40,7 +48,9 @@ def fitted(held_out, most_epochs=50):
 
         batches = [(x, 3.0 * x) for x in inputs]
         schedule = Schedule(learning_rate=0.05, most_epochs=most_epochs)
-        return fit(line, losses, batches, [(inputs[0], held_out * inputs[0])], schedule, quiet), line.weight.item()
+        return fit(
+            line, losses, batches, [(inputs[0], held_out * inputs[0])], schedule, quiet
+        ), line.weight.item()
 
 
 def test_it_finds_a_straight_line():
@@ -63,12 +73,26 @@ def test_progress_counts_mini_batches():
 
 def test_the_report_says_what_there_is_to_say(tmp_path):
     trained = Trained(
-        {"a": np.ones(3)}, "A line.", 7, {"samples": 3}, {"rate": 0.1}, [{"training": 2.0, "held out": 1.5}], ["Note."]
+        {"a": np.ones(3)},
+        "A line.",
+        7,
+        {"samples": 3},
+        {"rate": 0.1},
+        [{"training": 2.0, "held out": 1.5}],
+        ["Note."],
     )
     files = write_trained(trained, tmp_path, "line", time=12.0, processor_time=10.0)
     assert [file.name for file in files] == ["line.npz", "line.json", "line.md"]
     page = files[2].read_text(encoding="utf-8")
-    for text in ("A line.", "Note.", "seed 7", "12 s by the clock", "| samples | 3 |", "| 1 | 2 | 1.5 |", "torch"):
+    for text in (
+        "A line.",
+        "Note.",
+        "seed 7",
+        "12 s by the clock",
+        "| samples | 3 |",
+        "| 1 | 2 | 1.5 |",
+        "torch",
+    ):
         assert text in page
     assert report_of(trained, "line")["epochs"] == [{"training": 2.0, "held out": 1.5}]
     with np.load(files[0]) as found:

@@ -65,11 +65,18 @@ def test_data_settings_and_pages_are_those_of_the_recipe(kind, weights):
 @pytest.mark.parametrize("kind", ["paper-v", "paper-v-walks"])
 def test_weights_have_the_losses_that_their_report_says(kind, weights):
     """On all held-out data, by NumPy, which adds in another order than torch."""
-    report, arrays, data = report_of(kind, weights), read_arrays(weights / f"{kind}.npz"), data_of(kind)
+    report, arrays, data = (
+        report_of(kind, weights),
+        read_arrays(weights / f"{kind}.npz"),
+        data_of(kind),
+    )
     forces = data.forces[data.trained :].flatten(0, 1)
     code = outputs_of(network_of(arrays, "encoder"), forces.double().numpy())
     network = paper_v.Autoencoder()
-    network.encoder, network.decoder = Known(code), Known(outputs_of(network_of(arrays, "decoder"), code))
+    network.encoder, network.decoder = (
+        Known(code),
+        Known(outputs_of(network_of(arrays, "decoder"), code)),
+    )
     mean, std = (paper_v._row(values) for values in (data.mean, data.std))
     found = paper_v.losses(network, forces, k4=paper_v.RECIPES[kind].k4, mean=mean, std=std)
     best = min(report["epochs"], key=lambda epoch: epoch["held out"])

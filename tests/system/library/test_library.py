@@ -31,7 +31,9 @@ def project(root, tmp_path, monkeypatch):
     folder.mkdir(parents=True)
     shutil.copy(root / "ssp" / "otter_open" / "SystemStructure.ssd", folder)
     (tmp_path / "scenarios" / "failures").mkdir(parents=True)
-    (tmp_path / "scenarios" / "failures" / "tow.toml").write_text('description = "A tow"\n', encoding="utf-8")
+    (tmp_path / "scenarios" / "failures" / "tow.toml").write_text(
+        'description = "A tow"\n', encoding="utf-8"
+    )
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -90,7 +92,9 @@ def test_path_goes_before_a_name(project):
     assert library.find("system", "gunnerus_dp") == Path("gunnerus_dp")
 
 
-@pytest.mark.parametrize("kind, near", [("scenario", "four_cornr"), ("system", "barg"), ("fmu", "vesel")])
+@pytest.mark.parametrize(
+    "kind, near", [("scenario", "four_cornr"), ("system", "barg"), ("fmu", "vesel")]
+)
 def test_what_is_not_there_is_answered_with_what_is(kind, near, project):
     with pytest.raises(ShipcosimError, match=f"{near}: There is no such .*Did you mean"):
         library.find(kind, near)
@@ -99,7 +103,9 @@ def test_what_is_not_there_is_answered_with_what_is(kind, near, project):
 def test_files_that_cannot_be_read_are_listed_all_the_same(project):
     (project / "scenarios" / "broken.toml").write_bytes(b"\xff = [")
     (project / "ssp" / "barge" / "SystemStructure.ssd").write_text("<", encoding="utf-8")
-    lines = {entry.name: entry.line for kind in ("scenario", "system") for entry in library.entries(kind)}
+    lines = {
+        entry.name: entry.line for kind in ("scenario", "system") for entry in library.entries(kind)
+    }
     assert lines["broken"] == lines["barge"] == "(its file cannot be read)"
 
 
@@ -121,7 +127,9 @@ def test_fmus_of_a_wheel_are_built_once_into_the_cache(wheel):
     built = fmu.stat().st_mtime_ns
     assert folder.is_relative_to(wheel / "cache") and library.fmus() == [folder]
     assert fmu.stat().st_mtime_ns == built
-    (wheel / "package" / "shipped" / "fmus" / "lag" / "lag.py").write_text(LAG + "\n# newer\n", encoding="utf-8")
+    (wheel / "package" / "shipped" / "fmus" / "lag" / "lag.py").write_text(
+        LAG + "\n# newer\n", encoding="utf-8"
+    )
     assert library.fmus() != [folder]
 
 

@@ -35,7 +35,9 @@ def _kvlcc2(path):
     """Latin-1 text with lines of a head, then twelve columns without names."""
     with gzip.open(path, "rt", encoding="latin-1") as file:
         rows = [line.split() for line in file]
-    return pandas.DataFrame([[float(x) for x in row] for row in rows if _is_row(row)], columns=KVLCC2)
+    return pandas.DataFrame(
+        [[float(x) for x in row] for row in rows if _is_row(row)], columns=KVLCC2
+    )
 
 
 def _is_row(row):
@@ -52,5 +54,8 @@ def _otter(path):
     table = table.iloc[:, 1:].apply(pandas.to_numeric, errors="coerce")
     table["time"] = (stamps - pandas.Timestamp(0)).dt.total_seconds()
     drift = np.radians(table["current_course_over_ground"] - table["current_orientation_3"])
-    table["surge"], table["sway"] = table["current_speed"] * np.cos(drift), table["current_speed"] * np.sin(drift)
+    table["surge"], table["sway"] = (
+        table["current_speed"] * np.cos(drift),
+        table["current_speed"] * np.sin(drift),
+    )
     return table

@@ -22,7 +22,9 @@ BY_HAND = {"kvlcc2": {"propeller_rpm"}}
 """Roles whose unit only its authors say: turns a second."""
 
 
-@pytest.mark.skipif(not (SHARED / "measured").is_dir(), reason="needs the logs in ../shared/measured, not here")
+@pytest.mark.skipif(
+    not (SHARED / "measured").is_dir(), reason="needs the logs in ../shared/measured, not here"
+)
 @pytest.mark.parametrize("craft", THRUSTERS)
 def test_the_proposed_channel_file_reads_what_the_one_by_hand_does(craft, tmp_path):
     for path in files(SHARED, craft)[-2:]:
@@ -32,6 +34,11 @@ def test_the_proposed_channel_file_reads_what_the_one_by_hand_does(craft, tmp_pa
         proposal = propose(columns_of(path, form), THRUSTERS[craft], form)
         log = read_log(path, ChannelFile(proposal.channels(guessed=True), form), THRUSTERS[craft])
         begun = [table["time"].values - table["time"].values[0] for table in (log, by_hand)]
-        assert begun[0] == pytest.approx(begun[1], abs=0.2 if craft == "otter" else 1e-5)  # she has two clocks
+        assert begun[0] == pytest.approx(
+            begun[1], abs=0.2 if craft == "otter" else 1e-5
+        )  # she has two clocks
         for role in set(by_hand.data_vars) - BY_HAND.get(craft, set()):
-            assert np.allclose(log[role].values, by_hand[role].values, equal_nan=True, atol=1e-9), (path.name, role)
+            assert np.allclose(log[role].values, by_hand[role].values, equal_nan=True, atol=1e-9), (
+                path.name,
+                role,
+            )

@@ -48,7 +48,9 @@ def diagnosed(table, channels, system, fmus):
     found = sc.diagnose(table, read_system(system, fmus=[fmus]), channels=channels)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     named = ", ".join(finding.label for finding in found.findings) or "nothing"
-    print(f"{table.name}: {found.verdict}, {named}; {time.perf_counter() - begun:.0f} s, {memory:.2f} GB so far")
+    print(
+        f"{table.name}: {found.verdict}, {named}; {time.perf_counter() - begun:.0f} s, {memory:.2f} GB so far"
+    )
     return found
 
 
@@ -57,10 +59,15 @@ def has_figures(found):
     base, errors = found.baseline, errors_of(found.tracks)
     if not all(np.isfinite(base[key]).all() for key in ("position_error_m", "heading_error_deg")):
         return False
-    return all(np.isfinite(errors[channel].values).all() for channel in ("position", "heading", "surge", "yaw_rate"))
+    return all(
+        np.isfinite(errors[channel].values).all()
+        for channel in ("position", "heading", "surge", "yaw_rate")
+    )
 
 
-def test_a_short_log_goes_through_the_whole_diagnosis_and_its_thrusters_are_found_exchanged(log, fmus):
+def test_a_short_log_goes_through_the_whole_diagnosis_and_its_thrusters_are_found_exchanged(
+    log, fmus
+):
     """The left thruster is at y = -0.285 m: more force there turns her to starboard, and in this spin to port."""
     table, channels, system = log(*SHORT)
     spin = pandas.read_csv(table)
@@ -73,5 +80,9 @@ def test_a_short_log_goes_through_the_whole_diagnosis_and_its_thrusters_are_foun
 def test_kvlcc2_zigzags_as_published_numbers_say(log, fmus):
     """Within half a length and 12 deg after 50 s, by numbers of another tank and nothing fitted."""
     table, channels, system = log("kvlcc2", "Z_35_05.dat.gz")
-    errors = errors_of(replay_log(table, {"before": read_system(system, fmus=[fmus])}, channels, horizon=50.0).tracks)
+    errors = errors_of(
+        replay_log(
+            table, {"before": read_system(system, fmus=[fmus])}, channels, horizon=50.0
+        ).tracks
+    )
     assert float(errors["position"].max()) < 3.5 and float(errors["heading"].max()) < 12.0

@@ -81,7 +81,13 @@ def said(fmu, **values):
     """What an FMU logs where it fails to start with some parameters."""
     told = []
     with pytest.raises(Exception, match="fmi2|FMU|status"):
-        simulate_fmu(str(fmu), stop_time=0.1, step_size=0.05, start_values=values, logger=lambda *a: told.append(a[-1]))
+        simulate_fmu(
+            str(fmu),
+            stop_time=0.1,
+            step_size=0.05,
+            start_values=values,
+            logger=lambda *a: told.append(a[-1]),
+        )
     (text, *_) = [one.decode() if isinstance(one, bytes) else one for one in told if b"t = " in one]
     return text
 
@@ -97,7 +103,11 @@ def test_what_a_newcomer_writes_is_the_same_in_c(winch):
         )
         for fmu in winch
     )  # fmt: skip
-    assert python.dtype == native.dtype and np.ptp(python["length"]) > 1.0 and np.ptp(python["turns"]) > 0
+    assert (
+        python.dtype == native.dtype
+        and np.ptp(python["length"]) > 1.0
+        and np.ptp(python["turns"]) > 0
+    )
     for name in python.dtype.names:
         np.testing.assert_array_equal(python[name], native[name], err_msg=name)
 
@@ -111,7 +121,13 @@ def test_a_native_fmu_is_valid_and_describes_the_same_variables(winch):
             files = archive.namelist()
     assert {"sources/all.c", "modelDescription.xml"} <= set(files)
     assert not [name for name in files if "python" in name.lower() or name.startswith("resources/")]
-    parts = ("ModelVariables", "UnitDefinitions", "ModelStructure", "DefaultExperiment", "LogCategories")
+    parts = (
+        "ModelVariables",
+        "UnitDefinitions",
+        "ModelStructure",
+        "DefaultExperiment",
+        "LogCategories",
+    )
     for part in parts:
         one, other = (ElementTree.tostring(d.find(part)) for d in descriptions)
         assert one.split() == other.split(), part
@@ -121,7 +137,12 @@ def test_a_native_fmu_is_valid_and_describes_the_same_variables(winch):
 
 @pytest.mark.parametrize(
     "values",
-    [{"radius": 0.001}, {"radius": -1.0, "speed_max": -2.0}, {"layers": 0}, {"radius": 2.5, "layers": 7}],
+    [
+        {"radius": 0.001},
+        {"radius": -1.0, "speed_max": -2.0},
+        {"layers": 0},
+        {"radius": 2.5, "layers": 7},
+    ],
     ids=str,
 )
 def test_what_it_refuses_it_refuses_in_the_words_of_python(winch, values):
@@ -132,26 +153,34 @@ def test_what_it_refuses_it_refuses_in_the_words_of_python(winch, values):
 
 def test_a_text_that_is_not_in_the_code_is_refused_by_name(winch):
     text = said(winch[1], gear="fast")
-    assert "this native FMU was built with gear = 'slow', and not for 'fast': build it again" in text
+    assert (
+        "this native FMU was built with gear = 'slow', and not for 'fast': build it again" in text
+    )
 
 
 def test_a_text_of_an_example_is_in_the_code(written, tmp_path):
     fmu = build_native_fmu(written("winch", NEWCOMER), tmp_path, [{"gear": "fast"}])
     fast, slow = (
-        simulate_fmu(str(fmu), stop_time=1.0, step_size=0.05, start_values={"gear": gear, "wanted": 9.0})["length"][-1]
+        simulate_fmu(
+            str(fmu), stop_time=1.0, step_size=0.05, start_values={"gear": gear, "wanted": 9.0}
+        )["length"][-1]
         for gear in ("fast", "slow")
     )
     assert fast == pytest.approx(2.0 * slow, rel=1e-2)
 
 
 def test_what_is_no_arithmetic_stays_in_python_with_its_line(written, tmp_path):
-    script = NEWCOMER.replace("self.length = 0.0\n", "self.length = float(len(open('/etc/hosts').read()))\n")
+    script = NEWCOMER.replace(
+        "self.length = 0.0\n", "self.length = float(len(open('/etc/hosts').read()))\n"
+    )
     with pytest.raises(Untraceable, match=r"winch.py, line \d+: it calls .*open"):
         build_native_fmu(written("winch", script), tmp_path)
     assert not list(tmp_path.glob("*.fmu"))
 
 
-def test_a_build_that_differs_from_python_is_refused_with_variable_and_step(written, tmp_path, monkeypatch):
+def test_a_build_that_differs_from_python_is_refused_with_variable_and_step(
+    written, tmp_path, monkeypatch
+):
     source = packing.source_of_model
     changed = lambda *a: source(*a).replace("(2.0)", "(2.0000001)").replace("* 0.001", "* 0.0011")  # noqa: E731
     monkeypatch.setattr(packing, "source_of_model", changed)
@@ -217,10 +246,15 @@ class Numeric(Fmu):
 
 def test_matrices_tables_and_random_numbers_of_a_start_are_those_of_numpy(written, tmp_path):
     folder = written("numeric", NUMERIC)
-    python, native = build_fmu(folder, tmp_path / "python"), build_native_fmu(folder, tmp_path / "native")
+    python, native = (
+        build_fmu(folder, tmp_path / "python"),
+        build_native_fmu(folder, tmp_path / "native"),
+    )
     for seed, a in ((0, 1.0), (1, 1.3), (2**31 - 1, 0.7)):
         one, other = (
-            simulate_fmu(str(fmu), stop_time=0.1, step_size=0.05, start_values={"seed": seed, "a": a})
+            simulate_fmu(
+                str(fmu), stop_time=0.1, step_size=0.05, start_values={"seed": seed, "a": a}
+            )
             for fmu in (python, native)
         )
         for name in ("last_normal", "last_uniform"):
@@ -253,6 +287,10 @@ class Delay(Fmu):
         build_native_fmu(folder, tmp_path / name, examples)
         for name, examples in (("alone", [{}]), ("both", [{}, {"latency": 0.4}]))
     )
-    assert "built where a number that shapes its code is 4.0, and not for 8.0" in said(alone, latency=0.4)
-    found = simulate_fmu(str(both), stop_time=1.0, step_size=0.05, start_values={"latency": 0.4})["value"]
+    assert "built where a number that shapes its code is 4.0, and not for 8.0" in said(
+        alone, latency=0.4
+    )
+    found = simulate_fmu(str(both), stop_time=1.0, step_size=0.05, start_values={"latency": 0.4})[
+        "value"
+    ]
     assert found[-1] == pytest.approx(1.0 - 0.4, abs=1e-9)

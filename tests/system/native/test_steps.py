@@ -51,10 +51,23 @@ class Arithmetic(Fmu):
         x, y = self.x, self.y
         a = maths.sin(x) + maths.cos(y) * maths.exp(-x * x) + maths.sqrt(abs(x)) - maths.hypot(x, y)
         a = a + maths.atan2(y, x) + maths.floor(3.0 * x) + wrap(4.0 * x) + maths.clip(y, -0.5, 0.5)
-        a = a + maths.where(x > y, x, 2.0 * y) + x % 0.7 + (-x) % 0.7 + x // 0.3 + (abs(x) + 0.1) ** 1.5
+        a = (
+            a
+            + maths.where(x > y, x, 2.0 * y)
+            + x % 0.7
+            + (-x) % 0.7
+            + x // 0.3
+            + (abs(x) + 0.1) ** 1.5
+        )
         a = a + interp(x, XS, YS) + sum(interp_columns(y, XS, YS, ZS)) + interp_even(x, TABLE)[0]
         a = a + interp(x, XS, self.heights) + np.log1p(abs(y))
-        a = a + maths.number(self.flag) + maths.minimum(x, y) - maths.maximum(x, y) + tidy_time(t + h)
+        a = (
+            a
+            + maths.number(self.flag)
+            + maths.minimum(x, y)
+            - maths.maximum(x, y)
+            + tidy_time(t + h)
+        )
         for _ in range(self.mode):
             a = a + self.gain * h
         matrix = np.array([[1.0, 0.2, 0.0], [0.1, 1.0, -0.3], [0.0, 0.4, 0.9]])
@@ -89,7 +102,12 @@ def run_in_c(step, t, h):
 
     step.memory[-2:] = t, h
     function = ctypes.CFUNCTYPE(ctypes.c_int, *[ctypes.c_void_p] * 4)(step.function.value)
-    return function(step.memory.ctypes.data, step.kept.ctypes.data, ctypes.cast(step.call, ctypes.c_void_p), None)
+    return function(
+        step.memory.ctypes.data,
+        step.kept.ctypes.data,
+        ctypes.cast(step.call, ctypes.c_void_p),
+        None,
+    )
 
 
 def test_every_operation_gives_what_python_gives():
@@ -98,7 +116,11 @@ def test_every_operation_gives_what_python_gives():
     assert isinstance(step, CompiledStep), step
     rng = random.Random(4)
     for k in range(400):
-        values = {"x": rng.uniform(-3.0, 3.0), "y": rng.uniform(-3.0, 3.0), "flag": rng.random() < 0.5}
+        values = {
+            "x": rng.uniform(-3.0, 3.0),
+            "y": rng.uniform(-3.0, 3.0),
+            "flag": rng.random() < 0.5,
+        }
         for name, value in values.items():
             setattr(python, name, value)
             step.memory[step.places[name]] = value
@@ -149,13 +171,19 @@ def test_a_whole_number_that_decides_nothing_needs_no_new_code(monkeypatch):
         results[python.y] = step
     assert len(results) == 3
     monkeypatch.setattr("shipcosim.native.component.trace", None)
-    assert isinstance(compiled(Noisy, seed=99)[1], CompiledStep)  # the seed is a number like any other
+    assert isinstance(
+        compiled(Noisy, seed=99)[1], CompiledStep
+    )  # the seed is a number like any other
     assert isinstance(compiled(Noisy, turns=1)[1], Untraceable)  # how often is part of the code
 
 
 def reason(body, **more):
     """Why a component with this step is not compiled."""
-    names = {"x": Input("1", "in"), "y": Output("1", "out"), "start": more.pop("start", lambda self: None)}
+    names = {
+        "x": Input("1", "in"),
+        "y": Output("1", "out"),
+        "start": more.pop("start", lambda self: None),
+    }
     cls = type("Odd", (Fmu,), names | {"step": body, "__doc__": "Odd."} | more)
     _, step = compiled(cls)
     assert isinstance(step, Untraceable)

@@ -56,7 +56,9 @@ def poses(time, generator):
     """Set point, reference, ship, measurement and estimate: signals of the pose."""
     noise = lambda size, memory=60: size * smooth_noise(generator, len(time), memory)  # noqa: E731
     signals = {}
-    for column, (name, unit, error) in enumerate([("x", "m", 0.12), ("y", "m", 0.1), ("psi", "rad", 0.004)], start=1):
+    for column, (name, unit, error) in enumerate(
+        [("x", "m", 0.12), ("y", "m", 0.1), ("psi", "rad", 0.004)], start=1
+    ):
         signals[f"reference.{name}_set"] = (staircase(time, column), unit)
         desired = follow(signals[f"reference.{name}_set"][0], 0.0, 15.0, time[1])
         ship = follow(desired, 0.0, 3.0, time[1]) + noise(error) * np.minimum(time / 30, 1)
@@ -98,7 +100,10 @@ def loads(time, generator):
 def weather(time, generator):
     """Wind with gusts, current, waves."""
     n = len(time)
-    speed, direction = 8 + 1.2 * smooth_noise(generator, n, 15), np.pi / 4 + 0.06 * smooth_noise(generator, n, 30)
+    speed, direction = (
+        8 + 1.2 * smooth_noise(generator, n, 15),
+        np.pi / 4 + 0.06 * smooth_noise(generator, n, 30),
+    )
     return {
         "environment.wind_north": (-speed * np.cos(direction), "m/s"),
         "environment.wind_east": (-speed * np.sin(direction), "m/s"),
@@ -128,7 +133,10 @@ def four_corner():
                 "rad/s" if name == "r" else "m/s",
             )
         return xr.Dataset(
-            {k: ("time", v, {"units": unit, "long_name": f"made-up {k}"}) for k, (v, unit) in signals.items()},
+            {
+                k: ("time", v, {"units": unit, "long_name": f"made-up {k}"})
+                for k, (v, unit) in signals.items()
+            },
             coords={"time": ("time", time, {"units": "s"})},
         )
 
@@ -141,11 +149,19 @@ def scenario():
     expect = []
     for (_, x, y, psi), end in zip(SET_POINTS, [250.0, 450.0, 650.0, 850.0, 1100.0], strict=True):
         during = [end - 20.0, end]
-        expect.append(Expectation(signal=["vessel.x", "vessel.y"], near=[x, y], within=0.5, during=during))
+        expect.append(
+            Expectation(signal=["vessel.x", "vessel.y"], near=[x, y], within=0.5, during=during)
+        )
         expect.append(Expectation(signal=["vessel.psi"], near=[psi], within=0.0175, during=during))
     expect.append(Expectation(signal=["port.power"], at_most=100.0))
     events = [Event(time=t, override={"reference.x_set": x}) for t, x, _, _ in SET_POINTS]
-    return Scenario(description="Four corners & more", stop_time=1100.0, step_size=0.05, events=events, expect=expect)
+    return Scenario(
+        description="Four corners & more",
+        stop_time=1100.0,
+        step_size=0.05,
+        events=events,
+        expect=expect,
+    )
 
 
 @pytest.fixture(scope="session")
@@ -231,19 +247,32 @@ class Page:
 
     def errors(self):
         """What the console complains of."""
-        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+        return [
+            entry["message"]
+            for entry in self.driver.get_log("browser")
+            if entry["level"] in ("SEVERE", "WARNING")
+        ]
 
     def requests(self):
         """Addresses that were asked for, other than the page itself and what is inside the browser."""
-        messages = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
-        urls = [m["params"]["request"]["url"] for m in messages if m["method"] == "Network.requestWillBeSent"]
+        messages = [
+            json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")
+        ]
+        urls = [
+            m["params"]["request"]["url"]
+            for m in messages
+            if m["method"] == "Network.requestWillBeSent"
+        ]
         return [url for url in urls if not url.startswith(("file:", "data:", "blob:", "chrome:"))]
 
     def seconds(self):
         """When the page was loaded, and when all that is in view was drawn. [s]"""
         self.wait("return performance.getEntriesByName('in view').length > 0")
         script = "return [performance.getEntriesByType('navigation')[0].loadEventEnd, "
-        return [1e-3 * ms for ms in self.ask(script + "performance.getEntriesByName('in view')[0].startTime]")]
+        return [
+            1e-3 * ms
+            for ms in self.ask(script + "performance.getEntriesByName('in view')[0].startTime]")
+        ]
 
     def collisions(self):
         """Pairs of texts of one figure that lie over one another by more than 2 px."""

@@ -19,9 +19,15 @@ from shipcosim.report.sea_trials.page import write_sea_trials
 def found():
     """A ship slowed down by drift, in a circle to each side: causes of drag in a turn fit alike."""
     model, shafts = twin.model(), {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}
-    circles = [one for one in catalogue(model) if one.name == "turning circle with 35 deg at full speed"]
+    circles = [
+        one for one in catalogue(model) if one.name == "turning circle with 35 deg at full speed"
+    ]
     ((_, pair),) = as_trials(circles, model, shafts, {"vessel.mmg_X_vv": -0.7})
-    causes = [one for one in causes_of_trials(model, read_catalogue(), orders=True) if one.cause.endswith("_drag")]
+    causes = [
+        one
+        for one in causes_of_trials(model, read_catalogue(), orders=True)
+        if one.cause.endswith("_drag")
+    ]
     few = [one for one in catalogue(model) if "35 deg" in one.name and "half speed" in one.name]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(separation, "catalogue", lambda _: few)

@@ -13,14 +13,18 @@ from shipcosim.cli import app
 @pytest.fixture
 def bad(tmp_path):
     path = tmp_path / "bad.toml"
-    path.write_text('system = "gunnerus_dp"\nstop_time = -1.0\nstep_size = 0.05\n', encoding="utf-8")
+    path.write_text(
+        'system = "gunnerus_dp"\nstop_time = -1.0\nstep_size = 0.05\n', encoding="utf-8"
+    )
     return path
 
 
 def test_a_check_tells_errors_by_file(bad):
     found = sc.check([bad, "gunnerus_log"])
     assert not found.passed and list(found.files) == [str(bad), "gunnerus_log"]
-    assert [one.severity for one in found.files[str(bad)]] == ["error"] and "stop_time" in str(found.problems[0])
+    assert [one.severity for one in found.files[str(bad)]] == ["error"] and "stop_time" in str(
+        found.problems[0]
+    )
     assert not any(one.severity == "error" for one in found.files["gunnerus_log"])
     assert "FAIL. 1 error" in repr(found) and "stop_time" in found._repr_html_()
     assert set(found.to_pandas()["file"]) >= {str(bad)}
@@ -52,7 +56,9 @@ def test_a_capability_is_that_of_the_command(capability, tmp_path):
 
 
 def test_a_capability_shows_itself(capability):
-    assert capability.notation in repr(capability) and capability.notation in capability._repr_html_()
+    assert (
+        capability.notation in repr(capability) and capability.notation in capability._repr_html_()
+    )
     assert capability.to_pandas().shape[0] == capability.table.sizes["weather_from"] == 36
     assert "DP capability-L1" in capability.page().html
 
@@ -63,7 +69,9 @@ def test_results_of_calls_are_kept_unless_forced(capability, tmp_path, capsys):
     (folder / "notes.txt").write_text("mine")
     (folder / "capability.csv").write_text("first")
     capability.save(folder)
-    assert (tmp_path / "cap-1" / "capability.csv").read_text() == "first" and (folder / "notes.txt").exists()
+    assert (tmp_path / "cap-1" / "capability.csv").read_text() == "first" and (
+        folder / "notes.txt"
+    ).exists()
     assert "force=True replaces them" in capsys.readouterr().err
     capability.save(folder, force=True)
     assert not (tmp_path / "cap-2").exists() and not capsys.readouterr().err

@@ -12,21 +12,33 @@ from shipcosim.diagnose.result import Diagnosis
 from shipcosim.results.diagnosis import DiagnosisOfLog
 from shipcosim.results.shown import parts_of
 
-LOST = Finding("thrust_loss", "port", probability=0.97, parameters={"loss": ParameterEstimate(0.31, 0.02, "1")})
+LOST = Finding(
+    "thrust_loss", "port", probability=0.97, parameters={"loss": ParameterEstimate(0.31, 0.02, "1")}
+)
 
 
 @pytest.fixture
 def found():
     """A made-up diagnosis."""
     candidates = (Candidate("thrust_loss", "port", 0.97),)
-    return DiagnosisOfLog(**parts_of(Diagnosis("named", (LOST,), candidates, not_testable=("wind_scale",))))
+    return DiagnosisOfLog(
+        **parts_of(Diagnosis("named", (LOST,), candidates, not_testable=("wind_scale",)))
+    )
 
 
 def test_a_diagnosis_is_one_with_a_card(found):
     assert isinstance(found, Diagnosis) and found.is_named and found.findings == (LOST,)
-    assert repr(found).startswith("<Diagnosis of a log: NAMED. One thing is not as modelled") and len(repr(found)) < 300
+    assert (
+        repr(found).startswith("<Diagnosis of a log: NAMED. One thing is not as modelled")
+        and len(repr(found)) < 300
+    )
     card = found._repr_html_()
-    assert "Thrust loss of port" in card and "97 %" in card and "0.31 ± 0.02" in card and "Wind scale" in card
+    assert (
+        "Thrust loss of port" in card
+        and "97 %" in card
+        and "0.31 ± 0.02" in card
+        and "Wind scale" in card
+    )
     assert json.loads(json.dumps(found.as_json()))["verdict"] == "named"
 
 
@@ -49,7 +61,8 @@ def test_what_was_changed_in_a_structure_goes_into_its_diagnosis(monkeypatch):
     """And is not read again from its file."""
     given = []
     monkeypatch.setattr(
-        "shipcosim.diagnose.pipeline.diagnose", lambda log, system, *_, **__: given.append(system) or FOUND
+        "shipcosim.diagnose.pipeline.diagnose",
+        lambda log, system, *_, **__: given.append(system) or FOUND,
     )
     structure = sc.read("gunnerus_open").copy()
     structure.parameters["vessel.mass"] = 6e5
@@ -72,4 +85,7 @@ def test_a_replay_shows_errors_and_track():
 def test_engines_are_compared_by_name():
     found = sc.compare("otter_open", stop_time=0.5, step_size=0.1)
     assert found.agree and "Engines on otter_open" in repr(found)
-    assert "half the step" in found.to_pandas().columns and "Largest differences" in found._repr_html_()
+    assert (
+        "half the step" in found.to_pandas().columns
+        and "Largest differences" in found._repr_html_()
+    )

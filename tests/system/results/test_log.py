@@ -13,7 +13,11 @@ def log():
 
 def test_a_log_reads_like_its_table(log):
     assert log["heading"].attrs["units"] == "deg" and log.sizes["time"] == len(log.to_pandas())
-    assert "heading" in log and list(log) == list(log.table) and "Log 'gunnerus_log.csv.gz'" in repr(log)
+    assert (
+        "heading" in log
+        and list(log) == list(log.table)
+        and "Log 'gunnerus_log.csv.gz'" in repr(log)
+    )
 
 
 def test_the_card_lists_channels_and_faults(log):
@@ -31,7 +35,9 @@ def test_a_fault_that_the_channels_show_is_said(log):
 
 def test_columns_that_are_not_used_are_said(tmp_path):
     rows = "".join(f"{k},{k},0,90,1,x\n" for k in range(60))
-    (tmp_path / "odd.csv").write_text(f"time,north,east,heading,surge,foo\n{rows}", encoding="utf-8")
+    (tmp_path / "odd.csv").write_text(
+        f"time,north,east,heading,surge,foo\n{rows}", encoding="utf-8"
+    )
     log = sc.read_log(tmp_path / "odd.csv")
     assert any("foo" in remark for remark in log.remarks) and "foo" in log._repr_html_()
 

@@ -53,7 +53,9 @@ def test_out_gets_what_the_command_writes(empty):
 def test_a_run_reads_like_its_table(gust):
     table = gust.table
     assert isinstance(table, xarray.Dataset)
-    assert gust["vessel.x"].identical(table["vessel.x"]) and gust[["vessel.x"]].identical(table[["vessel.x"]])
+    assert gust["vessel.x"].identical(table["vessel.x"]) and gust[["vessel.x"]].identical(
+        table[["vessel.x"]]
+    )
     assert gust.sizes == table.sizes and list(gust) == list(table) and len(gust) == len(table)
     assert "vessel.x" in gust and "vessel.nothing" not in gust
     assert gust.sel(time=5.0).identical(table.sel(time=5.0)) and gust.attrs == table.attrs
@@ -82,9 +84,13 @@ def test_pandas_has_the_signals_over_time(gust):
 
 
 def test_expectations_are_judged_as_the_scenario_says(tmp_path):
-    text = Path(sc.read_scenario("gust").path).read_text(encoding="utf-8").partition("[[expect]]")[0]
+    text = (
+        Path(sc.read_scenario("gust").path).read_text(encoding="utf-8").partition("[[expect]]")[0]
+    )
     limits = '[[expect]]\nsignal = "vessel.x"\nat_most = {}\n'
-    (tmp_path / "own.toml").write_text(text + limits.format("100.0") + limits.format("-100.0"), encoding="utf-8")
+    (tmp_path / "own.toml").write_text(
+        text + limits.format("100.0") + limits.format("-100.0"), encoding="utf-8"
+    )
     found = sc.run(tmp_path / "own.toml", **SHORT)
     assert [one.passed for one in found.expectations] == [True, False]
     assert not found.passed and "FAIL. 1 of 2 expectations missed." in repr(found)
@@ -100,8 +106,17 @@ def test_start_values_events_and_sets_go_over_the_scenarios(tmp_path):
     values = [sc.parameter("environment.wind_speed", 9.0), sc.parameter("no.where", 1.0)]
     sc.write_ssv(tmp_path / "wind.ssv", "wind", values)
     events = [{"time": 0.5, "override": {"tunnel.failed": True}}]
-    found = sc.run("gust", stop_time=1.0, set={"environment.seed": 7}, parameters=tmp_path / "wind.ssv", events=events)
-    assert found.scenario.set["environment.wind_speed"] == 9.0 and found.scenario.set["environment.seed"] == 7
+    found = sc.run(
+        "gust",
+        stop_time=1.0,
+        set={"environment.seed": 7},
+        parameters=tmp_path / "wind.ssv",
+        events=events,
+    )
+    assert (
+        found.scenario.set["environment.wind_speed"] == 9.0
+        and found.scenario.set["environment.seed"] == 7
+    )
     assert not found["tunnel.failed"][0] and found["tunnel.failed"][-1]
     assert any("no.where" in str(remark) for remark in found.remarks)
 
@@ -144,7 +159,9 @@ def test_the_track_shows_where_she_was_to_be(gust):
 
 def test_a_system_without_a_ship_has_no_track(tmp_path):
     table = xarray.Dataset({"a.b": ("time", [1.0, 2.0], {"units": "m"})}, {"time": [0.0, 1.0]})
-    run = sc.Run(table, sc.Scenario(stop_time=1.0, step_size=1.0), sc.read("gunnerus_open").checked())
+    run = sc.Run(
+        table, sc.Scenario(stop_time=1.0, step_size=1.0), sc.read("gunnerus_open").checked()
+    )
     with pytest.raises(sc.ShipcosimError, match="Nothing here is a ship"):
         run.track()
     assert "<img" not in run._repr_html_() and "b" in texts(run.plot())
@@ -153,7 +170,9 @@ def test_a_system_without_a_ship_has_no_track(tmp_path):
 def test_the_card_says_what_ran_and_escapes_what_users_write(gust):
     from dataclasses import replace
 
-    shown = replace(gust, scenario=gust.scenario.model_copy(update={"description": "<script>alert(1)</script>"}))
+    shown = replace(
+        gust, scenario=gust.scenario.model_copy(update={"description": "<script>alert(1)</script>"})
+    )
     assert "<script" not in shown._repr_html_() and "gunnerus_dp" in shown._repr_html_()
 
 
@@ -170,7 +189,10 @@ def test_the_page_is_that_of_the_command_and_shown_in_a_frame(gust, tmp_path, mo
 
 
 REFUSED = {
-    "keyword": ({"scenario": "gust", "stp_time": 3.0}, "no keyword 'stp_time'.* Did you mean 'stop_time'"),
+    "keyword": (
+        {"scenario": "gust", "stp_time": 3.0},
+        "no keyword 'stp_time'.* Did you mean 'stop_time'",
+    ),
     "nothing": ({}, "run\\(\\): Missing a required argument: 'scenario'"),
     "name": ({"scenario": "gsut"}, "There is no such scenario file.* Did you mean 'gust'"),
     "number": ({"scenario": 3}, "3 is neither a path nor a name"),
@@ -199,7 +221,11 @@ def test_what_cannot_be_used_is_one_error_without_a_wall(case):
             "Scenario\\(\\): stop_time = -1.0. Input should be greater",
         ),
         (sc.Scenario, {"stop_time": 1.0, "step": 0.1}, "step: There is no such key"),
-        (sc.Scenario, {"stop_time": 1.0, "step_size": 0.1, "events": [{"time": 0.0}]}, "The event does nothing"),
+        (
+            sc.Scenario,
+            {"stop_time": 1.0, "step_size": 0.1, "events": [{"time": 0.0}]},
+            "The event does nothing",
+        ),
         (Event, {"override": {"a.b": 1.0}}, "time is missing"),
     ],
 )
@@ -210,7 +236,12 @@ def test_a_record_that_a_script_makes_wrong_is_one_error_too(record, keywords, w
 
 
 def test_a_notebook_shows_the_problems_and_no_traceback():
-    error = sc.ShipcosimError([sc.Problem("a.toml, line 3", "x is wrong.", "Right is y."), sc.Problem("", "and z.")])
+    error = sc.ShipcosimError(
+        [sc.Problem("a.toml, line 3", "x is wrong.", "Right is y."), sc.Problem("", "and z.")]
+    )
     shown = error._render_traceback_()
-    assert [line.strip() for line in shown[1:]] == ["a.toml, line 3: x is wrong. Right is y.", "and z."]
+    assert [line.strip() for line in shown[1:]] == [
+        "a.toml, line 3: x is wrong. Right is y.",
+        "and z.",
+    ]
     assert "ShipcosimError: 2 problems" in shown[0]

@@ -17,7 +17,14 @@ from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.vessel import DriftParameters
 
 RHO, LENGTH, DRAUGHT = 1025.0, 33.9, 2.786
-WIND, WIND_FROM, CURRENT, HEIGHT, PERIOD, WAVES_FROM = 8.0, math.pi / 4, (-0.3, 0.0), 0.5, 6.0, math.pi / 4
+WIND, WIND_FROM, CURRENT, HEIGHT, PERIOD, WAVES_FROM = (
+    8.0,
+    math.pi / 4,
+    (-0.3, 0.0),
+    0.5,
+    6.0,
+    math.pi / 4,
+)
 
 
 def rows(table):
@@ -44,21 +51,29 @@ def wave_load(psi):
     headings = np.unique(table[:, 1])
     at_heading = np.array(
         [
-            [np.interp(abs(travel), headings, table[table[:, 0] == omega][:, column]) for column in (2, 3, 4)]
+            [
+                np.interp(abs(travel), headings, table[table[:, 0] == omega][:, column])
+                for column in (2, 3, 4)
+            ]
             for omega in omegas
         ]
     )
     side = math.copysign(1.0, travel)
     fine = np.linspace(omegas[0], omegas[-1], 2000)
     spectrum = np.array([jonswap(omega, HEIGHT, PERIOD, 3.3) for omega in fine])
-    load = [np.trapezoid(2 * spectrum * np.interp(fine, omegas, at_heading[:, i]), fine) for i in range(3)]
+    load = [
+        np.trapezoid(2 * spectrum * np.interp(fine, omegas, at_heading[:, i]), fine)
+        for i in range(3)
+    ]
     return np.array([load[0], side * load[1], side * load[2]])
 
 
 def hull_load(u, v):
     cross_flow = -0.5 * RHO * DRAUGHT * 1.5 * LENGTH * v * abs(v)
     lift = -30_000.0 * abs(u) * v
-    return np.array([-1645.0 * u * abs(u), cross_flow + lift, -2.3 * lift - (212_400.0 - 26_550.0) * u * v])
+    return np.array(
+        [-1645.0 * u * abs(u), cross_flow + lift, -2.3 * lift - (212_400.0 - 26_550.0) * u * v]
+    )
 
 
 def unit_load(u, v):
@@ -102,16 +117,21 @@ def test_free_drift_ends_in_the_balance_of_wind_waves_and_drag(run_scenario):
     assert float(abs(table["port.torque"].sel(time=310.0))) == 0.0
     psi = float(last["vessel.psi"].mean())
     north, east = (
-        float((last[name][-1] - last[name][0]) / (last.time[-1] - last.time[0])) for name in ("vessel.x", "vessel.y")
+        float((last[name][-1] - last[name][0]) / (last.time[-1] - last.time[0]))
+        for name in ("vessel.x", "vessel.y")
     )
-    expected_psi = min(stable_headings(), key=lambda heading: abs(math.remainder(heading - psi, 2 * math.pi)))
+    expected_psi = min(
+        stable_headings(), key=lambda heading: abs(math.remainder(heading - psi, 2 * math.pi))
+    )
     u, v, _ = balance(expected_psi)
     expected_north = math.cos(expected_psi) * u - math.sin(expected_psi) * v
     expected_east = math.sin(expected_psi) * u + math.cos(expected_psi) * v
     course = math.atan2(east, north) - math.atan2(expected_east, expected_north)
     assert abs(math.degrees(math.remainder(psi - expected_psi, 2 * math.pi))) < 10.0
     assert abs(math.degrees(math.remainder(course, 2 * math.pi))) < 10.0
-    assert math.hypot(north, east) == pytest.approx(math.hypot(expected_north, expected_east), rel=0.10)
+    assert math.hypot(north, east) == pytest.approx(
+        math.hypot(expected_north, expected_east), rel=0.10
+    )
 
 
 def test_drift_is_predicted_from_what_the_ship_knows(run_scenario):
@@ -122,6 +142,8 @@ def test_drift_is_predicted_from_what_the_ship_knows(run_scenario):
     for when, most in ((start, 3.0), (later, 2.0)):
         rows = np.flatnonzero(when)
         x, y = (
-            table[f"predictor.{axis}_60"][rows].values - table[f"vessel.{axis}"][rows + seconds].values for axis in "xy"
+            table[f"predictor.{axis}_60"][rows].values
+            - table[f"vessel.{axis}"][rows + seconds].values
+            for axis in "xy"
         )
         assert float(np.hypot(x, y).mean()) < most

@@ -9,4 +9,6 @@ def test_it_commands_the_thrusters_once_a_second_and_meets_the_request_roughly(l
     changes = np.flatnonzero(np.diff(thrust) != 0.0)
     assert len(changes) >= 29 and set(np.diff(changes)) == {2}  # rows are 0.5 s apart
     late = table.sel(time=slice(15.0, 30.0))
-    assert float(abs(late["allocator.slack_Y"]).mean()) < 0.3 * float(abs(late["allocator.tau_Y"]).mean())
+    assert float(abs(late["allocator.slack_Y"]).mean()) < 0.3 * float(
+        abs(late["allocator.tau_Y"]).mean()
+    )

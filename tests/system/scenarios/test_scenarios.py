@@ -11,7 +11,9 @@ import pytest
 from shipcosim.scenario import judge
 
 FOLDER = Path(__file__).parents[3] / "scenarios"
-NAMES = sorted(path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.rglob("*.toml"))
+NAMES = sorted(
+    path.relative_to(FOLDER).with_suffix("").as_posix() for path in FOLDER.rglob("*.toml")
+)
 REPRESENTATIVE = {
     "sensors/all_references_lost",
     "failures/port_full_thrust",
@@ -43,7 +45,11 @@ def test_halving_the_step_changes_the_track_by_less_than_5_cm(load_scenario, run
 
 def test_a_wind_that_fixed_angles_cannot_hold_is_seen_in_the_run(load_scenario, run):
     """Twice the wind of four_corner: thrust at its limits, the error grows."""
-    table = run(load_scenario("four_corner", stop_time=400.0, events=[], set={"environment.wind_speed": 18.0}))
+    table = run(
+        load_scenario(
+            "four_corner", stop_time=400.0, events=[], set={"environment.wind_speed": 18.0}
+        )
+    )
     late = table.sel(time=slice(300.0, 400.0))
     assert float(late["allocator.saturated"].mean()) > 0.5
     error = table["controller.position_error"]

@@ -26,7 +26,9 @@ def test_each_ship_is_held_by_her_dp(name, root):
 def test_each_ship_goes_ahead_where_her_thrusters_are_given(name, root):
     system = root / "ssp" / "gunnerus_open"
     ship = read_system(system, system / "resources" / f"{name}.ssv", fmus=[build_stale(root)])
-    run = sc.simulate(ship, stop_time=20.0, step_size=0.05, set={"port_rpm": 100.0, "starboard_rpm": 100.0})
+    run = sc.simulate(
+        ship, stop_time=20.0, step_size=0.05, set={"port_rpm": 100.0, "starboard_rpm": 100.0}
+    )
     assert run["vessel.u"].values[-1] > 0.5 and abs(run["vessel.v"].values[-1]) < 1e-6
 
 
@@ -50,14 +52,20 @@ def test_top_speed_is_what_the_thrust_overcomes(name, speed, root):
 def test_more_thrust_on_the_left_turns_a_boat_to_starboard(name, root):
     ship = read_system(root / "ssp" / f"{name}_open", fmus=[build_stale(root)])
     left, right = CRAFT[name]
-    run = sc.simulate(ship, stop_time=5.0, step_size=0.05, set={left: CRAFT[name][left], right: 0.0})
+    run = sc.simulate(
+        ship, stop_time=5.0, step_size=0.05, set={left: CRAFT[name][left], right: 0.0}
+    )
     assert run["vessel.r"].values[-1] > 0.1
 
 
 def circle(root, side):
     """Advance and tactical diameter of KVLCC2 at 35 deg, in lengths; propeller and speed of the paper's model."""
     system = sc.read(root / "ssp" / "kvlcc2_open", fmus=[build_stale(root)]).copy()
-    published = {"propeller.diameter": 0.216, "propeller.covered": 0.626, "propeller.propeller_x": -3.36}
+    published = {
+        "propeller.diameter": 0.216,
+        "propeller.covered": 0.626,
+        "propeller.propeller_x": -3.36,
+    }
     at_start = {"vessel.u_start": 1.179, "propeller_rpm": 624.0, "propeller_azimuth": -35.0 * side}
     run = sc.simulate(system, stop_time=80.0, step_size=0.05, set=published | at_start)
     turned = np.abs(np.unwrap(run["vessel.psi"].values))

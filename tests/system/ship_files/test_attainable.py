@@ -29,7 +29,9 @@ def drawn(random, kind):
         "both": np.array([0.0, np.pi]),
         "one": np.zeros(1),
     }[kind]
-    force = random.uniform(0.2, 2.0) * np.column_stack([np.cos(angle + turns), np.sin(angle + turns)])
+    force = random.uniform(0.2, 2.0) * np.column_stack(
+        [np.cos(angle + turns), np.sin(angle + turns)]
+    )
     return np.column_stack([force, x * force[:, 1] - y * force[:, 0]])
 
 
@@ -38,7 +40,9 @@ def test_multiple_is_that_of_the_linear_programme(seed):
     random = np.random.default_rng(seed)
     kinds = random.choice(["disc", "sector", "both", "one"], random.integers(1, 6))
     sets = [drawn(random, kind) for kind in kinds]
-    inside = np.array([sum(random.dirichlet(np.ones(len(one))) @ one for one in sets) for _ in range(3)])
+    inside = np.array(
+        [sum(random.dirichlet(np.ones(len(one))) @ one for one in sets) for _ in range(3)]
+    )
     loads = np.concatenate([random.normal(size=(3, 3)), 10.0 * inside, np.eye(3)[:2], [sets[0][0]]])
     left = random.uniform(0.0, 1.0, (len(loads), len(sets)))
     expected = [by_programme(sets, *one) for one in zip(left, loads, strict=True)]
@@ -47,5 +51,7 @@ def test_multiple_is_that_of_the_linear_programme(seed):
 
 def test_nothing_is_infinitely_often_in_it_and_no_thruster_gives_nothing():
     sets = [np.zeros((2, 3)), np.array([(1.0, 0.0, 0.0)])]
-    loads = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 1e-3, 0.0)])
+    loads = np.array(
+        [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 1e-3, 0.0)]
+    )
     assert largest_multiple(sets, np.ones((5, 2)), loads).tolist() == [np.inf, 1.0, 0.0, 0.0, 0.0]

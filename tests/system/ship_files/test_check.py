@@ -6,12 +6,36 @@ from ships_at_hand import BOAT, COASTER, FILES, SUPPLY
 from shipcosim.ships.check import check_ship
 
 PLANTED = {
-    "no length": (SUPPLY, [('length = "60 m"\n', "")], "particulars", "nothing says length", "28.9 m"),
-    "no mass": (SUPPLY, [('displacement = "2650 t"\n', "")], "mass", "how heavy", "block_coefficient"),
+    "no length": (
+        SUPPLY,
+        [('length = "60 m"\n', "")],
+        "particulars",
+        "nothing says length",
+        "28.9 m",
+    ),
+    "no mass": (
+        SUPPLY,
+        [('displacement = "2650 t"\n', "")],
+        "mass",
+        "how heavy",
+        "block_coefficient",
+    ),
     "no thrusters": (SUPPLY[: SUPPLY.index("[[thr")], [], "thrusters", "she has none", "azimuth"),
     "a mass of 1 kg": (SUPPLY, [('"2650 t"', '"1 kg"')], "mass", "1 kg do not fit", "t to"),
-    "a mass in the wrong unit": (SUPPLY, [('"2650 t"', "2650")], "mass", "do not fit 60 m x 14 m x 4.5 m", "t to"),
-    "two masses": (SUPPLY, [("[wind]", '[mass]\nmass = "2000 t"\n[wind]')], "mass", "the displacement", "one of them"),
+    "a mass in the wrong unit": (
+        SUPPLY,
+        [('"2650 t"', "2650")],
+        "mass",
+        "do not fit 60 m x 14 m x 4.5 m",
+        "t to",
+    ),
+    "two masses": (
+        SUPPLY,
+        [("[wind]", '[mass]\nmass = "2000 t"\n[wind]')],
+        "mass",
+        "the displacement",
+        "one of them",
+    ),
     "block and mass": (
         SUPPLY,
         [("service_speed", "block_coefficient = 0.5\nservice_speed")],
@@ -19,7 +43,13 @@ PLANTED = {
         "do not fit 60 m",
         "0.684",
     ),
-    "length in feet for metres": (SUPPLY, [('"60 m"', "600")], "particulars", "length over breadth is 42.9", "unit"),
+    "length in feet for metres": (
+        SUPPLY,
+        [('"60 m"', "600")],
+        "particulars",
+        "length over breadth is 42.9",
+        "unit",
+    ),
     "a length that is a mass": (
         SUPPLY,
         [('"60 m"', '"60 t"')],
@@ -27,12 +57,36 @@ PLANTED = {
         "is in t, where m is wanted",
         "number in m",
     ),
-    "an unknown unit": (SUPPLY, [('"60 m"', '"60 parsnip"')], "particulars.length", "'parsnip' is not known", "kn"),
+    "an unknown unit": (
+        SUPPLY,
+        [('"60 m"', '"60 parsnip"')],
+        "particulars.length",
+        "'parsnip' is not known",
+        "kn",
+    ),
     "a text": (SUPPLY, [('"60 m"', '"long"')], "particulars.length", "'long'", "a number in m"),
-    "a negative draught": (SUPPLY, [('"4.5 m"', "-4.5")], "particulars.draught", "found -4.5", "greater than 0 m"),
+    "a negative draught": (
+        SUPPLY,
+        [('"4.5 m"', "-4.5")],
+        "particulars.draught",
+        "found -4.5",
+        "greater than 0 m",
+    ),
     "not finite": (SUPPLY, [('"4.5 m"', "inf")], "particulars.draught", "found inf", "finite"),
-    "an unknown key": (SUPPLY, [("draught =", "draft =")], "particulars", "unknown key 'draft'", "'draught'"),
-    "an unknown section": (SUPPLY, [("[wind]", "[winds]")], "ship.toml", "unknown key 'winds'", "'wind'"),
+    "an unknown key": (
+        SUPPLY,
+        [("draught =", "draft =")],
+        "particulars",
+        "unknown key 'draft'",
+        "'draught'",
+    ),
+    "an unknown section": (
+        SUPPLY,
+        [("[wind]", "[winds]")],
+        "ship.toml",
+        "unknown key 'winds'",
+        "'wind'",
+    ),
     "a mass matrix that is not positive": (
         SUPPLY,
         [("[wind]", "[mass]\nadded_sway_yaw = 9e7\n[wind]")],
@@ -61,9 +115,27 @@ PLANTED = {
         "centre of gravity lies 29 m",
         "a tenth",
     ),
-    "damping that drives": (SUPPLY, [("[wind]", "[hull]\nX_uu = 2900\n[wind]")], "hull", "X_uu is 2900", "negative"),
-    "a thruster before the bow": (SUPPLY, [('x = "25 m"', 'x = "52 m"')], "thruster bow", "x is 52 m", "-30 to 30"),
-    "a thruster beside the ship": (SUPPLY, [('y = "3.5 m"', "y = 35")], "thruster starboard", "y is 35 m", "-7 to 7"),
+    "damping that drives": (
+        SUPPLY,
+        [("[wind]", "[hull]\nX_uu = 2900\n[wind]")],
+        "hull",
+        "X_uu is 2900",
+        "negative",
+    ),
+    "a thruster before the bow": (
+        SUPPLY,
+        [('x = "25 m"', 'x = "52 m"')],
+        "thruster bow",
+        "x is 52 m",
+        "-30 to 30",
+    ),
+    "a thruster beside the ship": (
+        SUPPLY,
+        [('y = "3.5 m"', "y = 35")],
+        "thruster starboard",
+        "y is 35 m",
+        "-7 to 7",
+    ),
     "a thruster without a place": (
         SUPPLY,
         [('y = "3.5 m"\n', "")],
@@ -71,10 +143,34 @@ PLANTED = {
         "nothing says y",
         "starboard",
     ),
-    "a thruster of no kind": (SUPPLY, [('kind = "tunnel"', 'kind = "tunel"')], "thruster bow", "'tunel'", "'tunnel'"),
-    "a thruster without its kind": (SUPPLY, [('kind = "tunnel"\n', "")], "thruster bow", "its kind", "azimuth"),
-    "an unknown key of a thruster": (SUPPLY, [('x = "25 m"', "xx = 25")], "thruster bow", "'xx'", "There is"),
-    "a thruster without power": (SUPPLY, [('power = "500 kW"', "")], "thruster bow", "power or thrust", "500 kW"),
+    "a thruster of no kind": (
+        SUPPLY,
+        [('kind = "tunnel"', 'kind = "tunel"')],
+        "thruster bow",
+        "'tunel'",
+        "'tunnel'",
+    ),
+    "a thruster without its kind": (
+        SUPPLY,
+        [('kind = "tunnel"\n', "")],
+        "thruster bow",
+        "its kind",
+        "azimuth",
+    ),
+    "an unknown key of a thruster": (
+        SUPPLY,
+        [('x = "25 m"', "xx = 25")],
+        "thruster bow",
+        "'xx'",
+        "There is",
+    ),
+    "a thruster without power": (
+        SUPPLY,
+        [('power = "500 kW"', "")],
+        "thruster bow",
+        "power or thrust",
+        "500 kW",
+    ),
     "two of a name": (SUPPLY, [('"starboard"', '"port"')], "thrusters", "'port' is taken", "own"),
     "more thrust than the power gives": (
         SUPPLY,
@@ -104,7 +200,13 @@ PLANTED = {
         "-9000 N after 0 N",
         "increas",
     ),
-    "a map of three columns": (BOAT, [("[100, 9000]", "[100, 9000, 3]")], "thruster stern", "two numbers", "[["),
+    "a map of three columns": (
+        BOAT,
+        [("[100, 9000]", "[100, 9000, 3]")],
+        "thruster stern",
+        "two numbers",
+        "[[",
+    ),
     "a coefficient that is none": (
         BOAT,
         [('kind = "map"', 'kind = "map"\ncoefficients = { gain = 2.0 }')],
@@ -112,7 +214,13 @@ PLANTED = {
         "no such number",
         "thrust_loss",
     ),
-    "a table that is not there": (SUPPLY, [("[wind]", '[wind]\ntable = "w.csv"')], "hull", "there is no file", ""),
+    "a table that is not there": (
+        SUPPLY,
+        [("[wind]", '[wind]\ntable = "w.csv"')],
+        "hull",
+        "there is no file",
+        "",
+    ),
     "a kind of ship that is none": (
         SUPPLY,
         [('"offshore supply vessel"', '"offshore supply vesel"')],
@@ -120,7 +228,13 @@ PLANTED = {
         "offshore supply vesel",
         "'offshore supply vessel'",
     ),
-    "no diameter of a screw": (COASTER, [('diameter = "3 m"', "")], "thruster propeller", "diameter", "5.8 m"),
+    "no diameter of a screw": (
+        COASTER,
+        [('diameter = "3 m"', "")],
+        "thruster propeller",
+        "diameter",
+        "5.8 m",
+    ),
     "no TOML": (SUPPLY, [("[wind]", "[wind")], "line", "is no TOML", "texts in quotes"),
 }
 
@@ -128,23 +242,37 @@ PLANTED = {
 @pytest.mark.parametrize("name", PLANTED)
 def test_each_planted_mistake_is_found_where_it_is(name, written):
     text, changes, where, found, remedy = PLANTED[name]
-    errors = [problem for problem in check_ship(str(written(text, *changes))) if problem.severity == "error"]
-    said = [e for e in errors if where in e.where and found in e.found and remedy in f"{e.found} {e.remedy}"]
+    errors = [
+        problem
+        for problem in check_ship(str(written(text, *changes)))
+        if problem.severity == "error"
+    ]
+    said = [
+        e
+        for e in errors
+        if where in e.where and found in e.found and remedy in f"{e.found} {e.remedy}"
+    ]
     assert said, "\n".join(map(str, errors)) or "no error at all"
 
 
 @pytest.mark.parametrize("name", FILES)
 def test_nothing_is_wrong_with_a_ship_as_it_should_be(name, written):
-    assert not [problem for problem in check_ship(str(written(FILES[name]))) if problem.severity == "error"]
+    assert not [
+        problem for problem in check_ship(str(written(FILES[name]))) if problem.severity == "error"
+    ]
 
 
 def test_all_mistakes_are_said_at_once(written):
-    path = written(SUPPLY, ('"60 m"', '"60 t"'), ("draught =", "draft ="), ('x = "25 m"', "xx = 25"))
+    path = written(
+        SUPPLY, ('"60 m"', '"60 t"'), ("draught =", "draft ="), ('x = "25 m"', "xx = 25")
+    )
     assert len(check_ship(str(path))) == 3
 
 
 def test_a_ship_too_weak_for_her_speed_and_one_without_a_dp_earn_remarks(written):
-    weak = check_ship(str(written(SUPPLY, ('"12 kn"', '"19 kn"'), ("1200 kW", "20 kW"), ("1200 kW", "20 kW"))))
+    weak = check_ship(
+        str(written(SUPPLY, ('"12 kn"', '"19 kn"'), ("1200 kW", "20 kW"), ("1200 kW", "20 kW")))
+    )
     assert any("does not reach her service speed" in problem.remedy for problem in weak)
     (remark,) = [p for p in check_ship(str(written(COASTER))) if "no DP system" in p.found]
     assert remark.severity == "remark"

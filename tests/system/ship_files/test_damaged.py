@@ -11,8 +11,30 @@ from shipcosim.ships.check import check_ship, estimated
 from shipcosim.ships.control import dp_entries, why_no_dp
 
 VALUES = [
-    *("0", "-1", "1e30", "1e-30", "nan", "inf", '"abc"', "[]", "{}", "true", '""', '"1e400 m"', "9" * 25, '"5 kn"'),
-    *("[[1,2]]", "{value=1,unit=3}", "{value={}}", '{value=1,tolerance="x"}', "{value=1,uncertainty=[1]}", "1e-9"),
+    *(
+        "0",
+        "-1",
+        "1e30",
+        "1e-30",
+        "nan",
+        "inf",
+        '"abc"',
+        "[]",
+        "{}",
+        "true",
+        '""',
+        '"1e400 m"',
+        "9" * 25,
+        '"5 kn"',
+    ),
+    *(
+        "[[1,2]]",
+        "{value=1,unit=3}",
+        "{value={}}",
+        '{value=1,tolerance="x"}',
+        "{value=1,uncertainty=[1]}",
+        "1e-9",
+    ),
     *("0.001", "1000", "2026-01-01", "{table=3}", '"-5 m"'),
 ]
 

@@ -17,7 +17,13 @@ from shipcosim.ships.estimates import control, propulsion, resistance, weather
 from shipcosim.ships.estimates.hull import HullDimensions
 
 HOLTROP = HullDimensions(
-    length=205.0, breadth=32.0, draught=10.0, block=37500 / 205 / 320, hulls=1, density=1025.0, speed=25 * 0.5144
+    length=205.0,
+    breadth=32.0,
+    draught=10.0,
+    block=37500 / 205 / 320,
+    hulls=1,
+    density=1025.0,
+    speed=25 * 0.5144,
 )
 """Example ship of the paper of 1982."""
 MISSED = {("gunnerus-28m9", "resistance at 5.1 m/s"), ("blueboat", "resistance at 1.4 m/s")}
@@ -26,7 +32,9 @@ MISSED = {("gunnerus-28m9", "resistance at 5.1 m/s"), ("blueboat", "resistance a
 
 @pytest.fixture(scope="module")
 def generator(root):
-    spec = importlib.util.spec_from_file_location("estimates_page", root / "docs/generators/write_ship_estimates.py")
+    spec = importlib.util.spec_from_file_location(
+        "estimates_page", root / "docs/generators/write_ship_estimates.py"
+    )
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
@@ -37,7 +45,9 @@ def test_holtrop_and_mennen_give_the_numbers_of_their_example():
     """S 7381.45 m2 with a bulb of 20 m2, 1 + k 1.156, R_W 557.11 kN with c2 0.7595 (bulb) and c5 0.9592 (stern)."""
     surface = resistance.wetted_surface(HOLTROP, 0.98, 0.75)
     assert surface == pytest.approx(7381.45 - 2.38 * 20.0 / HOLTROP.block, abs=0.1)
-    assert resistance.form_factor(HOLTROP, midship=0.98, lcb=-0.75, stern=10.0) == pytest.approx(1.156, abs=1e-3)
+    assert resistance.form_factor(HOLTROP, midship=0.98, lcb=-0.75, stern=10.0) == pytest.approx(
+        1.156, abs=1e-3
+    )
     waves = resistance.wave_resistance(HOLTROP, midship=0.98, waterplane=0.75, lcb=-0.75)
     assert waves == pytest.approx(557.11e3 / 0.7595 / 0.9592, rel=2e-3)
 
@@ -45,19 +55,29 @@ def test_holtrop_and_mennen_give_the_numbers_of_their_example():
 def test_blendermann_gives_the_table_of_a_ship_of_his_kind():
     """R/V Gunnerus' table is his research vessel with A_F 85 m2, A_L 210 m2, s_L 2 m, air of 1.224 kg/m3."""
     found = weather.wind_table("research vessel", 85.0, 210.0, 2.0, 33.9).value
-    ours, theirs = (np.array(parse(t)) for t in (found, ship().entries["vessel"]["wind_table"].value))
+    ours, theirs = (
+        np.array(parse(t)) for t in (found, ship().entries["vessel"]["wind_table"].value)
+    )
     assert ours[:, 0] == pytest.approx(theirs[:, 0])
-    assert ours[0, 1] == pytest.approx(theirs[0, 1], rel=2e-3) and ours[-1, 1] == pytest.approx(theirs[-1, 1], rel=2e-3)
+    assert ours[0, 1] == pytest.approx(theirs[0, 1], rel=2e-3) and ours[-1, 1] == pytest.approx(
+        theirs[-1, 1], rel=2e-3
+    )
     for column in (2, 3):
-        assert ours[:, column] == pytest.approx(theirs[:, column], abs=0.12 * np.abs(theirs[:, column]).max())
+        assert ours[:, column] == pytest.approx(
+            theirs[:, column], abs=0.12 * np.abs(theirs[:, column]).max()
+        )
 
 
 def test_a_propeller_meets_its_bollard_points_and_falls_with_speed():
-    screw = propulsion.Screw(kind="open", diameter=2.0, power=5e5, thrust=7e4, rpm=250.0, density=1025.0)
+    screw = propulsion.Screw(
+        kind="open", diameter=2.0, power=5e5, thrust=7e4, rpm=250.0, density=1025.0
+    )
     tables = {name: estimate.value for name, estimate in propulsion.curves(screw).items()}
     made, n = PropellerParameters(diameter=2.0, **tables), 250.0 / 60.0
     thrust, torque = propeller_loads(0.0, n, propeller=made)
-    assert thrust == pytest.approx(7e4, rel=1e-3) and 2.0 * pi * n * torque == pytest.approx(5e5, rel=1e-3)
+    assert thrust == pytest.approx(7e4, rel=1e-3) and 2.0 * pi * n * torque == pytest.approx(
+        5e5, rel=1e-3
+    )
     assert propeller_loads(0.0, -n, propeller=made)[0] == pytest.approx(-0.7 * 7e4, rel=2e-3)
     ahead = [propeller_loads(u, n, propeller=made)[0] for u in (0.0, 2.0, 4.0, 6.0)]
     assert ahead == sorted(ahead, reverse=True)
@@ -83,7 +103,9 @@ def test_the_dp_of_a_ship_of_any_size_is_stable_with_margins(length, thrust):
     mass = 0.012 * 1025.0 * length**3
     matrix = np.diag([1.1 * mass, 1.8 * mass, 0.12 * mass * length**2])
     force = thrust * 9.81 * mass
-    loop = control.ControlledShip(length=length, mass=matrix, reach=(force, force, 0.3 * force * length))
+    loop = control.ControlledShip(
+        length=length, mass=matrix, reach=(force, force, 0.3 * force * length)
+    )
     values = {name: estimate.value for name, estimate in control.controller(loop).items()}
     parts = [
         kind(**{name: values[name] for name in kind.__dataclass_fields__})
@@ -104,8 +126,14 @@ def test_estimates_lie_within_their_tolerances_but_for_those_that_the_page_names
 
 def test_page_states_what_is_found(generator, root):
     text = (root / "docs" / "generated" / "ship-estimates.md").read_text(encoding="utf-8")
-    circles = [line.split("|")[1:-1] for line in text.splitlines() if line.startswith(("| starboard", "| port"))]
+    circles = [
+        line.split("|")[1:-1]
+        for line in text.splitlines()
+        if line.startswith(("| starboard", "| port"))
+    ]
     stated = [(row[0].strip(), *map(float, row[1:])) for row in circles]
     assert generator.page(stated) == text
     for _, advance, ours, diameter, of_ours in stated:
-        assert ours == pytest.approx(advance, rel=0.1) and of_ours == pytest.approx(diameter, rel=0.15)
+        assert ours == pytest.approx(advance, rel=0.1) and of_ours == pytest.approx(
+            diameter, rel=0.15
+        )

@@ -47,20 +47,33 @@ def problems_of(folder, component="port"):
 
 
 def test_a_ship_is_her_numbers_with_origin_and_tolerance_and_her_tables_digit_by_digit(yard):
-    folder = yard(own__ship='description = "a boat"\nsystems = ["here"]', own__port=WHOLE, own__curve=CURVE)
+    folder = yard(
+        own__ship='description = "a boat"\nsystems = ["here"]', own__port=WHOLE, own__curve=CURVE
+    )
     ship = read_ship(folder / "own")
     assert (ship.name, ship.description, ship.systems) == ("own", "a boat", ("here",))
     found = ship.parameter_set({"port": [Screw]})["port"]
-    assert found["diameter"] == (2.0, "m", "diameter", "drawing", 0.01, ()) and type(found["diameter"].value) is float
+    assert (
+        found["diameter"] == (2.0, "m", "diameter", "drawing", 0.01, ())
+        and type(found["diameter"].value) is float
+    )
     assert found["curve"] == ("0 0.40; 1 0.1", "1", "rows 'J KT'", "tank test", 0.0, ())
     assert found["loss"] == (0.0, "1", "loss of thrust", "neutral", 0.0, ())
     assert ship.parameters(Screw, "port") == Screw(diameter=2.0, pitch=1.1, curve="0 0.40; 1 0.1")
 
 
-def test_a_component_is_like_another_of_the_same_ship_and_a_ship_like_another_but_for_what_she_says(yard):
+def test_a_component_is_like_another_of_the_same_ship_and_a_ship_like_another_but_for_what_she_says(
+    yard,
+):
     other = 'pitch = { value = 0.9, unit = "1", origin = "measured" }'
-    files = {"own__ship": 'description = "a boat"\nsystems = ["here"]', "own__port": WHOLE, "own__curve": CURVE}
-    files |= {"own__starboard": 'like = "port"\nloss = { value = 0.2, unit = "1", origin = "worn" }'}
+    files = {
+        "own__ship": 'description = "a boat"\nsystems = ["here"]',
+        "own__port": WHOLE,
+        "own__curve": CURVE,
+    }
+    files |= {
+        "own__starboard": 'like = "port"\nloss = { value = 0.2, unit = "1", origin = "worn" }'
+    }
     folder = yard(**files, twin__ship='based_on = "own"', twin__port=other)
     ship = read_ship(folder / "twin")
     assert ship.systems == ("here",)
@@ -118,7 +131,10 @@ loss = { value = 1.5, unit = "1", origin = "assumed" }
     text = str(error.value)
     assert "port.toml: pitch: 'origin' is missing." in text
     assert "curve.csv, row 2: ['1', 'thick']. A row has 2 numbers." in text
-    folder = yard(own__port=wrong.replace('"1" }', '"1", origin = "assumed" }'), own__curve=curve.replace("thick", "1"))
+    folder = yard(
+        own__port=wrong.replace('"1" }', '"1", origin = "assumed" }'),
+        own__curve=curve.replace("thick", "1"),
+    )
     found = problems_of(folder / "own")
     assert found == [
         "own/port.toml: diameter: the unit is 'cm'. It must be 'm'.",
@@ -129,7 +145,9 @@ loss = { value = 1.5, unit = "1", origin = "assumed" }
     ]
 
 
-DOUBTFUL = WHOLE + 'loss = { value = 0.1, unit = "1", uncertainty = [0.0, 0.3], origin = "two tanks" }'
+DOUBTFUL = (
+    WHOLE + 'loss = { value = 0.1, unit = "1", uncertainty = [0.0, 0.3], origin = "two tanks" }'
+)
 
 
 def test_what_sources_disagree_on_is_a_number_beside_its_tolerance(yard):
@@ -140,14 +158,18 @@ def test_what_sources_disagree_on_is_a_number_beside_its_tolerance(yard):
 
 
 def test_a_value_outside_its_uncertainty_is_a_mistake(yard):
-    folder = yard(own__ship="", own__port=DOUBTFUL.replace("[0.0, 0.3]", "[0.2, 0.3]"), own__curve=CURVE)
+    folder = yard(
+        own__ship="", own__port=DOUBTFUL.replace("[0.0, 0.3]", "[0.2, 0.3]"), own__curve=CURVE
+    )
     (found,) = problems_of(folder / "own")
     assert "loss: 0.1 is outside its uncertainty." in found
 
 
 @pytest.mark.parametrize("uncertainty", ["0.3", "[0.3]", "[0.3, 0.0]", "['a', 'b']"])
 def test_an_uncertainty_that_is_no_range_is_said(uncertainty, yard):
-    folder = yard(own__ship="", own__port=DOUBTFUL.replace("[0.0, 0.3]", uncertainty), own__curve=CURVE)
+    folder = yard(
+        own__ship="", own__port=DOUBTFUL.replace("[0.0, 0.3]", uncertainty), own__curve=CURVE
+    )
     with pytest.raises(ShipcosimError, match="'uncertainty' is"):
         read_ship(folder / "own")
 
@@ -161,12 +183,22 @@ def test_an_uncertainty_that_is_no_range_is_said(uncertainty, yard):
         ({"own__ship": "colour = 3"}, "colour: found 3"),
         ({"own__ship": "", "own__port": "like = 'port'"}, "like itself"),
         ({"own__ship": "", "own__port": "like = 3"}, "Name the components"),
-        ({"own__ship": "", "own__port": "like = 'prot'"}, "like 'prot', which this ship does not have"),
+        (
+            {"own__ship": "", "own__port": "like = 'prot'"},
+            "like 'prot', which this ship does not have",
+        ),
         ({"own__ship": "", "own__port": "diameter = 2.0"}, r"diameter: found 2\.0\. Write"),
         ({"own__ship": "", "own__port": "diameter"}, "no TOML"),
-        ({"own__ship": "", "own__port": "curve = { table = 'curve.csv' }"}, r"there is no file .*curve\.csv"),
         (
-            {"own__ship": "", "own__port": WHOLE, "own__curve": CURVE.replace("# source: tank test\n", "")},
+            {"own__ship": "", "own__port": "curve = { table = 'curve.csv' }"},
+            r"there is no file .*curve\.csv",
+        ),
+        (
+            {
+                "own__ship": "",
+                "own__port": WHOLE,
+                "own__curve": CURVE.replace("# source: tank test\n", ""),
+            },
             "no line says where the table is from",
         ),
     ],

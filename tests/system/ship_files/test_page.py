@@ -9,16 +9,43 @@ def test_ship_file_of_the_page_has_no_mistake_but_is_short_of_a_thruster(root, t
     """It has one azimuth and a tunnel, to be short, so there is no DP."""
     text = (root / "docs" / "your-own-ship.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```toml\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    (tmp_path / "ship.toml").write_text(next(b for b in blocks if "[particulars]" in b), encoding="utf-8")
+    (tmp_path / "ship.toml").write_text(
+        next(b for b in blocks if "[particulars]" in b), encoding="utf-8"
+    )
     found = check_ship(str(tmp_path))
     assert found and {problem.severity for problem in found} == {"remark"}
     assert any("no DP system" in problem.found for problem in found)
 
 
 def test_page_lists_every_key_of_a_ship_file(root):
-    from shipcosim.ships.file import KINDS, Control, Drag, Inertia, Particulars, Resistance, ShipFile, Waves, Wind
+    from shipcosim.ships.file import (
+        KINDS,
+        Control,
+        Drag,
+        Inertia,
+        Particulars,
+        Resistance,
+        ShipFile,
+        Waves,
+        Wind,
+    )
 
     text = (root / "docs" / "your-own-ship.md").read_text(encoding="utf-8")
-    sections = (Particulars, Inertia, Resistance, Drag, Wind, Waves, Control, ShipFile, *KINDS.values())
-    missing = {key for record in sections for key in record.model_fields if not re.search(rf"\b{key}\b", text)}
+    sections = (
+        Particulars,
+        Inertia,
+        Resistance,
+        Drag,
+        Wind,
+        Waves,
+        Control,
+        ShipFile,
+        *KINDS.values(),
+    )
+    missing = {
+        key
+        for record in sections
+        for key in record.model_fields
+        if not re.search(rf"\b{key}\b", text)
+    }
     assert missing == set()

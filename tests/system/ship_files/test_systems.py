@@ -21,7 +21,11 @@ def fmus(root):
 
 def settled(folder, fmus):
     """Late part of a run in which the DP holds the ship in wind and current."""
-    weather = {"environment.wind_speed": 8.0, "environment.wind_from": 0.785, "environment.current_speed": 0.2}
+    weather = {
+        "environment.wind_speed": 8.0,
+        "environment.wind_from": 0.785,
+        "environment.current_speed": 0.2,
+    }
     system = read_system(folder, fmus=fmus)
     run = sc.simulate(system, stop_time=150.0, step_size=0.1, output_interval=1.0, set=weather)
     return run.sel(time=slice(110.0, None))
@@ -30,7 +34,9 @@ def settled(folder, fmus):
 def test_a_ship_with_azimuths_and_a_tunnel_holds_her_place(written, fmus, tmp_path):
     made = make_systems(written(SUPPLY), tmp_path / "ssp", fmus)
     assert [folder.name for folder in made] == ["tern_open", "tern_dp"]
-    assert sc.read(made[1], fmus=fmus).description == "supply ship: in a closed DP loop, gains by rule"
+    assert (
+        sc.read(made[1], fmus=fmus).description == "supply ship: in a closed DP loop, gains by rule"
+    )
     late = settled(made[1], fmus)
     assert np.hypot(late["vessel.x"], late["vessel.y"]).max() < 2.0
     assert np.abs(np.degrees(late["vessel.psi"])).max() < 2.0
@@ -47,7 +53,9 @@ def test_a_ship_with_a_rudder_has_an_open_system_that_turns_to_the_rudder(writte
     (folder,) = make_systems(written(COASTER), tmp_path / "ssp", fmus)
     inputs = {"propeller_rpm": 120.0, "propeller_azimuth": 20.0, "vessel.u_start": 5.0}
     run = sc.simulate(read_system(folder, fmus=fmus), stop_time=60.0, step_size=0.1, set=inputs)
-    assert np.degrees(run["vessel.psi"].values[-1]) < -5.0 and 2.0 < run["vessel.u"].values[-1] < 7.0
+    assert (
+        np.degrees(run["vessel.psi"].values[-1]) < -5.0 and 2.0 < run["vessel.u"].values[-1] < 7.0
+    )
 
 
 def test_open_systems_follow_what_they_are_given(written, fmus, tmp_path):
@@ -89,7 +97,9 @@ def test_a_ship_is_based_on_one_with_a_ship_file(written, tmp_path):
     twin = tmp_path / "twin"
     twin.mkdir()
     (twin / "ship.toml").write_text('based_on = "tern"', encoding="utf-8")
-    (twin / "vessel.toml").write_text('mass = { value = 3e6, unit = "kg", origin = "loaded" }', encoding="utf-8")
+    (twin / "vessel.toml").write_text(
+        'mass = { value = 3e6, unit = "kg", origin = "loaded" }', encoding="utf-8"
+    )
     vessel = read_ship(twin).entries["vessel"]
     assert vessel["mass"].value == 3e6 and vessel["length"].value == 60.0
 

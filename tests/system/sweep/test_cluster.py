@@ -14,7 +14,9 @@ from shipcosim.errors import ShipcosimError
 def cluster():
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as found:
+    with LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as found:
         yield found
 
 
@@ -30,7 +32,9 @@ def test_a_cluster_gives_the_same_table_also_where_a_worker_is_killed(project, s
             killed.append(next(worker.pid for worker in cluster.workers.values()))
             os.kill(killed[0], signal.SIGKILL)
 
-    there = shipcosim.sweep(path, out="there", engine="fmpy", scheduler=cluster.scheduler_address, progress=kill_one)
+    there = shipcosim.sweep(
+        path, out="there", engine="fmpy", scheduler=cluster.scheduler_address, progress=kill_one
+    )
     assert killed
     pandas.testing.assert_frame_equal(there.runs, here.runs)
 

@@ -13,7 +13,15 @@ import pytest
 
 import shipcosim
 
-SWEEP = [str(Path(sys.executable).parent / "shipcosim"), "sweep", "--engine", "fmpy", "--workers", "1", "--out"]
+SWEEP = [
+    str(Path(sys.executable).parent / "shipcosim"),
+    "sweep",
+    "--engine",
+    "fmpy",
+    "--workers",
+    "1",
+    "--out",
+]
 
 
 class Disk:
@@ -22,12 +30,16 @@ class Disk:
     def __init__(self, folder, size):
         self.folder, self.size = folder, size
         folder.mkdir()
-        made = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], capture_output=True)
+        made = subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], capture_output=True
+        )
         self.is_mounted = made.returncode == 0
 
     def sweep(self, study):
         limit = None if self.is_mounted or not self.size else self._limit
-        return subprocess.run([*SWEEP, self.folder / "out", study], capture_output=True, text=True, preexec_fn=limit)
+        return subprocess.run(
+            [*SWEEP, self.folder / "out", study], capture_output=True, text=True, preexec_fn=limit
+        )
 
     def enlarge(self):
         if self.is_mounted:
@@ -55,8 +67,12 @@ def disk(project):
         one.close()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="small disks are made by mount, or by limits of Unix")
-@pytest.mark.parametrize("size", [8 * 1024, 160 * 1024], ids=["full before the table", "full before the page"])
+@pytest.mark.skipif(
+    sys.platform == "win32", reason="small disks are made by mount, or by limits of Unix"
+)
+@pytest.mark.parametrize(
+    "size", [8 * 1024, 160 * 1024], ids=["full before the table", "full before the page"]
+)
 def test_on_a_full_disk_a_study_says_so_and_goes_on_when_there_is_room(project, disk, size):
     whole = shipcosim.sweep("levels", out="whole", engine="fmpy", workers=1)
     small = disk(size)
@@ -69,13 +85,18 @@ def test_on_a_full_disk_a_study_says_so_and_goes_on_when_there_is_room(project, 
     assert again.returncode == 0, again.stderr
     runs = pandas.read_parquet(small.folder / "out/runs.parquet")
     pandas.testing.assert_frame_equal(runs, whole.runs)
-    assert not list(small.folder.rglob("*.unfinished")) and (small.folder / "out/report.html").stat().st_size > 1e5
+    assert (
+        not list(small.folder.rglob("*.unfinished"))
+        and (small.folder / "out/report.html").stat().st_size > 1e5
+    )
 
 
 def test_a_killed_study_goes_on_where_it_stopped(project, study):
     path = study('extends = "levels"\n[set]\n"lag.pause" = 0.5\n')
     whole = shipcosim.sweep(path, out="whole", engine="fmpy", workers=2)
-    process = subprocess.Popen([*SWEEP, "killed", "own"], start_new_session=True, stdout=subprocess.DEVNULL)
+    process = subprocess.Popen(
+        [*SWEEP, "killed", "own"], start_new_session=True, stdout=subprocess.DEVNULL
+    )
     parts = project / "killed/parts"
     deadline = time.monotonic() + 120.0
     while not list(parts.glob("runs-*.parquet")) and time.monotonic() < deadline:
@@ -83,6 +104,8 @@ def test_a_killed_study_goes_on_where_it_stopped(project, study):
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     done = []
-    rest = shipcosim.sweep(path, out="killed", engine="fmpy", workers=1, progress=lambda n, total: done.append(n))
+    rest = shipcosim.sweep(
+        path, out="killed", engine="fmpy", workers=1, progress=lambda n, total: done.append(n)
+    )
     assert 1 < done[0] <= 12 and done[-1] == 12, "what was on disk was not done again"
     pandas.testing.assert_frame_equal(rest.runs, whole.runs)

@@ -92,7 +92,9 @@ value    = ["total", "first_order"]
 
 @pytest.fixture(scope="module")
 def sums(tmp_path_factory):
-    stated = "".join(STATED.replace("NAME", n).replace("TOLERANCE", str(t)) for n, t in TOLERANCES.items())
+    stated = "".join(
+        STATED.replace("NAME", n).replace("TOLERANCE", str(t)) for n, t in TOLERANCES.items()
+    )
     files = {
         "fmus/sum/sum.py": FMU,
         "ssp/sums/SystemStructure.ssd": SSD,
@@ -126,7 +128,9 @@ def test_known_indices_lie_in_their_intervals_and_the_largest_comes_first(projec
     assert len(found) == 4 and found.index[0] == "one.b" and (found["blocks"] == 128).all()
     for name, known in (("first_order", FIRST_ORDER), ("total", TOTAL)):
         for parameter, value in known.items():
-            assert found.loc[parameter, f"{name}_low"] <= value <= found.loc[parameter, f"{name}_high"], (
+            assert (
+                found.loc[parameter, f"{name}_low"] <= value <= found.loc[parameter, f"{name}_high"]
+            ), (
                 name,
                 parameter,
             )
@@ -144,18 +148,25 @@ def test_a_study_that_stopped_and_one_on_two_workers_give_the_same_indices(proje
     rest = swept("own", out="part", workers=2)
     pandas.testing.assert_frame_equal(rest.tables["indices"], whole.tables["indices"])
     assert "remarks" not in rest.about
-    assert (project / "part/indices.csv").read_bytes() == (project / "whole/indices.csv").read_bytes()
+    assert (project / "part/indices.csv").read_bytes() == (
+        project / "whole/indices.csv"
+    ).read_bytes()
 
 
 def test_a_failed_run_takes_its_block_with_it_and_that_is_said(project):
     whole = swept(out="whole").runs
     limit = float(whole["one.b"].max()) - 1e-9
     write(f'extends = "sensitivity"\n[set]\n"one.fails_above" = {limit!r}\n')
-    called = CliRunner().invoke(app, ["sweep", "own", "--engine", "fmpy", "--workers", "1", "--out", "out"])
+    called = CliRunner().invoke(
+        app, ["sweep", "own", "--engine", "fmpy", "--workers", "1", "--out", "out"]
+    )
     failed = whole.index[whole["one.b"] > limit]
     blocks = {number // 6 for number in failed}
     left = 128 - len(blocks)
-    assert f"without {len(blocks)} of 128 blocks, {len(blocks)} since a run of it failed" in called.stdout
+    assert (
+        f"without {len(blocks)} of 128 blocks, {len(blocks)} since a run of it failed"
+        in called.stdout
+    )
     assert pandas.read_csv("out/indices.csv")["blocks"].tolist() == 4 * [left]
     kept = np.array([number for number in range(len(whole)) if number // 6 not in blocks])
     reference = _total_of_b(whole["sum"].to_numpy()[kept].reshape(-1, 6))
@@ -193,8 +204,14 @@ def test_indices_are_given_for_each_level_of_other_factors(project):
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ('"one.*" = { distribution = "norm" }', r"line 9: 'one\.\*' stands for each parameter with a tolerance"),
-        ('"two.*" = { tolerance = true }', r"line 9: No parameter set states a tolerance of two\.\*"),
+        (
+            '"one.*" = { distribution = "norm" }',
+            r"line 9: 'one\.\*' stands for each parameter with a tolerance",
+        ),
+        (
+            '"two.*" = { tolerance = true }',
+            r"line 9: No parameter set states a tolerance of two\.\*",
+        ),
         ('"one.a" = { tolerance = true, also = ["one.e"] }', "line 9: .*'e'"),
     ],
 )
@@ -205,7 +222,11 @@ def test_a_mistake_in_what_is_sampled_is_said_at_its_line(project, line, said):
 
 
 def test_signals_that_go_together_are_one_parameter(project):
-    path = write(STUDY.replace('"one.*"', '"one.c" = { tolerance = true, also = ["one.d"] }\n"one.*"'))
+    path = write(
+        STUDY.replace('"one.*"', '"one.c" = { tolerance = true, also = ["one.d"] }\n"one.*"')
+    )
     plan = plan_of(read_study(path))
     assert [one.name for one in plan.samples.columns] == ["one.c", "one.a", "one.b"]
-    assert len(plan) == 128 * 5 and all(plan.run(n).values["one.c"] == plan.run(n).values["one.d"] for n in range(9))
+    assert len(plan) == 128 * 5 and all(
+        plan.run(n).values["one.c"] == plan.run(n).values["one.d"] for n in range(9)
+    )

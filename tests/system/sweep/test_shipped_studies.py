@@ -20,7 +20,9 @@ def swept(root, tmp_path_factory):
 
     def run(name):
         if name not in done:
-            found = shipcosim.sweep(root / "studies" / f"{name}.toml", out=tmp_path_factory.mktemp(name), workers=1)
+            found = shipcosim.sweep(
+                root / "studies" / f"{name}.toml", out=tmp_path_factory.mktemp(name), workers=1
+            )
             done[name] = found, page_of(tables_of(found, name))
         return done[name]
 
@@ -33,10 +35,17 @@ def swept(root, tmp_path_factory):
 def test_dp_capability_loses_each_thruster_and_each_bus_of_the_ship(root):
     plan = plan_of(read_study(root / "studies" / "dp_capability.toml"))
     vessel = vessel_of("gunnerus_dp", ["gunnerus-33m9"])
-    lost = next(levels for factor, levels in zip(plan.study.factor, plan.levels, strict=True) if factor.name == "lost")
+    lost = next(
+        levels
+        for factor, levels in zip(plan.study.factor, plan.levels, strict=True)
+        if factor.name == "lost"
+    )
     assert [level.label for level in lost] == [case.name for case in cases_of(vessel)]
     changed = {name for level in lost for event in level.events for name in event.override}
-    assert changed == {*(f"{thruster.name}.failed" for thruster in vessel.thrusters), "allocator.bus_a_power"}
+    assert changed == {
+        *(f"{thruster.name}.failed" for thruster in vessel.thrusters),
+        "allocator.bus_a_power",
+    }
 
 
 def test_conditions_and_directions_are_those_of_the_static_capability(swept):
@@ -44,8 +53,12 @@ def test_conditions_and_directions_are_those_of_the_static_capability(swept):
     for run in (plan.run(number) for number in range(len(plan))):
         weather = CONDITIONS[run.columns["condition"] - 1]
         away = np.radians(run.columns["weather_from"])
-        found = [run.values[f"environment.{name}"] for name in ("wind_from", "waves_from", "current_to")]
-        assert np.exp(1j * np.array(found)) == pytest.approx(np.exp(1j * away) * np.array([1, 1, -1]))
+        found = [
+            run.values[f"environment.{name}"] for name in ("wind_from", "waves_from", "current_to")
+        ]
+        assert np.exp(1j * np.array(found)) == pytest.approx(
+            np.exp(1j * away) * np.array([1, 1, -1])
+        )
         assert run.values["environment.wind_speed"] == weather.wind_speed
         assert run.values["environment.significant_wave_height"] == weather.wave_height
         assert run.values["environment.peak_period"] == weather.wave_period
@@ -61,8 +74,12 @@ def test_dp_capability_is_the_last_condition_that_its_seeds_hold(swept):
         held = [number for number in (1, 4) if (shares.loc[:number] >= 0.9).all()]
         assert row.number == (held[-1] if held else 0)
     numbers = found.summary.set_index(["lost", "weather_from"])["number"]
-    assert numbers["intact"].tolist() == [4, 1, 4, 1], "from ahead and astern she holds more than from abeam"
-    assert numbers["without tunnel"].tolist() == [0, 0, 4, 0], "she turns her stern to the weather, if it is not there"
+    assert numbers["intact"].tolist() == [4, 1, 4, 1], (
+        "from ahead and astern she holds more than from abeam"
+    )
+    assert numbers["without tunnel"].tolist() == [0, 0, 4, 0], (
+        "she turns her stern to the weather, if it is not there"
+    )
 
 
 def test_page_of_dp_capability_has_the_static_numbers_beside_it(swept):
@@ -71,8 +88,15 @@ def test_page_of_dp_capability_has_the_static_numbers_beside_it(swept):
     intact, lost, position = page.plots
     capability = capability_of(vessel_of("gunnerus_dp", ["gunnerus-33m9"]))
     curves = {trace["name"]: trace for trace in intact.traces}
-    assert list(curves) == ["intact", "intact: static, simulator's models", "intact: static, Level 1"]
-    for basis, name in (("simulator", "static, simulator's models"), ("level 1", "static, Level 1")):
+    assert list(curves) == [
+        "intact",
+        "intact: static, simulator's models",
+        "intact: static, Level 1",
+    ]
+    for basis, name in (
+        ("simulator", "static, simulator's models"),
+        ("level 1", "static, Level 1"),
+    ):
         assert curves[f"intact: {name}"]["r"][:-1] == capability.numbers(basis)[0].tolist()
     assert [trace["name"] for trace in lost.traces if "static" in trace["name"]] == [
         "intact: static, simulator's models",
@@ -110,9 +134,13 @@ def test_failures_say_how_far_and_how_soon_seen_as_a_run_alone_does(swept):
     assert runs.loc[("port: full thrust", 1), "seen"] == seen and 6.0 <= seen < 8.0
     summary = found.summary.set_index("failure")
     assert summary.loc["port: frozen angle", "seen_90"] == np.inf, "a frozen angle is not seen"
-    assert summary.loc["port: full thrust", "seen_90"] == pytest.approx(runs.loc["port: full thrust", "seen"].max())
+    assert summary.loc["port: full thrust", "seen_90"] == pytest.approx(
+        runs.loc["port: full thrust", "seen"].max()
+    )
     _, seen_by = page.plots[:2]
-    bars = {trace["name"]: dict(zip(trace["y"], trace["x"], strict=True)) for trace in seen_by.traces}
+    bars = {
+        trace["name"]: dict(zip(trace["y"], trace["x"], strict=True)) for trace in seen_by.traces
+    }
     assert bars["seen_90"]["port: frozen angle"] is None
     assert page.summary.rows[-1][5].startswith("never")
 
@@ -140,7 +168,9 @@ def test_times_of_a_drift_off_are_those_of_its_tracks(swept):
 
 def test_samples_of_a_drift_off_are_alike_for_both_losses(swept):
     found, page = swept("drift_off_small")
-    weather = found.runs.set_index(["lost", "sample"])[["wind", "current_to", "wave_height", "weather_seed"]]
+    weather = found.runs.set_index(["lost", "sample"])[
+        ["wind", "current_to", "wave_height", "weather_seed"]
+    ]
     assert (weather.loc["all power"] == weather.loc["bus A"]).all(axis=None)
     (tracks,) = page.tracks
     assert [one["count"] for one in tracks.data["series"]] == [8, 8] and tracks.data["toScale"]

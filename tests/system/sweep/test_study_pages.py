@@ -51,7 +51,10 @@ def test_run_is_simulated_again_by_its_number_and_the_page_leads_to_it(project):
     page = (project / "out/run-7/report.html").read_text(encoding="utf-8")
     assert "run 7 of the study levels; level 2.0; seed 4" in page
     assert data_of((project / "out/report.html").read_text(encoding="utf-8"))["pages"] == [7]
-    assert called("--out", "out", "--run", "7").exit_code == 0 and not (project / "out/run-7-1").exists()
+    assert (
+        called("--out", "out", "--run", "7").exit_code == 0
+        and not (project / "out/run-7-1").exists()
+    )
 
 
 def test_run_that_misses_what_is_expected_ends_with_1_and_needs_no_study_before(project):

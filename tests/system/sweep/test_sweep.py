@@ -28,7 +28,9 @@ def test_a_study_gives_a_row_a_run_in_the_order_of_its_factors(project):
     assert found.runs["highest"].nunique() == 12, "each seed makes a run of its own"
     assert found.runs["held"].tolist() == [True] * 8 + [False] * 4
     assert found.summary["share"].tolist() == [1.0, 1.0, 0.0]
-    assert found.summary["mean"].tolist() == pytest.approx(found.runs.groupby("level")["highest"].mean().tolist())
+    assert found.summary["mean"].tolist() == pytest.approx(
+        found.runs.groupby("level")["highest"].mean().tolist()
+    )
     assert sorted(path.name for path in (project / "out").iterdir()) == [
         "report.html",
         "runs.csv",
@@ -42,7 +44,9 @@ def test_a_study_gives_a_row_a_run_in_the_order_of_its_factors(project):
 def test_the_same_table_on_one_worker_and_on_two(project):
     one, two = swept(out="one"), swept(out="two", workers=2)
     pandas.testing.assert_frame_equal(one.runs, two.runs)
-    assert (project / "one/runs.parquet").read_bytes() == (project / "two/runs.parquet").read_bytes()
+    assert (project / "one/runs.parquet").read_bytes() == (
+        project / "two/runs.parquet"
+    ).read_bytes()
 
 
 def test_the_input_of_a_row_is_enough_to_run_it_alone(project):
@@ -81,7 +85,11 @@ def test_a_changed_study_keeps_earlier_results_aside(project, study):
 def test_a_failing_run_is_a_row_with_its_error(project, study):
     study(FAILING)
     result = CliRunner().invoke(app, ["sweep", "own", "--engine", "fmpy", "--workers", "1"])
-    assert result.exit_code == 1 and "4 runs failed" in result.output and "the pump has run dry" in result.output
+    assert (
+        result.exit_code == 1
+        and "4 runs failed" in result.output
+        and "the pump has run dry" in result.output
+    )
     runs = pandas.read_parquet("results/own/runs.parquet")
     assert (runs["error"] != "").tolist() == [False] * 8 + [True] * 4
     assert runs["highest"].isna().tolist() == [False] * 8 + [True] * 4
@@ -92,7 +100,10 @@ def test_a_run_that_ends_its_process_is_a_row_and_costs_no_other_run(project, st
     whole = swept(out="whole")
     path = study('extends = "levels"\n[set]\n"lag.ends_above" = 2.5\n')
     ending = swept(path, workers=2)
-    assert ending.runs["error"].str.contains("worker process ended").tolist() == [False] * 8 + [True] * 4
+    assert (
+        ending.runs["error"].str.contains("worker process ended").tolist()
+        == [False] * 8 + [True] * 4
+    )
     assert ending.runs["highest"][:8].tolist() == whole.runs["highest"][:8].tolist()
 
 
@@ -130,7 +141,9 @@ interval = "0.5 s"
 """
 
 
-@pytest.mark.parametrize(("method", "runs"), [("sobol", 4), ("latin_hypercube", 4), ("random", 4), ("saltelli", 20)])
+@pytest.mark.parametrize(
+    ("method", "runs"), [("sobol", 4), ("latin_hypercube", 4), ("random", 4), ("saltelli", 20)]
+)
 def test_samples_lie_in_their_distributions_and_follow_from_the_seed(project, study, method, runs):
     plan = plan_of(read_study(study(SAMPLED.replace("METHOD", method))))
     planned = [plan.run(number) for number in range(len(plan))]
@@ -139,7 +152,11 @@ def test_samples_lie_in_their_distributions_and_follow_from_the_seed(project, st
         assert 1.0 <= run.values["lag.u"] == run.values["other.u"] == run.columns["level"] <= 2.0
         assert 0.6 <= run.columns["lag.time_constant"] <= 1.4
     other = plan_of(read_study(study("seed = 2\n" + SAMPLED.replace("METHOD", method))))
-    assert plan.run(0) == plan_of(read_study(study(SAMPLED.replace("METHOD", method)))).run(0) != other.run(0)
+    assert (
+        plan.run(0)
+        == plan_of(read_study(study(SAMPLED.replace("METHOD", method)))).run(0)
+        != other.run(0)
+    )
 
 
 def test_a_sampled_study_keeps_tracks_and_says_when_a_limit_is_passed(project, study):

@@ -68,8 +68,13 @@ def swept(path, out="out", **options):
 def test_trials_lie_in_their_ranges_and_the_first_is_as_shipped(project, study):
     found = swept(study(STUDY))
     trials = found.tables["trials"]
-    assert trials["trial"].tolist() == list(range(12)) and trials["generation"].tolist() == [t // 4 for t in range(12)]
-    assert trials["level"].between(0.5, 2.0).all() and trials["lag.time_constant"].between(0.2, 5.0).all()
+    assert trials["trial"].tolist() == list(range(12)) and trials["generation"].tolist() == [
+        t // 4 for t in range(12)
+    ]
+    assert (
+        trials["level"].between(0.5, 2.0).all()
+        and trials["lag.time_constant"].between(0.2, 5.0).all()
+    )
     assert trials["as_shipped"].tolist() == [True] + 11 * [False]
     assert trials.loc[0, ["level", "lag.time_constant"]].tolist() == [1.0, 1.0]
     runs = found.runs[found.runs["sample"] == 5]
@@ -81,7 +86,9 @@ def test_trials_lie_in_their_ranges_and_the_first_is_as_shipped(project, study):
 def test_no_trial_beats_one_of_the_front_and_each_other_is_beaten(project, study):
     trials = swept(study(STUDY)).tables["trials"]
     points = np.column_stack([trials["off_one"], -trials["highest"]])
-    beaten = [bool(((points <= one).all(axis=1) & (points < one).any(axis=1)).any()) for one in points]
+    beaten = [
+        bool(((points <= one).all(axis=1) & (points < one).any(axis=1)).any()) for one in points
+    ]
     assert trials["pareto"].tolist() == [not one for one in beaten]
     assert 0 < trials["pareto"].sum() < len(trials)
 
@@ -89,7 +96,9 @@ def test_no_trial_beats_one_of_the_front_and_each_other_is_beaten(project, study
 def test_what_is_wanted_steers_the_search(project, study):
     """The first generation is the same; later ones go up where the largest value is wanted, down where the least is."""
     text = STUDY.replace("trials     = 12", "trials     = 40").replace("seeds = 2", "seeds = 1")
-    up, down = (swept(study(one)).tables["trials"] for one in (text, text.replace("maximise", "minimise")))
+    up, down = (
+        swept(study(one)).tables["trials"] for one in (text, text.replace("maximise", "minimise"))
+    )
     assert up["highest"][:4].tolist() == down["highest"][:4].tolist()
     assert up["highest"][8:].mean() > down["highest"][8:].mean() + 0.2
 
@@ -119,13 +128,18 @@ def test_command_prints_the_front_the_page_marks_ours_and_a_run_is_made_again(pr
     study(STUDY)
     command = ["sweep", "own", "--engine", "fmpy", "--workers", "1"]
     called = CliRunner().invoke(app, command)
-    assert called.exit_code == 0 and "off_one minimised, highest maximised: of 12 trials" in called.stdout
+    assert (
+        called.exit_code == 0
+        and "off_one minimised, highest maximised: of 12 trials" in called.stdout
+    )
     page = (project / "results/own/report.html").read_text(encoding="utf-8")
     assert "is not drawn" not in page and "sought from" in page
     again = CliRunner().invoke(app, [*command, "--run", "18"])  # run 18: trial 6 of seed 2
     trials = pandas.read_csv("results/own/trials.csv")
     assert again.exit_code == 0
-    assert f"level {trials['level'][6]}" in (project / "results/own/run-18/report.html").read_text(encoding="utf-8")
+    assert f"level {trials['level'][6]}" in (project / "results/own/run-18/report.html").read_text(
+        encoding="utf-8"
+    )
     early = CliRunner().invoke(app, [*command, "--out", "new", "--run", "18"])
     assert early.exit_code == 2 and "has not been proposed yet" in early.stderr
 
@@ -142,9 +156,14 @@ def test_margin_of_a_study_is_that_of_the_linear_loop(root, tmp_path, monkeypatc
     plan = plan_of(read_study(path))
     found = [plan.measures[0].margin.of(plan.run(number).values) for number in range(2)]
     ship = read_ship(root / "ssp/ships/gunnerus-33m9")
-    sets = [ship.parameters(kind, "controller") for kind in (DpShip, ObserverParameters, ControlParameters)]
+    sets = [
+        ship.parameters(kind, "controller")
+        for kind in (DpShip, ObserverParameters, ControlParameters)
+    ]
     for margin, drift in zip(found, (1.93e-7, 5e-8), strict=True):
         sets[1] = replace(sets[1], bias_drift=drift)
         loop = linear_loop(*sets, Delays(), 2.0 * np.pi / 6.0)
-        assert margin == pytest.approx(min(margins(loop, axis).phase for axis in range(3)), rel=1e-9)
+        assert margin == pytest.approx(
+            min(margins(loop, axis).phase for axis in range(3)), rel=1e-9
+        )
     assert found[0] != found[1]

@@ -44,7 +44,15 @@ from shipcosim.models.control import (
 from shipcosim.models.control import pid as control
 from shipcosim.models.core import integrate, interpolation, kinematics, maths, memoize
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.environment import current, gusts, harbour, sinusoids, wave_loads, wave_motion, waves
+from shipcosim.models.environment import (
+    current,
+    gusts,
+    harbour,
+    sinusoids,
+    wave_loads,
+    wave_motion,
+    waves,
+)
 from shipcosim.models.environment import earth_fixed_loads as earth
 from shipcosim.models.environment import wind_loads as wind
 from shipcosim.models.prediction import (
@@ -76,20 +84,36 @@ from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 SHORT = parameters(hull.HullParameters, "gunnerus-28m9", "vessel")
 LONG = parameters(hull.HullParameters, "gunnerus-33m9", "vessel")
 PORT = parameters(azimuth.AzimuthParameters, "gunnerus-33m9", "port")
-LOSSES = dict(thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3)
+LOSSES = dict(
+    thrust_loss=0.1, reverse_loss=0.2, azimuth_offset=0.1, rpm_offset=5.0, interaction_loss=0.3
+)
 LOSSY = replace(PORT, **LOSSES)
 TUNNEL = parameters(tunnel.TunnelParameters)
 TANKER = parameters(hull.HullParameters, "kvlcc2", "vessel")
 STERN = parameters(rudder.PropellerRudderParameters, "kvlcc2")
-MAPPED = mapped.MapParameters(x=-0.4, y=0.3, thrust_table="-1 -28; 0 0; 1 55", speed_loss=0.1, time_constant=0.5)
-BERTH = dict(harbour=harbour.HarbourParameters(wind_shelter=0.5, tide_shelter=0.6, channel=0.4, river_speed=0.5))
+MAPPED = mapped.MapParameters(
+    x=-0.4, y=0.3, thrust_table="-1 -28; 0 0; 1 55", speed_loss=0.1, time_constant=0.5
+)
+BERTH = dict(
+    harbour=harbour.HarbourParameters(
+        wind_shelter=0.5, tide_shelter=0.6, channel=0.4, river_speed=0.5
+    )
+)
 LAYOUT = fixed_angles.FixedAngleParameters(
     **{"x_1": -20.0, "y_1": -3.0, "thrust_min_1": -6e4, "thrust_max_1": 9e4, "thrust_rate_1": 1e6},
     **{"x_2": -20.0, "y_2": 3.0, "thrust_min_2": -6e4, "thrust_max_2": 9e4, "thrust_rate_2": 1e6},
-    **{"x_3": 22.0, "azimuth_3": 1.6, "thrust_min_3": -4e4, "thrust_max_3": 4e4, "thrust_rate_3": 1e6},
+    **{
+        "x_3": 22.0,
+        "azimuth_3": 1.6,
+        "thrust_min_3": -4e4,
+        "thrust_max_3": 4e4,
+        "thrust_rate_3": 1e6,
+    },
     yaw_lever=22.0,
 )
-ROW = interaction.InteractionParameters(y_1=-2.0, diameter_1=1.9, y_2=2.0, diameter_2=1.9, x_3=20.0, diameter_3=1.5)
+ROW = interaction.InteractionParameters(
+    y_1=-2.0, diameter_1=1.9, y_2=2.0, diameter_2=1.9, x_3=20.0, diameter_3=1.5
+)
 TURNING = parameters(optimal.OptimalParameters)
 TURNING_DESIGN = optimal.design(TURNING)
 TURNING_ROWS = [
@@ -100,7 +124,13 @@ TURNING_ROWS = [
 TURNING_UNITS = optimal_units.OptimalUnitsParameters(
     **{"x_1": -20.0, "y_1": -3.0, "thrust_max_1": 9e4, "thrust_rate_1": 1e3, "azimuth_rate_1": 0.2},
     **{"x_2": -20.0, "y_2": 3.0, "thrust_max_2": 9e4, "thrust_rate_2": 1e3, "azimuth_rate_2": 0.2},
-    **{"x_3": 22.0, "azimuth_3": 1.6, "thrust_min_3": -3e4, "thrust_max_3": 4e4, "thrust_rate_3": 1e3},
+    **{
+        "x_3": 22.0,
+        "azimuth_3": 1.6,
+        "thrust_min_3": -3e4,
+        "thrust_max_3": 4e4,
+        "thrust_rate_3": 1e3,
+    },
     yaw_lever=22.0,
 )
 EXTENDED = parameters(extended.ExtendedParameters)
@@ -114,7 +144,14 @@ EVEN = interpolation.even_table(np.linspace(-1.0, 1.0, 4), np.array(YS), np.arra
 
 ANGLES = [(-3.0,), (-pi / 2,), (0.0,), (0.4,), (3.1,)]
 PAIRS = [(0.3, -0.2), (-1.0, 1.0), (2.0, 2.5), (0.4, 0.4)]
-WATER = [(0.5, 0.1, 0.01), (-0.4, 0.3, -0.05), (3.0, -0.2, 0.03), (0.0, 0.0, 0.0), (1.0, 0.1, 0.0), (0.0, 0.01, 0.1)]
+WATER = [
+    (0.5, 0.1, 0.01),
+    (-0.4, 0.3, -0.05),
+    (3.0, -0.2, 0.03),
+    (0.0, 0.0, 0.0),
+    (1.0, 0.1, 0.0),
+    (0.0, 0.01, 0.1),
+]
 SHIP = [(1.0, -2.0, 3.1, 2.0, 0.3, 0.05), (0.0, 0.0, -1.0, -0.2, -0.1, -0.01)]
 
 
@@ -152,7 +189,9 @@ LOOP = [
 ]
 POWER, WATCH = parameters(PowerParameters), monitor.MonitorParameters()
 OBSERVER = dict(ship=DP_SHIP, parameters=NOISE, design=observer.design(DP_SHIP, NOISE))
-AHEAD = dict(horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters))
+AHEAD = dict(
+    horizons=(10.0, 20.0), longest_step=2.0, hull=LONG, wind=parameters(wind.WindParameters)
+)
 LEARNED = parameters(extreme_learning.ExtremeLearningParameters, "osv")
 LAYER = extreme_learning.Network(
     scale=(1e5, 1e5, 1e6, *(30.0,) * 6),
@@ -173,10 +212,31 @@ AHEAD_LOOP = controlled.ControlLoop(
 )
 ASSUMED = parameters(surroundings.SurroundingsParameters)
 RECKONING = motion_filter.FilterNumbers(
-    **dict(bow=2e-7, stern=1e-7, ahead=4e-5, astern=5e-5, surge_time=40.0, sway_time=30.0, wind_surge_1=-1e-5),
-    **dict(wind_surge_3=1e-6, wind_sway_1=-4e-5, wind_sway_3=-2e-6, position_by_position=0.1, position_by_velocity=0.2),
-    **dict(velocity_by_position=0.01, velocity_by_velocity=0.05, load_by_position=1e-4, load_by_velocity=5e-4),
-    **dict(position_in_sea=1.0, velocity_in_sea=0.5, load_in_sea=2.0, load_time=100.0, mean_time=200.0),
+    **dict(
+        bow=2e-7,
+        stern=1e-7,
+        ahead=4e-5,
+        astern=5e-5,
+        surge_time=40.0,
+        sway_time=30.0,
+        wind_surge_1=-1e-5,
+    ),
+    **dict(
+        wind_surge_3=1e-6,
+        wind_sway_1=-4e-5,
+        wind_sway_3=-2e-6,
+        position_by_position=0.1,
+        position_by_velocity=0.2,
+    ),
+    **dict(
+        velocity_by_position=0.01,
+        velocity_by_velocity=0.05,
+        load_by_position=1e-4,
+        load_by_velocity=5e-4,
+    ),
+    **dict(
+        position_in_sea=1.0, velocity_in_sea=0.5, load_in_sea=2.0, load_time=100.0, mean_time=200.0
+    ),
 )
 REGION = outage.Region((0.0, 30.0, 60.0), (0.5, 1.0, 2.0), 3.0)
 AROUND = dict(hull=LONG, wind=parameters(wind.WindParameters), ship=DP_SHIP, parameters=ASSUMED)
@@ -204,11 +264,20 @@ def of_reference(*row):
 
 
 def of_observer(*row):
-    return observer.StateEstimate(*row, 0.8, 30.0, 0.7), observer.Measurement(Motion(*row[3:9]), row[8], 1.0), row[9:12]
+    return (
+        observer.StateEstimate(*row, 0.8, 30.0, 0.7),
+        observer.Measurement(Motion(*row[3:9]), row[8], 1.0),
+        row[9:12],
+    )
 
 
 def of_control(*row):
-    return control.ControlState(*row[:6]), observer.StateEstimate(*row), control.Desired(*row[6:]), row[3:6]
+    return (
+        control.ControlState(*row[:6]),
+        observer.StateEstimate(*row),
+        control.Desired(*row[6:]),
+        row[3:6],
+    )
 
 
 def of_filtered_pid(*row):
@@ -228,7 +297,13 @@ def of_layout(*row):
 def of_turning(*row):
     """Port, starboard and tunnel at angles of their intervals, with a price of each load."""
     zero = 0.0 * row[0]
-    state = sqp.Turned(row[:3], (zero + 0.9, zero + 2.1, zero + 0.5 * pi), *row[:3], False, (zero + 1.0, zero, zero))
+    state = sqp.Turned(
+        row[:3],
+        (zero + 0.9, zero + 2.1, zero + 0.5 * pi),
+        *row[:3],
+        False,
+        (zero + 1.0, zero, zero),
+    )
     return state, row[3:6], (True, row[6], True)
 
 
@@ -240,18 +315,26 @@ def of_proposal(*row):
 def of_turning_units(*row):
     state, tau, (_, on, _) = of_turning(*row)
     zero = 0.0 * row[0]
-    state = state._replace(thrusts=(*row[:3], zero, zero, zero), azimuths=(*state.azimuths, zero, zero, zero))
+    state = state._replace(
+        thrusts=(*row[:3], zero, zero, zero), azimuths=(*state.azimuths, zero, zero, zero)
+    )
     return state, tau, (True, on, True, True, True, True)
 
 
 def of_program(*row):
     directions = ((1.0, 0.2, 3.0), (0.1, 1.0, -2.0), (-0.3, 0.4, 5.0), (0.6, -0.8, 1.0))
-    return row[:3], [box_qp.Command(*d, 1.0 + row[3], row[4], -0.5, 1.5) for d in directions], (1e-3, 1e-3, 1e-2)
+    return (
+        row[:3],
+        [box_qp.Command(*d, 1.0 + row[3], row[4], -0.5, 1.5) for d in directions],
+        (1e-3, 1e-3, 1e-2),
+    )
 
 
 def of_learned(*row):
     zero = 0.0 * row[0]
-    state = extreme_learning.Commanded((zero,) * 6, (zero,) * 6, *(zero,) * 4, tuple(0.01 * one for one in row[:3]) * 2)
+    state = extreme_learning.Commanded(
+        (zero,) * 6, (zero,) * 6, *(zero,) * 4, tuple(0.01 * one for one in row[:3]) * 2
+    )
     return state, row[3:6], (True, row[6], True, True, True, True)
 
 
@@ -263,7 +346,9 @@ def of_monitor(*row):
 
 def of_known(*row):
     ship = Motion(*row)
-    return predictor_inputs.Known(ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7)
+    return predictor_inputs.Known(
+        ship, (4e3 * ship.u, -3e3, 1e4), (1e3, 2e3, -3e4), 8.0 + ship.v, ship.r - 2.0, 0.7
+    )
 
 
 def of_surroundings(*row):
@@ -275,7 +360,9 @@ def of_outage(*row):
     """What is aboard, with and without GNSS."""
     x, y, psi, u, v, r = row
     valid = 1.0 * (x > 0.5)
-    return outage.Measured(x, y, u, v, valid, psi, 5.0 + u, r - 2.0, (60.0 * u, -20.0, v, 3.0, 9.0 * u, -4.0 * u))
+    return outage.Measured(
+        x, y, u, v, valid, psi, 5.0 + u, r - 2.0, (60.0 * u, -20.0, v, 3.0, 9.0 * u, -4.0 * u)
+    )
 
 
 def of_reckoning(*row):
@@ -307,7 +394,9 @@ def of_fixes(*row):
 def of_positions(*row):
     """The telegrams after others, when one of them has moved."""
     before = position_voting.start(0.0, of_fixes(*(0.5 * value for value in row[:6])))
-    before = before._replace(trusted_at=-row[9], memory=row[:6], north_shift=row[6], east_shift=row[7])
+    before = before._replace(
+        trusted_at=-row[9], memory=row[:6], north_shift=row[6], east_shift=row[7]
+    )
     return 0.0, before, of_fixes(*row), Motion(*row[6:9], 0.2, -0.1, 0.0), 0.0 * row[0], 1.0
 
 
@@ -319,14 +408,18 @@ def of_compasses(*row):
 
 def of_voting(*row):
     headings = tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row[6:8])
-    return Telegrams(of_fixes(*row), headings, row[8], Wind(row[9], row[7], 1.0 + 0.0 * row[9]), 0.0, 0.0, 0.0)
+    return Telegrams(
+        of_fixes(*row), headings, row[8], Wind(row[9], row[7], 1.0 + 0.0 * row[9]), 0.0, 0.0, 0.0
+    )
 
 
 def of_votes(*row):
     """Voting that has gone on for 2 s, and the estimate."""
     state = voting.start(0.0, of_voting(*row), **AIR)
     estimate = observer.StateEstimate(*row[6:], *(0.0 * row[0],) * 11)
-    later = of_voting(*(1.01 * value for value in row))._replace(position_time=2.0, heading_time=2.0, wind_time=2.0)
+    later = of_voting(*(1.01 * value for value in row))._replace(
+        position_time=2.0, heading_time=2.0, wind_time=2.0
+    )
     return voting.step(2.4, state, later, estimate, parameters=voting.VotingParameters(), **AIR)
 
 
@@ -340,7 +433,10 @@ FIXES = [
     (9.1, 0.2, 9.2, 0.1, 9.4, -0.2, 0.0, 0.1, 3.1, 0.5),
     (9.1, 0.2, 9.2, 0.1, 9.4, -0.2, 0.0, 0.1, 3.1, 90.0),
 ]
-BELIEF, MAST = voting.VotingParameters(), mast.MastParameters(mast_x=3.0, mast_y=-1.0, mast_height=15.0)
+BELIEF, MAST = (
+    voting.VotingParameters(),
+    mast.MastParameters(mast_x=3.0, mast_y=-1.0, mast_height=15.0),
+)
 AIR = dict(mast=MAST, wind=parameters(wind.WindParameters))
 CASES = [
     *(
@@ -349,8 +445,17 @@ CASES = [
     ),
     Case(position_voting.start, FIXES, lambda *row: (0.0, of_fixes(*row))),
     Case(position_voting.step, FIXES, of_positions, dict(parameters=BELIEF)),
-    Case(position_voting.faded, FIXES, lambda *row: (of_positions(*row)[1], 0.1), dict(parameters=BELIEF)),
-    Case(compass_voting.start, PAIRS, lambda *row: (tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row),)),
+    Case(
+        position_voting.faded,
+        FIXES,
+        lambda *row: (of_positions(*row)[1], 0.1),
+        dict(parameters=BELIEF),
+    ),
+    Case(
+        compass_voting.start,
+        PAIRS,
+        lambda *row: (tuple(Heading(psi, 1.0 + 0.0 * psi) for psi in row),),
+    ),
     Case(
         compass_voting.step,
         [(3.1, -3.1, 0.01, 3.12, 0.0), (0.3, 0.5, 0.0, 0.3, 0.2)],
@@ -360,21 +465,36 @@ CASES = [
     Case(voting.start, FIXES, lambda *row: (0.0, of_voting(*row)), AIR),
     Case(of_votes, FIXES),
     Case(voting.measurement, FIXES, of_votes_alone),
-    Case(voting.dead_reckoning_time, FIXES, lambda *row: (4.0, *of_votes_alone(*row)), dict(parameters=BELIEF)),
+    Case(
+        voting.dead_reckoning_time,
+        FIXES,
+        lambda *row: (4.0, *of_votes_alone(*row)),
+        dict(parameters=BELIEF),
+    ),
     *(Case(getattr(maths, name), ANGLES) for name in ("sin", "cos", "exp", "floor")),
     Case(angles.wrap, ANGLES),
     *(Case(getattr(maths, name), PAIRS) for name in ("atan2", "hypot", "minimum", "maximum")),
     Case(maths.sqrt, [(0.3,), (4.0,)]),
     Case(maths.clip, [(0.3, -1.0, 0.2), (0.1, -1.0, 0.2), (-3.0, -1.0, 0.2)]),
     Case(maths.where, [(True, 0.3, 0.7), (False, 0.3, 0.7)]),
-    Case(interpolation.interp, [(-2.0,), (-1.0,), (0.3,), (0.5,), (5.0,)], constants=dict(xs=XS, ys=YS)),
+    Case(
+        interpolation.interp,
+        [(-2.0,), (-1.0,), (0.3,), (0.5,), (5.0,)],
+        constants=dict(xs=XS, ys=YS),
+    ),
     Case(maths.number, ANGLES),
     Case(maths.row_of, [(0.3, 1.0), (-0.2, 2.0)], arrange=lambda x, y: ((x, y), 1)),
     Case(maths.sincos, ANGLES),
     Case(interpolation.interp_even, [(-1.0,), (0.3,), (1.0,)], constants=dict(table=EVEN)),
-    Case(interpolation.interp_columns, [(-2.0,), (0.3,), (5.0,)], arrange=lambda x: (x, XS, YS, XS)),
+    Case(
+        interpolation.interp_columns, [(-2.0,), (0.3,), (5.0,)], arrange=lambda x: (x, XS, YS, XS)
+    ),
     Case(integrate.rk4, PAIRS, arrange=lambda x, y: (lambda x, y: (y, -maths.sin(x)), (x, y), 0.1)),
-    Case(integrate.rk4_pair, PAIRS, arrange=lambda x, y: (lambda x, y: (y, -maths.sin(x)), x, y, 0.1, (), (), ())),
+    Case(
+        integrate.rk4_pair,
+        PAIRS,
+        arrange=lambda x, y: (lambda x, y: (y, -maths.sin(x)), x, y, 0.1, (), (), ()),
+    ),
     Case(integrate.euler, PAIRS, arrange=lambda x, y: ((x, y), (y, -maths.sin(x)), 0.1)),
     *(
         Case(rule, SHIP, arrange=lambda *row: (lambda u, v, r: (r * v, -r * u, 0.1 * v), *row, 0.1))
@@ -393,7 +513,12 @@ CASES = [
         Case(function, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(hull=SHORT))
         for function in (vessel.nu_dot, vessel.at_present)
     ),
-    Case(vessel.step, [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP], of_vessel, dict(h=0.5, hull=SHORT)),
+    Case(
+        vessel.step,
+        [(*s, 1e3, -2e3, 3e4, 0.3, -0.4) for s in SHIP],
+        of_vessel,
+        dict(h=0.5, hull=SHORT),
+    ),
     Case(rough_form.form_loads, WATER, constants=dict(hull=LONG, form=ROUGH)),
     Case(
         rough_form.memory_loads,
@@ -414,7 +539,11 @@ CASES = [
             replace(parameters(wind.WindParameters), apparent_wind_offset=0.2),
         )
     ),
-    Case(propeller.propeller_loads, [(*p,) for p in PAIRS] + [(0.0, 0.0), (1.0, 0.0)], constants=dict(propeller=PORT)),
+    Case(
+        propeller.propeller_loads,
+        [(*p,) for p in PAIRS] + [(0.0, 0.0), (1.0, 0.0)],
+        constants=dict(propeller=PORT),
+    ),
     Case(propeller.bollard_speed, [(5e3,), (-5e3,), (0.0,)], constants=dict(propeller=PORT)),
     Case(propeller.bollard_torque, [(2.0,), (-2.0,), (0.0,)], constants=dict(propeller=PORT)),
     Case(drive.at_rest, ANGLES),
@@ -426,7 +555,11 @@ CASES = [
     ),
     Case(
         azimuth.azimuth_step,
-        [(0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, bits) for w in WATER for bits in (0.0, 1.0, 2.0, 12.0, 48.0)],
+        [
+            (0.5, 100.0, 900.0, 3.0, 500.0, 2e4, -3.0, *w, bits)
+            for w in WATER
+            for bits in (0.0, 1.0, 2.0, 12.0, 48.0)
+        ],
         of_failing_thruster,
         dict(h=0.05, unit=PORT),
     ),
@@ -448,7 +581,11 @@ CASES = [
         for unit in (PORT, LOSSY)
     ),
     *(
-        Case(azimuth.azimuth_replay, [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER], constants=dict(unit=unit))
+        Case(
+            azimuth.azimuth_replay,
+            [(n, 0.4, *w) for n in (2.0, -1.0) for w in WATER],
+            constants=dict(unit=unit),
+        )
         for unit in (PORT, LOSSY)
     ),
     *(
@@ -470,7 +607,11 @@ CASES = [
     Case(tunnel.tunnel_loads, [(9.0, 0.0, 0.0, 1.6, 0.0, 0.5)], of_thruster, dict(tunnel=TUNNEL)),
     Case(
         fixed.fixed_loads,
-        [(F, n, *w) for F, n in ((30.0, 0.0), (-20.0, 0.0), (0.0, 60.0), (0.0, -50.0)) for w in WATER],
+        [
+            (F, n, *w)
+            for F, n in ((30.0, 0.0), (-20.0, 0.0), (0.0, 60.0), (0.0, -50.0))
+            for w in WATER
+        ],
         constants=dict(thruster=SIDE),
     ),
     Case(extreme_learning.at_rest, REQUESTS, lambda *row: (row,), dict(parameters=LEARNED)),
@@ -501,7 +642,11 @@ CASES = [
         [(0.3, 0.4), (0.3, -1.0), (0.0, 1.0)],
         constants=dict(h=0.1, thruster=replace(MAPPED, command_rate=2.0)),
     ),
-    Case(mapped.mapped_loads, [(F, *w) for F in (30.0, -20.0, 0.0) for w in WATER], constants=dict(thruster=MAPPED)),
+    Case(
+        mapped.mapped_loads,
+        [(F, *w) for F in (30.0, -20.0, 0.0) for w in WATER],
+        constants=dict(thruster=MAPPED),
+    ),
     Case(fixed_angles.at_rest, REQUESTS, lambda *row: (row,), dict(parameters=LAYOUT)),
     Case(
         fixed_angles.step,
@@ -509,7 +654,12 @@ CASES = [
         of_layout,
         dict(h=0.5, parameters=LAYOUT, design=fixed_angles.design(LAYOUT)),
     ),
-    Case(optimal.step, TURNING_ROWS, of_turning, dict(h=0.5, parameters=TURNING, design=TURNING_DESIGN)),
+    Case(
+        optimal.step,
+        TURNING_ROWS,
+        of_turning,
+        dict(h=0.5, parameters=TURNING, design=TURNING_DESIGN),
+    ),
     Case(sqp.power_step, TURNING_ROWS, of_turning, dict(h=0.05, design=TURNING_DESIGN)),
     Case(sqp.nearest_step, TURNING_ROWS, of_proposal, dict(h=0.05, design=TURNING_DESIGN)),
     Case(sqp.resting, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(azimuths=(0.1, 0.2))),
@@ -520,12 +670,30 @@ CASES = [
         of_turning_units,
         dict(h=0.5, parameters=TURNING_UNITS, design=optimal_units.design(TURNING_UNITS)),
     ),
-    Case(optimal_units.at_rest, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(parameters=TURNING_UNITS)),
-    Case(box_qp.solve, [(1.0, 2.0, 3.0, 0.1, 0.2), (9.0, -2.0, 3.0, 0.5, 1.0), (0.0, 0.0, 50.0, 0.0, 9.0)], of_program),
-    Case(rudder.propeller_in_wake, [(n, *w) for n in (9.0, -4.0, 0.0) for w in WATER], constants=dict(unit=STERN)),
+    Case(
+        optimal_units.at_rest,
+        [(1.0, -2.0, 0.4)],
+        lambda *tau: (tau,),
+        dict(parameters=TURNING_UNITS),
+    ),
+    Case(
+        box_qp.solve,
+        [(1.0, 2.0, 3.0, 0.1, 0.2), (9.0, -2.0, 3.0, 0.5, 1.0), (0.0, 0.0, 50.0, 0.0, 9.0)],
+        of_program,
+    ),
+    Case(
+        rudder.propeller_in_wake,
+        [(n, *w) for n in (9.0, -4.0, 0.0) for w in WATER],
+        constants=dict(unit=STERN),
+    ),
     Case(
         rudder.rudder_normal_force,
-        [(0.4, T, u, 0.1, r) for T in (40.0, -10.0, 0.0) for u in (0.7, -0.2, 0.0) for r in (0.1, -0.1)],
+        [
+            (0.4, T, u, 0.1, r)
+            for T in (40.0, -10.0, 0.0)
+            for u in (0.7, -0.2, 0.0)
+            for r in (0.1, -0.1)
+        ],
         constants=dict(unit=STERN),
     ),
     Case(
@@ -540,7 +708,12 @@ CASES = [
     Case(wave_loads.mean_drift, ANGLES, lambda psi: (psi, SEA, DRIFT)),
     Case(wave_motion.first_order_motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
     Case(wave_motion.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
-    Case(reference.critically_damped, [(2.0, -0.3, 0.01)], lambda *e: (13.0, *e), dict(frequency=0.05)),
+    Case(
+        reference.critically_damped,
+        [(2.0, -0.3, 0.01)],
+        lambda *e: (13.0, *e),
+        dict(frequency=0.05),
+    ),
     Case(reference.at_rest, [(1.0, -2.0, 0.4)]),
     Case(
         reference.step,
@@ -548,9 +721,18 @@ CASES = [
         of_reference,
         dict(h=0.05, parameters=replace(parameters(reference.ReferenceParameters), speed_max=0.3)),
     ),
-    Case(wave_filter.filter_at, [(0.45,), (0.9,), (2.0,)], constants=dict(table=OBSERVER["design"].filters)),
+    Case(
+        wave_filter.filter_at,
+        [(0.45,), (0.9,), (2.0,)],
+        constants=dict(table=OBSERVER["design"].filters),
+    ),
     Case(observer.step, LOOP, of_observer, OBSERVER),
-    Case(control.step, LOOP, of_control, dict(h=0.1, ship=DP_SHIP, parameters=parameters(control.ControlParameters))),
+    Case(
+        control.step,
+        LOOP,
+        of_control,
+        dict(h=0.1, ship=DP_SHIP, parameters=parameters(control.ControlParameters)),
+    ),
     Case(
         allocation.step,
         [(0.0, 1e3, 0.0, X, Y, N, on) for X, Y, N in REQUESTS for on in (True, False)],
@@ -565,7 +747,9 @@ CASES = [
         dict(h=0.5, parameters=EXTENDED, design=extended.design(EXTENDED)),
     ),
     Case(units.no_thrust, [(1.0, -2.0, 0.4)], lambda *tau: (tau,), dict(azimuths=(0.1, 0.2))),
-    Case(units.load, [(1e3, -2e3)], lambda *f: (f,), dict(effect=((1.0, 0.0, 2.0), (0.0, 1.0, -5.0)))),
+    Case(
+        units.load, [(1e3, -2e3)], lambda *f: (f,), dict(effect=((1.0, 0.0, 2.0), (0.0, 1.0, -5.0)))
+    ),
     Case(
         units.missed,
         [(1e3, 0.0, 2.0)],
@@ -579,14 +763,24 @@ CASES = [
         lambda *row: (row,),
         dict(least=(-3e4, -3e4, -2e4), most=(6e4, 6e4, 2e4)),
     ),
-    Case(units.thruster_power, [(0.1, 0.9, 0.0), (1.0, 0.5, 0.2)], lambda *row: (row,), dict(full=(1e5, 1e5, 2e5))),
+    Case(
+        units.thruster_power,
+        [(0.1, 0.9, 0.0), (1.0, 0.5, 0.2)],
+        lambda *row: (row,),
+        dict(full=(1e5, 1e5, 2e5)),
+    ),
     Case(
         power.granted_power,
         [(0.1, 0.9, 0.0, 1e5, 2e5), (0.0, 0.0, 0.0, 0.0, 1e9)],
         lambda *row: (row[:3], row[3:]),
         dict(parameters=POWER),
     ),
-    Case(power.thrust_shares, [(1e5, 2e4, 0.0), (1e9, 3e5, 1.0)], lambda *row: (row,), dict(parameters=POWER)),
+    Case(
+        power.thrust_shares,
+        [(1e5, 2e4, 0.0), (1e9, 3e5, 1.0)],
+        lambda *row: (row,),
+        dict(parameters=POWER),
+    ),
     Case(monitor.at_rest, [(1.0,)]),
     Case(
         monitor.deviation,
@@ -623,7 +817,12 @@ CASES = [
     Case(motion_filter.start, SHIP, lambda *row: (of_outage(*row),), dict(design=RECKONING)),
     Case(motion_filter.step, SHIP, of_reckoning, dict(h=1.0, design=RECKONING)),
     Case(outage.radius, [(0.0, 0.01), (25.0, 0.2), (90.0, 0.1)], constants=dict(region=REGION)),
-    Case(surroundings.unknown, SHIP, lambda *row: (of_known(*row),), dict(hull=AROUND["hull"], parameters=ASSUMED)),
+    Case(
+        surroundings.unknown,
+        SHIP,
+        lambda *row: (of_known(*row),),
+        dict(hull=AROUND["hull"], parameters=ASSUMED),
+    ),
     Case(surroundings.step, SHIP, of_surroundings, dict(h=1.0, **AROUND)),
     Case(dead_reckoning.predict, SHIP, of_prediction, AHEAD),
     Case(
@@ -648,17 +847,32 @@ CASES = [
     ),
     Case(earth.onset, [(3.0,), (8.0,), (20.0,)], constants=dict(onset_time=5.0, ramp_time=10.0)),
     Case(earth.earth_force, [(0.4, 1e3, -2e3), (-2.0, 0.0, 0.0)], constants=dict(x=-17.0)),
-    Case(earth.drift_force, [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)], constants=dict(yaw_arm=-1.5)),
+    Case(
+        earth.drift_force,
+        [(0.4, 1e3, -2e3), (-2.0, 3e3, 2e3), (0.0, 0.0, 0.0)],
+        constants=dict(yaw_arm=-1.5),
+    ),
     Case(
         current.varying_current,
-        [(t, *ends) for t in (-5.0, 30.0, 99.0) for ends in ((0.3, 0.0, -0.3, 0.1), (0.0, 0.0, 0.2, -0.2))],
+        [
+            (t, *ends)
+            for t in (-5.0, 30.0, 99.0)
+            for ends in ((0.3, 0.0, -0.3, 0.1), (0.0, 0.0, 0.2, -0.2))
+        ],
         constants=dict(time_start=0.0, time_end=60.0),
     ),
     *(
-        Case(function, [(0.0, 0.0, -5.0, 3.0), (200.0, -80.0, 0.0, 0.4), (-40.0, 900.0, 0.1, 0.0)], constants=BERTH)
+        Case(
+            function,
+            [(0.0, 0.0, -5.0, 3.0), (200.0, -80.0, 0.0, 0.4), (-40.0, 900.0, 0.1, 0.0)],
+            constants=BERTH,
+        )
         for function in (harbour.local_wind, harbour.local_current)
     ),
-    *(Case(function, SHIP, constants=ERRORS) for function in (instruments.readings, instruments.true_motion)),
+    *(
+        Case(function, SHIP, constants=ERRORS)
+        for function in (instruments.readings, instruments.true_motion)
+    ),
     Case(azimuth.turned, [(3.0, -3.0, 0.1), (0.1, 0.3, 0.5), (-3.0, 3.0, 0.1)]),
 ]
 
@@ -686,7 +900,9 @@ def test_tensors_give_what_floats_give(case):
     torch = pytest.importorskip("torch")
     columns = (np.array(column) for column in zip(*case.rows, strict=True))
     found = case(*(torch.as_tensor(column) for column in columns))
-    found = np.stack([np.broadcast_to(np.asarray(value), len(case.rows)) for value in found], axis=-1)
+    found = np.stack(
+        [np.broadcast_to(np.asarray(value), len(case.rows)) for value in found], axis=-1
+    )
     np.testing.assert_allclose(found.astype(float), by_floats(case), rtol=1e-9, atol=1e-9)
 
 
@@ -694,8 +910,12 @@ def test_tensors_give_what_floats_give(case):
 def test_gradients_are_finite_even_at_rest(case):
     torch = pytest.importorskip("torch")
     columns = [torch.as_tensor(np.array(column)) for column in zip(*case.rows, strict=True)]
-    columns = [column.requires_grad_() if column.is_floating_point() else column for column in columns]
-    values = [value for value in case(*columns) if isinstance(value, torch.Tensor) and value.requires_grad]
+    columns = [
+        column.requires_grad_() if column.is_floating_point() else column for column in columns
+    ]
+    values = [
+        value for value in case(*columns) if isinstance(value, torch.Tensor) and value.requires_grad
+    ]
     if values:
         sum(value.sum() for value in values).backward()
     gradients = [column.grad for column in columns if column.grad is not None]
@@ -703,20 +923,38 @@ def test_gradients_are_finite_even_at_rest(case):
 
 
 def test_every_function_that_promises_tensors_is_among_the_cases():
-    covered = {case.function for case in CASES} | {waves.components}  # no scalars: test_waves compares them
+    covered = {case.function for case in CASES} | {
+        waves.components
+    }  # no scalars: test_waves compares them
     covered |= {maths.is_single, maths.repeat, maths.times, memoize.kept}  # know no arithmetic
     covered |= {maths.library_of}  # tells the arithmetics apart
-    covered |= {waves.phase_angle, waves.waves_like, wave_loads.drift_at}  # parts of those that are cases
-    covered |= {neural.features, neural.network, neural.propose, neural.effects}  # vectors: test_neural compares them
+    covered |= {
+        waves.phase_angle,
+        waves.waves_like,
+        wave_loads.drift_at,
+    }  # parts of those that are cases
+    covered |= {
+        neural.features,
+        neural.network,
+        neural.propose,
+        neural.effects,
+    }  # vectors: test_neural compares them
     covered |= {neural.taken, neural.kept_shares, neural.completed, neural.power}
     # vectors and records: test_own_record compares them
     covered |= {own_record.begin, own_record.step, own_record.predict, own_record.member}
     covered |= {own_record.weights, own_record.mixed}
-    covered |= {own_model.thrust_told, own_model.delivered, own_model.residual_load, own_model.moved}
+    covered |= {
+        own_model.thrust_told,
+        own_model.delivered,
+        own_model.residual_load,
+        own_model.moved,
+    }
     covered |= {drive.drive_step}  # by the steps of both thrusters
     covered |= {propeller.loads_at}  # by propeller_loads
     covered |= {sinusoids.column, sinusoids.total, sinusoids.tensors_if_any}
-    missing = [f"{name}.{function.__name__}" for name, function in promising() if function not in covered]
+    missing = [
+        f"{name}.{function.__name__}" for name, function in promising() if function not in covered
+    ]
     assert not missing
 
 

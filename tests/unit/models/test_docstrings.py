@@ -55,7 +55,9 @@ def is_parameter_set(record):
 def records():
     for module in modules():
         for record in own(module, inspect.isclass):
-            if hasattr(record, "_fields") or (dataclasses.is_dataclass(record) and not is_parameter_set(record)):
+            if hasattr(record, "_fields") or (
+                dataclasses.is_dataclass(record) and not is_parameter_set(record)
+            ):
                 yield record
 
 
@@ -78,7 +80,9 @@ def is_number(annotation):
     """Whether values of a type have a unit: numbers and their sequences, but no text and no record of ours."""
     if inner := [one for one in typing.get_args(annotation) if one is not Ellipsis]:
         return typing.get_origin(annotation) is not Callable and any(map(is_number, inner))
-    return annotation not in WITHOUT_UNIT and not getattr(annotation, "__module__", "").startswith("shipcosim")
+    return annotation not in WITHOUT_UNIT and not getattr(annotation, "__module__", "").startswith(
+        "shipcosim"
+    )
 
 
 def described(function):
@@ -93,23 +97,36 @@ def raises(function, seen=()):
     tree = ast.parse(inspect.cleandoc("\n" + inspect.getsource(function)))
     if any(isinstance(node, ast.Raise) for node in ast.walk(tree)):
         return True
-    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
+    called = {
+        node.func.id
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
     inner = [vars(inspect.getmodule(function)).get(name) for name in called - set(seen)]
     inner = [inspect.unwrap(one) for one in inner if callable(one)]
-    inner = [one for one in inner if inspect.isfunction(one) and one.__module__ == function.__module__]
+    inner = [
+        one for one in inner if inspect.isfunction(one) and one.__module__ == function.__module__
+    ]
     return any(raises(one, (*seen, *called)) for one in inner)
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=name_of)
 def test_arguments_and_result_have_types(function):
     signature = inspect.signature(function)
-    missing = [name for name, parameter in signature.parameters.items() if parameter.annotation is parameter.empty]
+    missing = [
+        name
+        for name, parameter in signature.parameters.items()
+        if parameter.annotation is parameter.empty
+    ]
     assert not missing and signature.return_annotation is not signature.empty
 
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=name_of)
 def test_every_argument_is_described_and_numbers_have_units(function):
-    found, signature = entries(section(described(function), "Parameters")), inspect.signature(function)
+    found, signature = (
+        entries(section(described(function), "Parameters")),
+        inspect.signature(function),
+    )
     if SAME.search(inspect.getdoc(function)):
         assert len(found) == len(signature.parameters)
         return
@@ -120,7 +137,10 @@ def test_every_argument_is_described_and_numbers_have_units(function):
 
 @pytest.mark.parametrize("function", FUNCTIONS, ids=name_of)
 def test_results_have_units(function):
-    text, kind = section(described(function), "Returns"), inspect.signature(function).return_annotation
+    text, kind = (
+        section(described(function), "Returns"),
+        inspect.signature(function).return_annotation,
+    )
     assert text and (not is_number(kind) or UNIT.search(text))
 
 
@@ -141,4 +161,6 @@ def test_fields_of_records_have_units(record):
     found = entries(section(docstring, "Parameters"))
     kinds = record.__annotations__
     assert set(found) >= set(kinds)
-    assert not [name for name, kind in kinds.items() if is_number(kind) and not UNIT.search(found[name][1])]
+    assert not [
+        name for name, kind in kinds.items() if is_number(kind) and not UNIT.search(found[name][1])
+    ]

@@ -8,7 +8,15 @@ import pytest
 import shipcosim as sc
 from shipcosim.errors import ShipcosimError
 from shipcosim.library import build_stale
-from shipcosim.scenario import Scenario, check_scenario, judge, odd_values, read_scenario, units_of, with_numbers
+from shipcosim.scenario import (
+    Scenario,
+    check_scenario,
+    judge,
+    odd_values,
+    read_scenario,
+    units_of,
+    with_numbers,
+)
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system, with_values
 
@@ -34,7 +42,11 @@ def problems(dp, **keys):
 
 
 def test_start_values_take_units(dp):
-    given = {"environment.wind_from": "45 deg", "environment.wind_speed": "10 kn", "vessel.mass": "550 t"}
+    given = {
+        "environment.wind_from": "45 deg",
+        "environment.wind_speed": "10 kn",
+        "vessel.mass": "550 t",
+    }
     system = with_values(dp, given)
     assert system.components["environment"].start["wind_from"] == pytest.approx(math.pi / 4)
     assert system.components["environment"].start["wind_speed"] == pytest.approx(5.14444, abs=1e-5)
@@ -54,7 +66,9 @@ def test_start_values_of_another_kind_are_refused_together(dp):
 
 def test_a_run_with_units_is_the_run_with_numbers(dp):
     one, other = (
-        sc.simulate(dp, stop_time=10.0, step_size=0.5, set={"environment.wind_speed": speed}, events=[event])
+        sc.simulate(
+            dp, stop_time=10.0, step_size=0.5, set={"environment.wind_speed": speed}, events=[event]
+        )
         for speed, event in (
             (10 * 1852 / 3600, {"time": 5.0, "override": {"environment.wind_from": math.pi / 2}}),
             ("10 kn", {"time": "5000 ms", "override": {"environment.wind_from": "90 deg"}}),
@@ -62,7 +76,9 @@ def test_a_run_with_units_is_the_run_with_numbers(dp):
     )
     assert one.sizes["time"] == 21
     for name in one.data_vars:
-        np.testing.assert_allclose(other[name].values, one[name].values, rtol=1e-12, atol=1e-12, err_msg=str(name))
+        np.testing.assert_allclose(
+            other[name].values, one[name].values, rtol=1e-12, atol=1e-12, err_msg=str(name)
+        )
 
 
 def test_times_take_units_and_are_said_in_seconds(tmp_path):
@@ -83,7 +99,11 @@ def test_times_take_units_and_are_said_in_seconds(tmp_path):
 
 
 def test_events_take_units(dp):
-    event = {"time": 1.0, "override": {"environment.wind_from": "90 deg"}, "bias": {"environment.wind_speed": "1 kn"}}
+    event = {
+        "time": 1.0,
+        "override": {"environment.wind_from": "90 deg"},
+        "bias": {"environment.wind_speed": "1 kn"},
+    }
     scenario = with_numbers(Scenario.model_validate(TIMES | {"events": [event]}), units_of(dp))
     assert scenario.events[0].override == {"environment.wind_from": pytest.approx(math.pi / 2)}
     assert scenario.events[0].bias == {"environment.wind_speed": pytest.approx(1852 / 3600)}
@@ -101,8 +121,17 @@ def table():
     """x = t in m, far = t/1000 in km, psi from 179 to 189 deg in rad and in deg, wrapped, over 0 to 10 s."""
     t = np.arange(11.0)
     degrees = (179.0 + t + 180.0) % 360.0 - 180.0
-    columns = [("a.x", t, "m", ""), ("a.y", t, "m", ""), ("far.x", t / 1e3, "km", ""), ("speed", t, "m/s", "")]
-    columns += [("a.psi", np.radians(degrees), "rad", ""), ("a.course", degrees, "deg", ""), ("plain", t, "", "")]
+    columns = [
+        ("a.x", t, "m", ""),
+        ("a.y", t, "m", ""),
+        ("far.x", t / 1e3, "km", ""),
+        ("speed", t, "m/s", ""),
+    ]
+    columns += [
+        ("a.psi", np.radians(degrees), "rad", ""),
+        ("a.course", degrees, "deg", ""),
+        ("plain", t, "", ""),
+    ]
     return make_table(t, columns)
 
 
@@ -118,8 +147,21 @@ def table():
         ({"signal": "speed", "at_most": "36.01 km/h"}, True, None),
         ({"signal": "speed", "at_most": "35.9 km/h"}, False, 10.0),
         ({"signal": "a.x", "near": "far.x", "within": "1 mm"}, True, 0.0),
-        ({"signal": ["a.x", "far.x"], "near": [10.0, "10 m"], "within": 0.1, "statistic": "final"}, True, 0.0),
-        ({"signal": ["a.x", "far.x"], "near": [0.0, 0.0], "within": "15 m"}, True, math.hypot(10, 10)),
+        (
+            {
+                "signal": ["a.x", "far.x"],
+                "near": [10.0, "10 m"],
+                "within": 0.1,
+                "statistic": "final",
+            },
+            True,
+            0.0,
+        ),
+        (
+            {"signal": ["a.x", "far.x"], "near": [0.0, 0.0], "within": "15 m"},
+            True,
+            math.hypot(10, 10),
+        ),
     ],
 )
 def test_expectations_take_units(table, expect, passed, worst):
@@ -135,9 +177,18 @@ def test_expectations_take_units(table, expect, passed, worst):
             {"signal": ["a.x", "a.psi"], "near": [0.0, 0.0], "within": 1.0},
             "a.x is in m and a.psi is in rad: no distance",
         ),
-        ({"signal": "a.x", "near": "a.psi", "within": 1.0}, "a.x is in m and a.psi is in rad: they measure different"),
-        ({"signal": "a.x", "near": 0.0, "within": "1 deg"}, "within of a.x: '1 deg' is in deg, where m is wanted"),
-        ({"signal": "a.psi", "at_most": "1 m"}, "at_most of a.psi: '1 m' is in m, where rad is wanted"),
+        (
+            {"signal": "a.x", "near": "a.psi", "within": 1.0},
+            "a.x is in m and a.psi is in rad: they measure different",
+        ),
+        (
+            {"signal": "a.x", "near": 0.0, "within": "1 deg"},
+            "within of a.x: '1 deg' is in deg, where m is wanted",
+        ),
+        (
+            {"signal": "a.psi", "at_most": "1 m"},
+            "at_most of a.psi: '1 m' is in m, where rad is wanted",
+        ),
         ({"signal": "plain", "at_most": "1 m"}, "where no unit is wanted"),
     ],
 )
@@ -168,8 +219,14 @@ def test_a_check_says_where_units_are_mixed(dp, tmp_path):
 @pytest.mark.parametrize(
     ("set_", "said"),
     [
-        ({"environment.wind_from": 45.0}, "environment.wind_from: 45 rad is more than a whole turn. If degrees are"),
-        ({"environment.wind_from": -10}, "environment.wind_from: -10 rad is more than a whole turn"),
+        (
+            {"environment.wind_from": 45.0},
+            "environment.wind_from: 45 rad is more than a whole turn. If degrees are",
+        ),
+        (
+            {"environment.wind_from": -10},
+            "environment.wind_from: -10 rad is more than a whole turn",
+        ),
         ({"vessel.mass": 1.0}, "vessel.mass: 1 kg is very little"),
         ({"vessel.mass": "1 kg"}, None),
         ({"vessel.mass": 6e9}, "vessel.mass: 6e+09 kg is very much"),
@@ -185,9 +242,14 @@ def test_values_that_are_hardly_meant_earn_a_remark(dp, set_, said):
 
 
 def test_a_bare_angle_in_an_event_earns_a_remark_and_degrees_none(dp):
-    bare, with_unit = ({"time": 1.0, "override": {"environment.wind_from": value}} for value in (45, "45 deg"))
+    bare, with_unit = (
+        {"time": 1.0, "override": {"environment.wind_from": value}} for value in (45, "45 deg")
+    )
     (said,) = problems(dp, events=[bare])
-    assert 'environment.wind_from: 45 rad is more than a whole turn. If degrees are meant, write "45 deg".' in said
+    assert (
+        'environment.wind_from: 45 rad is more than a whole turn. If degrees are meant, write "45 deg".'
+        in said
+    )
     assert problems(dp, events=[with_unit]) == []
 
 

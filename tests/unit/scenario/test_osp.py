@@ -8,10 +8,15 @@ from shipcosim.scenario.osp import read_osp_scenario, write_osp_scenario
 
 
 def test_times_count_from_the_start_of_the_run_and_move_up_to_a_step(tmp_path):
-    file = written(tmp_path / "events.json", events=EVENTS[3:4] + EVENTS[:1], defaults=DEFAULTS, end=0.6)
+    file = written(
+        tmp_path / "events.json", events=EVENTS[3:4] + EVENTS[:1], defaults=DEFAULTS, end=0.6
+    )
     read = read_osp_scenario(file, 0.05, 12.0, start_time=10.0)
     assert [round(event.time, 9) for event in read.events] == [10.45, 10.1, 10.6, 10.6]
-    assert [event.changes[0][:2] for event in read.events[2:]] == [("reset", "plant.y"), ("reset", "law.u")]
+    assert [event.changes[0][:2] for event in read.events[2:]] == [
+        ("reset", "plant.y"),
+        ("reset", "law.u"),
+    ]
 
 
 def test_yaml_takes_numbers_and_truths_as_libcosims_reader_does(tmp_path):
@@ -34,7 +39,9 @@ def test_what_is_written_is_read_back(tmp_path):
         read = read_osp_scenario(tmp_path / name, 0.05, 1.0)
         assert read.description == "Größe" and read.remarks == []
         changes = [(event.time, *event.changes[0]) for event in read.events]
-        wanted = [(e["time"], e["action"], f"{e['model']}.{e['variable']}", e["value"]) for e in events]
+        wanted = [
+            (e["time"], e["action"], f"{e['model']}.{e['variable']}", e["value"]) for e in events
+        ]
         assert changes == wanted
 
 
@@ -56,7 +63,10 @@ def test_what_is_written_is_read_back(tmp_path):
             '{"events": [{"time": 1, "model": "a", "variable": "b", "action": "overide", "value": 1}]}',
             "The action 'overide' is not known. There is: bias, override, reset. Did you mean 'override'?",
         ),
-        ('{"events": [{"time": 1, "model": "a", "variable": "b", "action": "override"}]}', "It has no value."),
+        (
+            '{"events": [{"time": 1, "model": "a", "variable": "b", "action": "override"}]}',
+            "It has no value.",
+        ),
         (
             '{"events": [{"time": 1, "model": "a", "variable": "b", "action": "override", "value": NaN}]}',
             "nan is no usable number.",
@@ -86,4 +96,7 @@ def test_two_changes_of_a_signal_in_one_step_and_unknown_keys_are_remarked(tmp_p
     events = [EVENTS[0], EVENTS[0] | {"value": 3.0, "comment": "later"}]
     read = read_osp_scenario(written(tmp_path / "events.json", events=events, end=1.0), 0.05, 1.0)
     text = "\n".join(map(str, read.remarks))
-    assert "event 2: 'comment' is not used." in text and "law.u is changed twice in the step at 0.1 s" in text
+    assert (
+        "event 2: 'comment' is not used." in text
+        and "law.u is changed twice in the step at 0.1 s" in text
+    )

@@ -51,7 +51,9 @@ def test_scenario_holds_what_the_file_says(tmp_path):
     scenario = read_scenario(written(tmp_path, GOOD))
     assert (scenario.name, scenario.stop_time, scenario.parameters) == ("calm", 10.0, ["heavy"])
     assert scenario.set == {"sea.height": 0.5, "sea.seed": 3}
-    assert scenario.events[0].override == {"ship.u": 1, "ship.lost": True} and scenario.events[1].reset == ["ship.u"]
+    assert scenario.events[0].override == {"ship.u": 1, "ship.lost": True} and scenario.events[
+        1
+    ].reset == ["ship.u"]
     assert str(scenario.expect[0]) == "ship.x within 0.5 of 0 during 5 to 10 s"
     assert str(scenario.expect[1]) == "ship.v ≤ 2"
 
@@ -71,19 +73,47 @@ def test_system_and_parameters_are_found_in_the_project(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("stop_time = 10.0", "stop_tme = 10.0", "line 4: unknown key 'stop_tme'.*Did you mean 'stop_time'"),
+        (
+            "stop_time = 10.0",
+            "stop_tme = 10.0",
+            "line 4: unknown key 'stop_tme'.*Did you mean 'stop_time'",
+        ),
         ("stop_time = 10.0\n", "", r"calm.toml: 'stop_time' is missing"),
-        ("step_size = 0.1", "step_size = -0.1", "line 5: step_size = -0.1. It should be greater than 0"),
+        (
+            "step_size = 0.1",
+            "step_size = -0.1",
+            "line 5: step_size = -0.1. It should be greater than 0",
+        ),
         ("step_size = 0.1", "step_size = true", "line 5: step_size = true. It should be a number"),
         ("step_size = 0.1", "step_size = nan", "line 5: step_size = nan"),
-        ("step_size = 0.1", "step_size = 0.3", "line 4: stop_time = 10 s is no multiple.*The nearest would be 9.9 s"),
-        ("step_size = 0.1", "step_size = 20.0", "line 4: stop_time = 10 s is no multiple.*The nearest would be 20 s"),
-        ("time = 4.0", "time = 4.05", r"line 16: time = 4.05 s is no multiple of the step size 0.1 s"),
+        (
+            "step_size = 0.1",
+            "step_size = 0.3",
+            "line 4: stop_time = 10 s is no multiple.*The nearest would be 9.9 s",
+        ),
+        (
+            "step_size = 0.1",
+            "step_size = 20.0",
+            "line 4: stop_time = 10 s is no multiple.*The nearest would be 20 s",
+        ),
+        (
+            "time = 4.0",
+            "time = 4.05",
+            r"line 16: time = 4.05 s is no multiple of the step size 0.1 s",
+        ),
         ('reset = ["ship.u"]', "", "line 15: The event does nothing"),
-        ('reset = ["ship.u"]', 'rest = ["ship.u"]', "line 17: unknown key 'rest'.*Did you mean 'reset'"),
+        (
+            'reset = ["ship.u"]',
+            'rest = ["ship.u"]',
+            "line 17: unknown key 'rest'.*Did you mean 'reset'",
+        ),
         ('"sea.seed" = 3', '"sea.seed" = [3]', r"line 9: \[3\] is no value"),
         ("within = 0.5", "", "line 19: `near` and `within` come together"),
-        ("within = 0.5", "within = 0.5\nat_most = 1.0", "line 19: .*either near and within, or at_least"),
+        (
+            "within = 0.5",
+            "within = 0.5\nat_most = 1.0",
+            "line 19: .*either near and within, or at_least",
+        ),
         ("near = 0.0", "near = [0.0, 1.0]", "line 19: 1 signals need 1 values"),
         ("during = [5.0, 10.0]", "during = [5.0, 4.0]", "line 19: .*ends before it starts"),
         (
@@ -100,7 +130,11 @@ def test_mistakes_are_said_with_their_line(tmp_path, old, new, said):
 
 
 def test_all_mistakes_are_said_at_once_in_the_order_of_the_file(tmp_path):
-    text = GOOD.replace("stop_time", "stop_tme").replace("near = 0.0", "naer = 0.0").replace("time = 2.0", 'time = "2"')
+    text = (
+        GOOD.replace("stop_time", "stop_tme")
+        .replace("near = 0.0", "naer = 0.0")
+        .replace("time = 2.0", 'time = "2"')
+    )
     with pytest.raises(ShipcosimError) as error:
         read_scenario(written(tmp_path, text))
     lines = [problem.where.rpartition("line ")[2] for problem in error.value.problems[1:]]
@@ -134,7 +168,8 @@ def test_scenarios_of_the_project_are_sound(root):
 
 
 @pytest.mark.parametrize(
-    ("duration", "step", "count"), [(1100.0, 0.05, 22000), (0.3, 0.1, 3), (1.0, 1 / 3, 3), (1.0, 0.3, None)]
+    ("duration", "step", "count"),
+    [(1100.0, 0.05, 22000), (0.3, 0.1, 3), (1.0, 1 / 3, 3), (1.0, 0.3, None)],
 )
 def test_steps_are_counted_whatever_the_rounding(duration, step, count):
     assert whole_steps(duration, step) == count
@@ -145,11 +180,19 @@ def verdict():
     """Function: verdict on one expectation of a table with x = t, y = 2 t and psi through the seam, 0 to 10 s."""
     t = np.arange(11.0)
     wrapped = (3.0 + 0.1 * t + np.pi) % (2 * np.pi) - np.pi
-    columns = [("x", t, "m", ""), ("y", 2 * t, "m", ""), ("psi", wrapped, "rad", ""), ("bad", t * np.nan, "m", "")]
+    columns = [
+        ("x", t, "m", ""),
+        ("y", 2 * t, "m", ""),
+        ("psi", wrapped, "rad", ""),
+        ("bad", t * np.nan, "m", ""),
+    ]
     table = make_table(t, columns)
 
     def judged(**expect):
-        (result,) = judge(table, Scenario.model_validate({"stop_time": 10.0, "step_size": 1.0, "expect": [expect]}))
+        (result,) = judge(
+            table,
+            Scenario.model_validate({"stop_time": 10.0, "step_size": 1.0, "expect": [expect]}),
+        )
         return result
 
     return judged
@@ -162,9 +205,24 @@ def verdict():
         ({"signal": "x", "near": 5.0, "within": 2.0, "during": [3.0, 7.0]}, True, 2.0, 3.0),
         ({"signal": "x", "near": 4.0, "within": 2.0, "during": [3.0, 7.0]}, False, 3.0, 7.0),
         ({"signal": "x", "near": "y", "within": 9.0}, False, 10.0, 10.0),
-        ({"signal": ["x", "y"], "near": [7.0, 16.0], "within": 5.0, "during": [10.0, 10.0]}, True, 5.0, 10.0),
-        ({"signal": ["x", "y"], "near": ["y", "x"], "within": 1.0, "during": [1.0, 1.0]}, False, math.sqrt(2), 1.0),
-        ({"signal": "psi", "near": -3.0, "within": 0.8, "during": [0.0, 8.0]}, True, 6.8 - 2 * math.pi, 8.0),
+        (
+            {"signal": ["x", "y"], "near": [7.0, 16.0], "within": 5.0, "during": [10.0, 10.0]},
+            True,
+            5.0,
+            10.0,
+        ),
+        (
+            {"signal": ["x", "y"], "near": ["y", "x"], "within": 1.0, "during": [1.0, 1.0]},
+            False,
+            math.sqrt(2),
+            1.0,
+        ),
+        (
+            {"signal": "psi", "near": -3.0, "within": 0.8, "during": [0.0, 8.0]},
+            True,
+            6.8 - 2 * math.pi,
+            8.0,
+        ),
         ({"signal": "x", "at_most": 9.0}, False, 10.0, 10.0),
         ({"signal": "x", "at_least": 0.0, "at_most": 10.0}, True, None, None),
         ({"signal": "x", "at_least": 4.0, "during": [3.0, 9.0]}, False, 3.0, 3.0),
@@ -181,7 +239,9 @@ def test_expectations_are_judged(verdict, expect, passed, worst, time):
     found = verdict(**expect)
     assert found.passed is passed
     if worst is not None:
-        assert found.worst == pytest.approx(worst, nan_ok=True) and found.time == pytest.approx(time, nan_ok=True)
+        assert found.worst == pytest.approx(worst, nan_ok=True) and found.time == pytest.approx(
+            time, nan_ok=True
+        )
 
 
 def test_signal_that_is_not_in_the_table_is_an_error(verdict):

@@ -66,8 +66,12 @@ class Workshop:
         causality, name, kind, *more = text.split()
         given = dict(part.split("=", 1) if "=" in part else ("unit", part) for part in more)
         if causality in ("input", "parameter"):
-            given.setdefault("start", {"Boolean": "false", "String": "", "Enumeration": "1"}.get(kind, "0"))
-        variability = {"parameter": "fixed"}.get(causality, "continuous" if kind == "Real" else "discrete")
+            given.setdefault(
+                "start", {"Boolean": "false", "String": "", "Enumeration": "1"}.get(kind, "0")
+            )
+        variability = {"parameter": "fixed"}.get(
+            causality, "continuous" if kind == "Real" else "discrete"
+        )
         attributes = "".join(f" {key}={quoteattr(value)}" for key, value in given.items())
         return (
             f'<ScalarVariable name="{name}" valueReference="{number}" causality="{causality}"'
@@ -80,7 +84,9 @@ class Workshop:
         inner = ""
         for text in connectors:
             kind, connector, *typed = text.split(maxsplit=2)
-            inner += f'<ssd:Connector name="{connector}" kind="{kind}">{"".join(typed)}</ssd:Connector>'
+            inner += (
+                f'<ssd:Connector name="{connector}" kind="{kind}">{"".join(typed)}</ssd:Connector>'
+            )
         listed = f"<ssd:Connectors>{inner}</ssd:Connectors>" if inner else ""
         return f'<ssd:Component name="{name}" source="resources/{fmu}.fmu">{listed}{more}</ssd:Component>\n'
 

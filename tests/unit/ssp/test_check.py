@@ -35,8 +35,12 @@ def test_broken_xml_is_named_with_its_line(shop):
 
 def test_a_wrong_namespace_is_named_with_the_right_one(shop):
     shop.ssd("")
-    shop.path.write_text(shop.path.read_text().replace("SSP1/SystemStructureDescription", "Draft/X"))
-    assert 'xmlns="http://ssp-standard.org/SSP1/SystemStructureDescription"' in messages(check_file(shop.path))
+    shop.path.write_text(
+        shop.path.read_text().replace("SSP1/SystemStructureDescription", "Draft/X")
+    )
+    assert 'xmlns="http://ssp-standard.org/SSP1/SystemStructureDescription"' in messages(
+        check_file(shop.path)
+    )
 
 
 @pytest.mark.parametrize(
@@ -46,7 +50,10 @@ def test_a_wrong_namespace_is_named_with_the_right_one(shop):
         (b'<?xml version="1.0" encoding="ISO-8859-1"?><a>\xe4</a>', "not UTF-8"),
         (b"", "Not well-formed XML"),
         (b"<a>" * 5000, "Not well-formed XML"),
-        (b'<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><a>&x;</a>', "document type declaration"),
+        (
+            b'<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><a>&x;</a>',
+            "document type declaration",
+        ),
         (
             b'<!DOCTYPE a [<!ENTITY l "ha"><!ENTITY m "'
             + b"&l;" * 50
@@ -77,7 +84,9 @@ def test_a_set_and_a_mapping_are_checked_alone(shop, real):
     assert check_file(shop.ssv(real("a", "1", "m"))) == []
     assert "'one' is not a number" in messages(check_file(shop.ssv(real("a", "one"))))
     shop.ssm('<ssm:MappingEntry source="a" target="c"/><ssm:MappingEntry source="b" target="c"/>')
-    assert "'a' is mapped to this parameter already." in messages(check_file(shop.folder / "resources/names.ssm"))
+    assert "'a' is mapped to this parameter already." in messages(
+        check_file(shop.folder / "resources/names.ssm")
+    )
 
 
 def test_names_that_are_not_unique_are_refused(shop):
@@ -91,7 +100,9 @@ def test_names_that_are_not_unique_are_refused(shop):
 def test_ssp_2_types_are_read(shop):
     shop.fmu("one", "output y Real m")
     shop.ssd(shop.component("a", "one", 'output y <ssc:Float64 unit="m"/>'))
-    shop.path.write_text(shop.path.read_text().replace('version="1.0" name="test"', 'version="2.0" name="test"'))
+    shop.path.write_text(
+        shop.path.read_text().replace('version="1.0" name="test"', 'version="2.0" name="test"')
+    )
     assert messages(check_file(shop.path)) == ""
     shop.path.write_text(shop.path.read_text().replace('kind="output"', 'kind="outputt"'))
     assert "The kind of connector 'outputt' does not exist." in messages(check_file(shop.path))

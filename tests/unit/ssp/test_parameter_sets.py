@@ -16,7 +16,9 @@ THESIS = ("thesis", "thesis-28m9")
 
 @pytest.fixture(scope="session")
 def writer(root):
-    spec = importlib.util.spec_from_file_location("write_parameter_sets", root / "ssp" / "write_parameter_sets.py")
+    spec = importlib.util.spec_from_file_location(
+        "write_parameter_sets", root / "ssp" / "write_parameter_sets.py"
+    )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -25,10 +27,14 @@ def writer(root):
 @pytest.fixture(scope="session")
 def sets(writer):
     """Function from a ship to all her quantities by component."""
-    return lambda name: ship(name).parameter_set(writer.components(ship(name).systems[0], ship(name)))
+    return lambda name: ship(name).parameter_set(
+        writer.components(ship(name).systems[0], ship(name))
+    )
 
 
-@pytest.mark.parametrize(("name", "system"), [(name, system) for name in SHIPS for system in ship(name).systems])
+@pytest.mark.parametrize(
+    ("name", "system"), [(name, system) for name in SHIPS for system in ship(name).systems]
+)
 def test_parameter_file_holds_the_numbers_of_the_ship(system, name, writer, root, tmp_path):
     write_ssv(tmp_path / "again.ssv", name, writer.values(system, ship(name)))
     committed = root / "ssp" / system / "resources" / f"{name}.ssv"
@@ -40,7 +46,9 @@ def test_parameter_file_holds_the_numbers_of_the_ship(system, name, writer, root
 def test_every_number_has_unit_description_and_origin(name, sets):
     for component, values in sets(name).items():
         for parameter, quantity in values.items():
-            assert quantity.unit and quantity.description and quantity.origin, f"{component}.{parameter}"
+            assert quantity.unit and quantity.description and quantity.origin, (
+                f"{component}.{parameter}"
+            )
             assert quantity.tolerance >= 0.0
 
 
@@ -49,7 +57,14 @@ def test_tolerances_are_those_of_the_nominal_model(name, sets):
     """Shares of the value: mass and inertia 1 %, added mass 3 %, drag 5 %, and so on; positions 0.02 m."""
     shares = {
         "vessel": dict(
-            mass=0.01, inertia_yaw=0.01, A11=0.03, A22=0.03, A26=0.03, A66=0.03, X_uu=0.05, wind_load_scale=0.03
+            mass=0.01,
+            inertia_yaw=0.01,
+            A11=0.03,
+            A22=0.03,
+            A26=0.03,
+            A66=0.03,
+            X_uu=0.05,
+            wind_load_scale=0.03,
         ),
         "port": dict(side_force_coefficient=0.1, thrust_scale=0.01, thrust_scale_outside=0.05),
         "tunnel": dict(thrust_coefficient=0.02),
@@ -59,7 +74,9 @@ def test_tolerances_are_those_of_the_nominal_model(name, sets):
     for component, expected in shares.items():
         for parameter, share in expected.items():
             quantity = sets(name)[component][parameter]
-            assert quantity.tolerance == pytest.approx(share * abs(quantity.value), rel=0.03), parameter
+            assert quantity.tolerance == pytest.approx(share * abs(quantity.value), rel=0.03), (
+                parameter
+            )
     places = (("port", "x"), ("starboard", "y"), ("tunnel", "x"))
     assert [sets(name)[c][axis].tolerance for c, axis in places] == [0.02] * 3
 
@@ -93,7 +110,11 @@ def test_thrusters_are_where_the_nominal_model_has_them(name, x, y, tunnel_x, se
 @pytest.mark.parametrize("name", ["gunnerus-33m9", *THESIS])
 def test_limits_are_those_of_the_thesis(name, sets):
     unit = sets(name)["port"]
-    assert [unit[limit].value for limit in ("thrust_min", "thrust_max", "thrust_rate")] == [-30e3, 60e3, 1e3]
+    assert [unit[limit].value for limit in ("thrust_min", "thrust_max", "thrust_rate")] == [
+        -30e3,
+        60e3,
+        1e3,
+    ]
     assert unit["azimuth_rate"].value == pytest.approx(10.0 / 180.0 * pi)
 
 
@@ -102,9 +123,13 @@ def test_the_ship_of_paper_v_has_her_own_hull_and_the_thrusters_of_the_thesis(se
     found, hull, thesis = (sets(name) for name in ("thesis-28m9", "gunnerus-28m9", "thesis"))
     vessel = {parameter: quantity.value for parameter, quantity in found["vessel"].items()}
     assert (vessel["length"], vessel["breadth"], vessel["draught"]) == (28.9, 9.6, 2.8)
-    changed = {parameter for parameter, value in vessel.items() if value != hull["vessel"][parameter].value}
+    changed = {
+        parameter for parameter, value in vessel.items() if value != hull["vessel"][parameter].value
+    }
     assert changed == {"draught"}
-    assert found["tunnel"]["thrust_max"].value == found["allocator"]["tunnel_thrust_max"].value == 30e3
+    assert (
+        found["tunnel"]["thrust_max"].value == found["allocator"]["tunnel_thrust_max"].value == 30e3
+    )
     for component in ("port", "starboard", "tunnel"):
         places = {"x", "y", "neighbour_x", "neighbour_y"}
         assert {p for p, q in found[component].items() if q != thesis[component][p]} <= places
@@ -122,7 +147,9 @@ def test_drift_is_that_of_the_source_at_its_frequencies_and_near_between_them(sh
     for column, tolerance in ((2, 19.0), (3, 48.0), (4, 30.0)):
         for heading in range(19):
             between = np.interp(source[:, 0, 0], table[:, 0, 0], table[:, heading, column])
-            np.testing.assert_allclose(between, source[:, heading, column], rtol=5e-4, atol=tolerance)
+            np.testing.assert_allclose(
+                between, source[:, heading, column], rtol=5e-4, atol=tolerance
+            )
 
 
 def test_drift_of_the_short_ship_is_scaled_with_length():

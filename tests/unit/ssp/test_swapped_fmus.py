@@ -58,7 +58,9 @@ def test_an_fmu_of_the_same_interface_takes_another_ones_place(dp):
     assert other.components["allocator"].fmu.path.name == "extended_allocator.fmu"
     assert other.connections == own.connections and not own.swapped
     assert dict(other.swapped) == {"allocator": str(fmu("extended_allocator"))}
-    assert other.components["allocator"].start["port_x"] == own.components["allocator"].start["port_x"]
+    assert (
+        other.components["allocator"].start["port_x"] == own.components["allocator"].start["port_x"]
+    )
     assert not [remark for remark in other.remarks if remark.where.startswith("components")]
 
 
@@ -91,7 +93,11 @@ def test_values_for_parameters_that_it_has_not_are_said_in_one_remark(dp, tmp_pa
 
 def scenario_file(tmp_path, root, fmu):
     """Stationkeeping for two seconds with another allocator."""
-    text = (root / "scenarios" / "stationkeeping.toml").read_text(encoding="utf-8").partition("[[events]]")[0]
+    text = (
+        (root / "scenarios" / "stationkeeping.toml")
+        .read_text(encoding="utf-8")
+        .partition("[[events]]")[0]
+    )
     text = text.replace("stop_time       = 600.0 ", "stop_time       = 2.0 ")
     path = tmp_path / "other.toml"
     path.write_text(f'{text}\n[components]\nallocator = "{fmu}"\n', encoding="utf-8")
@@ -105,7 +111,10 @@ def test_a_scenario_swaps_a_component_and_says_at_the_line_what_is_not_there(tmp
     scenario = read_scenario(scenario_file(tmp_path, root, "extended_alocator"))
     (problem,) = check_files(scenario)
     line = Path(scenario.path).read_text(encoding="utf-8").count("\n")
-    assert problem.where.endswith(f"line {line}") and "Did you mean 'extended_allocator'?" in problem.remedy
+    assert (
+        problem.where.endswith(f"line {line}")
+        and "Did you mean 'extended_allocator'?" in problem.remedy
+    )
 
 
 def test_the_command_line_goes_over_the_scenario_and_the_page_says_so(tmp_path, root, monkeypatch):
@@ -121,8 +130,14 @@ def test_the_command_line_goes_over_the_scenario_and_the_page_says_so(tmp_path, 
     assert float(abs(table["vessel.y"] - again["vessel.y"]).max()) == 0.0
 
 
-@pytest.mark.parametrize("given", ["allocator", "allocator=", "=allocator", "allocator=no_such_fmu"])
+@pytest.mark.parametrize(
+    "given", ["allocator", "allocator=", "=allocator", "allocator=no_such_fmu"]
+)
 def test_what_swaps_nothing_is_one_error(given, root, monkeypatch):
     monkeypatch.chdir(root)
     result = CliRunner().invoke(app, ["run", "stationkeeping", "--component", given])
-    assert result.exit_code == 2 and "--component" in result.stderr and "Traceback" not in result.stderr
+    assert (
+        result.exit_code == 2
+        and "--component" in result.stderr
+        and "Traceback" not in result.stderr
+    )

@@ -14,11 +14,14 @@ def build(
         list[str] | None, typer.Argument(metavar="[NAME]...", help="FMUs and systems; all if none.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder to build into. [default: build]")
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder to build into. [default: build]"),
     ] = None,
     native: Annotated[
         bool,
-        typer.Option("--native", help="FMUs with their models in C, without Python; into build/native."),
+        typer.Option(
+            "--native", help="FMUs with their models in C, without Python; into build/native."
+        ),
     ] = False,
     targets: Annotated[
         str,
@@ -40,14 +43,20 @@ def build(
 
     project = library.project_of()
     if project is None:
-        remedy = "A project has a folder fmus/ or ssp/: go there, or make one with `shipcosim init DIR`."
+        remedy = (
+            "A project has a folder fmus/ or ssp/: go there, or make one with `shipcosim init DIR`."
+        )
         raise ShipcosimError(Problem(str(Path.cwd()), "There is no project here.", remedy))
     if targets and not native:
-        raise ShipcosimError(Problem("--targets", "FMUs in Python run on Linux and Windows.", "Give --native too."))
+        raise ShipcosimError(
+            Problem("--targets", "FMUs in Python run on Linux and Windows.", "Give --native too.")
+        )
     left = []
     with progress_of("Building") as progress:
         if native:
-            built, left = build_native(project, names or [], out or project / "build" / "native", targets, progress)
+            built, left = build_native(
+                project, names or [], out or project / "build" / "native", targets, progress
+            )
         else:
             built = build_named(project, names or [], out or project / "build", progress)
     print_problems(left)

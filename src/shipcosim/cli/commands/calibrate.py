@@ -12,16 +12,24 @@ from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
 def calibrate(
     logs: Annotated[
         list[Path],
-        typer.Argument(metavar="LOG...", help="Logs of one ship that is well: .csv, .csv.gz, .parquet, .nc."),
+        typer.Argument(
+            metavar="LOG...", help="Logs of one ship that is well: .csv, .csv.gz, .parquet, .nc."
+        ),
     ],
     channels: Channels = None,
     system: Ship = None,
     effects: Effects = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/calibrated-SYSTEM]"),
+        typer.Option(
+            "--out",
+            metavar="DIR",
+            help="Folder of the results. [default: results/calibrated-SYSTEM]",
+        ),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print reference.json instead of a summary.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print reference.json instead of a summary.")
+    ] = False,
     force: Force = False,
     debug: Debug = False,
 ) -> None:

@@ -20,20 +20,32 @@ def capability(
     ] = "gunnerus_dp",
     parameters: Annotated[
         list[Path] | None,
-        typer.Option("--parameters", metavar="X.SSV", help="Parameter set, or its name; repeatable, last wins."),
+        typer.Option(
+            "--parameters",
+            metavar="X.SSV",
+            help="Parameter set, or its name; repeatable, last wins.",
+        ),
     ] = None,
     ship: Annotated[
         str | None,
         typer.Option(
-            "--ship", metavar="FOLDER", help="Ship with capability.toml. [default: in ssp/ships, named as the last set]"
+            "--ship",
+            metavar="FOLDER",
+            help="Ship with capability.toml. [default: in ssp/ships, named as the last set]",
         ),
     ] = None,
     failure: Annotated[
         list[str] | None,
-        typer.Option("--failure", metavar="A,B", help="Thrusters that one failure takes out together; repeatable."),
+        typer.Option(
+            "--failure",
+            metavar="A,B",
+            help="Thrusters that one failure takes out together; repeatable.",
+        ),
     ] = None,
     out: Out = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the numbers as JSON instead of a summary.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the numbers as JSON instead of a summary.")
+    ] = False,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -47,7 +59,9 @@ def capability(
     from shipcosim.calls.systems import capability as capability_of
     from shipcosim.cli.capability import print_capability
 
-    groups = [tuple(name.strip() for name in given.split(",") if name.strip()) for given in failure or ()]
+    groups = [
+        tuple(name.strip() for name in given.split(",") if name.strip()) for given in failure or ()
+    ]
     found = capability_of(system, parameters=parameters or (), ship=ship, failures=groups)
     folder = out or Path("results") / f"capability-{found.vessel.name}"
     found.save(folder, force=force)

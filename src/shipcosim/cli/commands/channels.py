@@ -9,13 +9,18 @@ from shipcosim.cli.options import Channels, Debug, Ship
 
 
 def channels(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="Measured data: text, .xlsx, .nc or .parquet.")],
+    log: Annotated[
+        Path, typer.Argument(metavar="LOG", help="Measured data: text, .xlsx, .nc or .parquet.")
+    ],
     system: Ship = None,
     form: Channels = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="X.TOML", help="Write the proposed channel file here.")
+        Path | None,
+        typer.Option("--out", metavar="X.TOML", help="Write the proposed channel file here."),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write it over a file that is there.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write it over a file that is there.")
+    ] = False,
     debug: Debug = False,
 ) -> None:
     """Say what each column of a log is, and propose a channel file with a guess for each and its reason.

@@ -20,11 +20,16 @@ def check(
         ),
     ],
     channels: Annotated[
-        Path | None, typer.Option("--channels", metavar="X.toml", help="Channel file of measured data.")
+        Path | None,
+        typer.Option("--channels", metavar="X.toml", help="Channel file of measured data."),
     ] = None,
     hosts: Annotated[
         list[str] | None,
-        typer.Option("--for", metavar="TOOL", help="libcosim or ecos: what it would ignore or die of; repeatable."),
+        typer.Option(
+            "--for",
+            metavar="TOOL",
+            help="libcosim or ecos: what it would ignore or die of; repeatable.",
+        ),
     ] = None,
     strict: Strict = False,
     as_json: ReportAsJson = False,

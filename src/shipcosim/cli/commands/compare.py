@@ -28,10 +28,16 @@ def compare(
     fmus: Fmus = None,
     events: OspEvents = None,
     tolerance: Annotated[
-        float, typer.Option("--tolerance", min=0.0, help="Largest difference between engines, of a signal's range.")
+        float,
+        typer.Option(
+            "--tolerance", min=0.0, help="Largest difference between engines, of a signal's range."
+        ),
     ] = 1e-9,
     as_read: Annotated[
-        bool, typer.Option("--as-read", help="libcosim and ecos read the file themselves, as their users run it.")
+        bool,
+        typer.Option(
+            "--as-read", help="libcosim and ecos read the file themselves, as their users run it."
+        ),
     ] = False,
     strict: Strict = False,
     as_json: ReportAsJson = False,

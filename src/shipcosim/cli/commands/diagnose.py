@@ -24,12 +24,19 @@ def diagnose(
     effects: Effects = None,
     reference: Annotated[
         Path | None,
-        typer.Option("--reference", metavar="DIR", help="What `shipcosim calibrate` left: say what has changed since."),
+        typer.Option(
+            "--reference",
+            metavar="DIR",
+            help="What `shipcosim calibrate` left: say what has changed since.",
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]")
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]"),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print diagnosis.json instead of a summary.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print diagnosis.json instead of a summary.")
+    ] = False,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -50,7 +57,8 @@ def diagnose(
     from shipcosim.diagnose.pipeline import STEPS
 
     folder = out or default_folder(data[0])
-    asked = {"channels": channels, "causes": effects, "reference": reference, "out": folder, "force": force}
+    asked = {"channels": channels, "causes": effects, "reference": reference}
+    asked |= {"out": folder, "force": force}
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
             joint = diagnose_logs(data, system, progress=progress, **asked)

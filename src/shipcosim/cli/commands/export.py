@@ -22,15 +22,22 @@ from shipcosim.cli.options import (
 
 def fmu(
     what: SystemOrScenario,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.fmu.")] = Path("."),
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder that gets NAME.fmu.")
+    ] = Path("."),
     step_size: Annotated[
         float | None,
-        time_option("--step-size", "Of the exchange inside; in s, or as '50 ms'. Default: the system's."),
+        time_option(
+            "--step-size", "Of the exchange inside; in s, or as '50 ms'. Default: the system's."
+        ),
     ] = None,
     parameters: Parameters = None,
     components: Components = None,
     connectors_only: Annotated[
-        bool, typer.Option("--connectors-only", help="Show the system's own connectors, nothing of its components.")
+        bool,
+        typer.Option(
+            "--connectors-only", help="Show the system's own connectors, nothing of its components."
+        ),
     ] = False,
     unchecked: Annotated[
         bool, typer.Option("--unchecked", help="Do not run FMU and system side by side first.")
@@ -53,7 +60,9 @@ def fmu(
     from shipcosim.ssp import with_values
     from shipcosim.staging import set_file_aside
 
-    reading = Reading(parameters=parameters or [], components=parsed_components(components or ()), strict=strict)
+    reading = Reading(
+        parameters=parameters or [], components=parsed_components(components or ()), strict=strict
+    )
     keys = {} if step_size is None else {"step_size": step_size}
     system, scenario, _ = system_and_scenario(what, reading, keys, needs_end=False)
     print_problems(problem for problem in system.remarks if problem.flaw)
@@ -61,13 +70,17 @@ def fmu(
     target = out / f"{system.name}.fmu"
     set_file_aside(target, force=force)
     step = scenario.step_size
-    print_problems(export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked))
+    print_problems(
+        export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked)
+    )
     typer.echo(shown_path(target))
 
 
 def osp(
     what: SystemOrScenario,
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder for the files; made if needed.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Folder for the files; made if needed.")
+    ],
     stop_time: ScenariosStopTime = None,
     step_size: ScenariosStepSize = None,
     parameters: Parameters = None,
@@ -91,7 +104,9 @@ def osp(
     from shipcosim.staging import set_aside
 
     swapped = parsed_components(components or ())
-    reading = Reading(parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict)
+    reading = Reading(
+        parameters=parameters or [], components=swapped, fmus=fmus or [], strict=strict
+    )
     times = {"stop_time": stop_time, "step_size": step_size}
     keys = {name: time for name, time in times.items() if time is not None}
     system, scenario, remarks = system_and_scenario(what, reading, keys, events)

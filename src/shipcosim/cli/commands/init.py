@@ -9,7 +9,9 @@ from shipcosim.cli.options import Debug
 
 
 def init(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the project; made if needed.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder of the project; made if needed.")
+    ],
     debug: Debug = False,
 ) -> None:
     """Lay out a project of your own that runs as it is: system, scenarios, parameter set, test, notebook.

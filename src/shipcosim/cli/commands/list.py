@@ -13,7 +13,9 @@ def list_(
     kinds: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[KIND]...", help=f"{', '.join(LISTED)}; all if none.", autocompletion=words_of(*LISTED)
+            metavar="[KIND]...",
+            help=f"{', '.join(LISTED)}; all if none.",
+            autocompletion=words_of(*LISTED),
         ),
     ] = None,
     debug: Debug = False,

@@ -59,7 +59,9 @@ def system(
     name: Name,
     origin: Annotated[
         str,
-        typer.Option("--from", metavar="SSP", help="The system to copy.", autocompletion=names_of("system")),
+        typer.Option(
+            "--from", metavar="SSP", help="The system to copy.", autocompletion=names_of("system")
+        ),
     ] = "gunnerus_dp",
     debug: Debug = False,
 ) -> None:

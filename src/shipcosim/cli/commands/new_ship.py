@@ -9,25 +9,44 @@ from shipcosim.cli.options import Debug
 
 
 def ship(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="Her name: letters, digits, - and _.")],
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="Her name: letters, digits, - and _.")
+    ],
     origin: Annotated[
-        Path | None, typer.Option("--from", metavar="FILE", help="Ship file to start from; nothing is asked then.")
+        Path | None,
+        typer.Option(
+            "--from", metavar="FILE", help="Ship file to start from; nothing is asked then."
+        ),
     ] = None,
     description: Annotated[str | None, typer.Option("--description", help="One line.")] = None,
-    length: Annotated[str | None, typer.Option("--length", help='Between perpendiculars, "60 m".')] = None,
+    length: Annotated[
+        str | None, typer.Option("--length", help='Between perpendiculars, "60 m".')
+    ] = None,
     breadth: Annotated[str | None, typer.Option("--breadth")] = None,
     draught: Annotated[str | None, typer.Option("--draught")] = None,
     displacement: Annotated[str | None, typer.Option("--displacement", help='"2650 t".')] = None,
     speed: Annotated[str | None, typer.Option("--speed", help='Service speed, "12 kn".')] = None,
-    power: Annotated[str | None, typer.Option("--power", help='Of all main propellers, "2400 kW".')] = None,
-    kind: Annotated[str | None, typer.Option("--kind", help="Of Blendermann's table, for the wind.")] = None,
-    propulsion: Annotated[str | None, typer.Option("--propulsion", help="azimuths, screws or rudder.")] = None,
+    power: Annotated[
+        str | None, typer.Option("--power", help='Of all main propellers, "2400 kW".')
+    ] = None,
+    kind: Annotated[
+        str | None, typer.Option("--kind", help="Of Blendermann's table, for the wind.")
+    ] = None,
+    propulsion: Annotated[
+        str | None, typer.Option("--propulsion", help="azimuths, screws or rudder.")
+    ] = None,
     thrusters: Annotated[
         list[str] | None,
-        typer.Option("--thruster", metavar="KEYS", help='"name=bow, kind=tunnel, x=25 m, ..."; repeatable.'),
+        typer.Option(
+            "--thruster", metavar="KEYS", help='"name=bow, kind=tunnel, x=25 m, ..."; repeatable.'
+        ),
     ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Ask nothing: what is left out is what is usual.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Write over files that are there.")] = False,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="Ask nothing: what is left out is what is usual.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write over files that are there.")
+    ] = False,
     debug: Debug = False,
 ) -> None:
     """Describe a ship of one's own in ships/NAME/ship.toml, and make the systems that run her.

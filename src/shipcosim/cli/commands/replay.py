@@ -9,30 +9,46 @@ from shipcosim.cli.options import Channels, Debug, Force, time_option
 
 
 def replay(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="Measured data: .csv, .csv.gz, .parquet or .nc.")],
+    log: Annotated[
+        Path, typer.Argument(metavar="LOG", help="Measured data: .csv, .csv.gz, .parquet or .nc.")
+    ],
     system: Annotated[
         str | None,
         typer.Option(
-            "--system", metavar="SSP", help="A system, or extended.ssp. [default: as of `shipcosim diagnose`]"
+            "--system",
+            metavar="SSP",
+            help="A system, or extended.ssp. [default: as of `shipcosim diagnose`]",
         ),
     ] = None,
     before: Annotated[
         str | None,
         typer.Option(
-            "--before", metavar="SSP", help="The system to compare with. [default: the one that was extended]"
+            "--before",
+            metavar="SSP",
+            help="The system to compare with. [default: the one that was extended]",
         ),
     ] = None,
     channels: Channels = None,
     parameters: Annotated[
         list[Path] | None,
-        typer.Option("--parameters", metavar="X.SSV", help="A set over the system's own, for 'after'; repeatable."),
+        typer.Option(
+            "--parameters",
+            metavar="X.SSV",
+            help="A set over the system's own, for 'after'; repeatable.",
+        ),
     ] = None,
     horizon: Annotated[
         float | None,
-        time_option("--horizon", "Length of each prediction; in s, or such as '2 min'. Default: fits craft and log."),
+        time_option(
+            "--horizon",
+            "Length of each prediction; in s, or such as '2 min'. Default: fits craft and log.",
+        ),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/LOG-replay]")
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Folder of the results. [default: results/LOG-replay]"
+        ),
     ] = None,
     force: Force = False,
     debug: Debug = False,

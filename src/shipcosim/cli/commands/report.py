@@ -9,7 +9,10 @@ from shipcosim.cli.options import Debug, Force, Out
 
 
 def report(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Results of a run: its folder, or a table (.nc, .csv).")],
+    first: Annotated[
+        Path,
+        typer.Argument(metavar="A", help="Results of a run: its folder, or a table (.nc, .csv)."),
+    ],
     second: Annotated[Path, typer.Argument(metavar="B", help="Those of another.")],
     out: Out = None,
     force: Force = False,
@@ -31,7 +34,9 @@ def report(
         outcome, found = write_comparison(tables, names, stage / "report.html")
     typer.echo(f"{outcome.word} {outcome.sentence}")
     for one in found[:5]:
-        typer.echo(f"  {one.signal}: {one.rms:.3g} {one.unit} rms, {one.largest:.3g} {one.unit} at {one.time:g} s")
+        typer.echo(
+            f"  {one.signal}: {one.rms:.3g} {one.unit} rms, {one.largest:.3g} {one.unit} at {one.time:g} s"
+        )
     typer.echo(f"Page: {folder / 'report.html'}")
 
 
@@ -44,7 +49,9 @@ def _table(given: Path) -> Path:
     for name in ("result.nc", "result.csv", "result-partial.nc", "result-partial.csv"):
         if (given / name).is_file():
             return given / name
-    raise ShipcosimError(Problem(str(given), "There is no result.nc in this folder.", "Give the --out of a run."))
+    raise ShipcosimError(
+        Problem(str(given), "There is no result.nc in this folder.", "Give the --out of a run.")
+    )
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:

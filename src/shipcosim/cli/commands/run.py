@@ -70,15 +70,29 @@ def run(
     from shipcosim.cli.requests import isolation, parsed_components, parsed_settings
     from shipcosim.cli.runs import exit_if_failed, run_and_print
 
-    asked = {"parameters": parameters or [], "fmus": fmus or [], "strict": strict, "engine": engine, "until": until}
-    asked |= {"set": parsed_settings(settings or []), "components": parsed_components(components or ())}
+    asked = {
+        "parameters": parameters or [],
+        "fmus": fmus or [],
+        "strict": strict,
+        "engine": engine,
+        "until": until,
+    }
+    asked |= {
+        "set": parsed_settings(settings or []),
+        "components": parsed_components(components or ()),
+    }
     asked |= {"resume": resume, **isolation(isolate, timeout)}
     if files := library.scenarios(scenario):
         if store or resume:
-            found = "This is a folder of scenarios: there is no one state to store or to go on from."
-            raise ShipcosimError(Problem(scenario, found, "Name one scenario, or leave out --store and --from."))
-        folder = out or Path("results") / files[0].resolve().parent.name
-        _run_all([prepare_run(file, **asked) for file in files], folder, files[0].resolve().parent.name, force)
+            found = (
+                "This is a folder of scenarios: there is no one state to store or to go on from."
+            )
+            raise ShipcosimError(
+                Problem(scenario, found, "Name one scenario, or leave out --store and --from.")
+            )
+        name = files[0].resolve().parent.name
+        prepared = [prepare_run(file, **asked) for file in files]
+        _run_all(prepared, out or Path("results") / name, name, force)
         return
     prepared = prepare_run(scenario, store=store, **asked)
     exit_if_failed(run_and_print(prepared, out or Path("results") / prepared.scenario.name, force))

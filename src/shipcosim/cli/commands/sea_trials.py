@@ -10,18 +10,27 @@ from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
 
 
 def sea_trials(
-    data: Annotated[Path, typer.Argument(metavar="DATA", help="Measured data: .csv, .csv.gz, .parquet or .nc.")],
+    data: Annotated[
+        Path, typer.Argument(metavar="DATA", help="Measured data: .csv, .csv.gz, .parquet or .nc.")
+    ],
     channels: Channels = None,
     system: Ship = None,
     effects: Effects = None,
     orders: Annotated[
-        bool, typer.Option("--orders", help="Thruster channels are orders, which the units follow, not feedback.")
+        bool,
+        typer.Option(
+            "--orders", help="Thruster channels are orders, which the units follow, not feedback."
+        ),
     ] = False,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Folder of the results. Default: results/DATA-sea-trials."),
+        typer.Option(
+            "--out", metavar="DIR", help="Folder of the results. Default: results/DATA-sea-trials."
+        ),
     ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print sea_trials.json instead of a summary.")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print sea_trials.json instead of a summary.")
+    ] = False,
     force: Force = False,
     debug: Debug = False,
 ) -> None:
@@ -41,7 +50,9 @@ def sea_trials(
 
     folder = out or default_folder(data, "-sea-trials")
     with shown_progress(STEPS) as progress:
-        found = study_trials(data, system, channels, effects, progress, orders=orders, out=folder, force=force)
+        found = study_trials(
+            data, system, channels, effects, progress, orders=orders, out=folder, force=force
+        )
     print_study(found, folder, as_json)
     if found.verdict != "consistent":
         raise typer.Exit(FAILED)

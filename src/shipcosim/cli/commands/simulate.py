@@ -35,19 +35,29 @@ System = Annotated[
     ),
 ]
 Inputs = Annotated[
-    Path | None, typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs.")
+    Path | None,
+    typer.Option("--inputs", metavar="TABLE", help="CSV or NetCDF that feeds the system's inputs."),
 ]
 Interpolate = Annotated[
     list[str] | None,
-    typer.Option("--interpolate", metavar="INPUT", help="Linear between rows, not held; '*' for all; repeatable."),
+    typer.Option(
+        "--interpolate",
+        metavar="INPUT",
+        help="Linear between rows, not held; '*' for all; repeatable.",
+    ),
 ]
 MaxGap = Annotated[
     float | None,
-    time_option("--max-gap", "Longest time without a row; in s, or such as '1 min'. Default: 5 x an even spacing."),
+    time_option(
+        "--max-gap",
+        "Longest time without a row; in s, or such as '1 min'. Default: 5 x an even spacing.",
+    ),
 ]
 StartTime = Annotated[
     float | None,
-    time_option("--start-time", "On the clock of the table; in s, or such as '1 h'. Default: the system's."),
+    time_option(
+        "--start-time", "On the clock of the table; in s, or such as '1 h'. Default: the system's."
+    ),
 ]
 
 
@@ -87,8 +97,19 @@ def simulate(
     from shipcosim.series import read_table
 
     table = None if inputs is None else read_table(inputs)
-    feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap, "start_time": start_time}
-    carried_out = {"engine": engine, "until": until, "store": store, "resume": resume, **isolation(isolate, timeout)}
+    feeding = {
+        "inputs": table,
+        "interpolate": interpolate or (),
+        "max_gap": max_gap,
+        "start_time": start_time,
+    }
+    carried_out = {
+        "engine": engine,
+        "until": until,
+        "store": store,
+        "resume": resume,
+        **isolation(isolate, timeout),
+    }
     prepared = prepare_simulation(
         ssp,
         events,

@@ -9,21 +9,31 @@ from shipcosim.cli.start.completion import names_of, words_of
 
 Number = Annotated[
     int | None,
-    typer.Option("--run", metavar="N", help="Simulate run N again, with its page in DIR/run-N, and nothing else."),
+    typer.Option(
+        "--run",
+        metavar="N",
+        help="Simulate run N again, with its page in DIR/run-N, and nothing else.",
+    ),
 ]
 Serve = Annotated[
     bool,
-    typer.Option("--serve", help="Then show the page on this machine: a click on a row simulates it."),
+    typer.Option(
+        "--serve", help="Then show the page on this machine: a click on a row simulates it."
+    ),
 ]
 Port = Annotated[
-    int | None, typer.Option("--port", metavar="N", min=1, max=65535, help="Of --serve. Default: a free one.")
+    int | None,
+    typer.Option("--port", metavar="N", min=1, max=65535, help="Of --serve. Default: a free one."),
 ]
 Scheduler = Annotated[
     str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, such as tcp://10.0.0.5:8786."),
+    typer.Option(
+        "--scheduler", metavar="ADDRESS", help="Run on a Dask cluster, such as tcp://10.0.0.5:8786."
+    ),
 ]
 Workers = Annotated[
-    int | None, typer.Option("--workers", metavar="N", min=1, help="Processes here. Default: one a core.")
+    int | None,
+    typer.Option("--workers", metavar="N", min=1, help="Processes here. Default: one a core."),
 ]
 Engine = Annotated[
     str,
@@ -35,14 +45,21 @@ Engine = Annotated[
 ]
 AtMost = Annotated[
     int | None,
-    typer.Option("--runs-at-most", metavar="N", min=0, help="Do at most so many runs now; others another time."),
+    typer.Option(
+        "--runs-at-most",
+        metavar="N",
+        min=0,
+        help="Do at most so many runs now; others another time.",
+    ),
 ]
 
 
 def sweep(
     study: Annotated[
         str,
-        typer.Argument(metavar="STUDY", help="A study: a file or a name.", autocompletion=names_of("study")),
+        typer.Argument(
+            metavar="STUDY", help="A study: a file or a name.", autocompletion=names_of("study")
+        ),
     ],
     out: Out = None,
     scheduler: Scheduler = None,
@@ -76,10 +93,14 @@ def sweep(
 
     planned = PlannedStudy(study, out=out, engine=engine, set=parsed_settings(settings or []))
     if number is not None:
-        again = planned.run_again(number, lambda prepared, folder: run_and_print(prepared, folder, force=True))
+        again = planned.run_again(
+            number, lambda prepared, folder: run_and_print(prepared, folder, force=True)
+        )
         exit_if_failed(again)
         return
-    swept = sweep_and_print(planned, scheduler=scheduler, workers=workers, at_most=at_most, force=force)
+    swept = sweep_and_print(
+        planned, scheduler=scheduler, workers=workers, at_most=at_most, force=force
+    )
     if serve:
         show(planned, swept, port or 0)
     if swept.about["runs"]["failed"]:

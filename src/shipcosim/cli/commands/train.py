@@ -15,7 +15,9 @@ EVERY = 30.0  # s between lines that say how far it is, where there is no termin
 DEFAULT_KIND = "paper-v"
 Out = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"),
+    typer.Option(
+        "--out", metavar="DIR", help="Folder of weights and report. [default: results/train-NAME]"
+    ),
 ]
 
 
@@ -72,7 +74,9 @@ def dead_reckoning(
 
 
 def docking(
-    kind: Annotated[str, typer.Option("--kind", metavar="NAME", help="ours or paper-iii.")] = "ours",
+    kind: Annotated[
+        str, typer.Option("--kind", metavar="NAME", help="ours or paper-iii.")
+    ] = "ours",
     out: Out = None,
     force: Force = False,
     debug: Debug = False,
@@ -98,7 +102,9 @@ def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
         if error.name != "torch":
             raise
         remedy = 'Install the extra `learn`: pip install "shipcosim[learn]".'
-        raise ShipcosimError(Problem("train", "Training needs torch, which is not installed.", remedy)) from None
+        raise ShipcosimError(
+            Problem("train", "Training needs torch, which is not installed.", remedy)
+        ) from None
     kinds = list(learn.COMPONENTS[component])
     if kind not in kinds:
         raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, kinds)))
@@ -117,7 +123,8 @@ def _progress(kind: str) -> Iterator[Callable[[int, int], None]]:
 
     from shipcosim.cli.console import progress_of
 
-    console, told = Console(stderr=True), time.monotonic()
+    console = Console(stderr=True)
+    told = time.monotonic()
     with progress_of(kind) as report:
 
         def tell(done: int, total: int) -> None:
@@ -125,6 +132,8 @@ def _progress(kind: str) -> Iterator[Callable[[int, int], None]]:
             report(done, total)
             if not console.is_terminal and time.monotonic() - told > EVERY:
                 told = time.monotonic()
-                console.print(f"{kind}: {100 * done // total} % of the longest training", highlight=False)
+                console.print(
+                    f"{kind}: {100 * done // total} % of the longest training", highlight=False
+                )
 
         yield tell

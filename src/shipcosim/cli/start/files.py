@@ -66,7 +66,9 @@ def project_files(name: str) -> Files:
     """A project that runs as it is: a system, two scenarios, a parameter set, a test, a notebook."""
 
     def held(name: str, description: str, parameters: str) -> str:
-        return _filled("scenario.toml", name=name, description=description, system=SHIP, parameters=parameters)
+        return _filled(
+            "scenario.toml", name=name, description=description, system=SHIP, parameters=parameters
+        )
 
     return {
         "README.md": _filled("readme.md", name=name, origin=ORIGIN),
@@ -113,20 +115,29 @@ def system_files(name: str, origin: str) -> Files:
     folder = library.find("system", origin, "--from")
     if not (folder / STRUCTURE).is_file():
         remedy = f"Unpack it into ssp/{name}; an .ssp is a ZIP archive."
-        raise ShipcosimError(Problem(origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy))
+        raise ShipcosimError(
+            Problem(origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy)
+        )
     text = (folder / STRUCTURE).read_text(encoding="utf-8")
     named = re.search(r'<(?:\w+:)?System\b[^>]*?\sname="([^"]*)"', text)
     if named:
         text = text.replace(f'name="{named[1]}"', f'name="{name}"', 2)
-    sources = [one for one in dict.fromkeys(re.findall(r'source="([^"]+)"', text)) if (folder / one).is_file()]
+    sources = [
+        one
+        for one in dict.fromkeys(re.findall(r'source="([^"]+)"', text))
+        if (folder / one).is_file()
+    ]
     sets = [one for one in sources if one.endswith(".ssv")]
     copied: Files = {}
     for source in sources:
-        target, content = source, (folder / source).read_bytes()
+        target = source
+        content = (folder / source).read_bytes()
         if sets == [source]:
             target = f"resources/{name}.ssv"
             text = text.replace(f'source="{source}"', f'source="{target}"')
-            content = content.replace(f'name="{Path(source).stem}"'.encode(), f'name="{name}"'.encode(), 1)
+            content = content.replace(
+                f'name="{Path(source).stem}"'.encode(), f'name="{name}"'.encode(), 1
+            )
         copied[f"ssp/{name}/{target}"] = content
     return {f"ssp/{name}/{STRUCTURE}": text} | copied
 
@@ -173,11 +184,20 @@ def notebook(text: str) -> str:
     for number, part in enumerate(re.split(r"^```(?:python)?\n", text, flags=re.MULTILINE)):
         lines = part.strip("\n").splitlines(keepends=True)
         kind = (
-            {"cell_type": "code", "execution_count": None, "outputs": []} if number % 2 else {"cell_type": "markdown"}
+            {"cell_type": "code", "execution_count": None, "outputs": []}
+            if number % 2
+            else {"cell_type": "markdown"}
         )
-        cells += [{"id": f"cell-{number}", **kind, "metadata": {}, "source": lines}] if lines else []
+        cells += (
+            [{"id": f"cell-{number}", **kind, "metadata": {}, "source": lines}] if lines else []
+        )
     kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
-    content = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+    content = {
+        "cells": cells,
+        "metadata": {"kernelspec": kernel},
+        "nbformat": 4,
+        "nbformat_minor": 5,
+    }
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
@@ -204,7 +224,11 @@ def _outputs(system: "System") -> Iterator[str]:
 def _own_system() -> str | None:
     """First system of the project around the working folder."""
     project = library.project_of()
-    own = (name for name, path in library.names("system").items() if project and path.is_relative_to(project))
+    own = (
+        name
+        for name, path in library.names("system").items()
+        if project and path.is_relative_to(project)
+    )
     return next(own, None)
 
 
@@ -215,5 +239,9 @@ def _check_name(name: str, kind: str) -> None:
 
 
 def _filled(template: str, **values: object) -> str:
-    text = files("shipcosim.cli.start").joinpath("templates", f"{template}.txt").read_text(encoding="utf-8")
+    text = (
+        files("shipcosim.cli.start")
+        .joinpath("templates", f"{template}.txt")
+        .read_text(encoding="utf-8")
+    )
     return Template(text).substitute(values)

@@ -17,11 +17,16 @@ Begin with:
 
 def overview() -> str:
     """Where to begin, and how much there is of each kind in the project around and in the package."""
-    project, shipped = library.project_of(), library.shipped()
+    project = library.project_of()
+    shipped = library.shipped()
     lines = []
     for kind in library.KINDS:
         paths = library.names(kind)
-        own = [name for name, path in paths.items() if project not in (None, shipped) and path.is_relative_to(project)]
+        own = [
+            name
+            for name, path in paths.items()
+            if project not in (None, shipped) and path.is_relative_to(project)
+        ]
         others = [name for name in paths if name not in own]
         for where, found in (("here", own), ("shipcosim", others)):
             if found:
@@ -41,13 +46,16 @@ def _section(kind: str) -> str:
         return _table("causes (what `diagnose` can name)", _causes())
     if kind == "engines":
         return _table("engines (--engine of `run` and `simulate`)", _engines())
-    project, shipped = library.project_of(), library.shipped()
+    project = library.project_of()
+    shipped = library.shipped()
     entries = library.entries("study" if kind == "studies" else kind.removesuffix("s"))
     own = [e for e in entries if project not in (None, shipped) and e.path.is_relative_to(project)]
     others = [e for e in entries if e not in own]
     tables = [(f"{kind} of {project.name}", own)] if own and project else []
     tables += [(f"{kind} of shipcosim" if own else kind, others)] if others or not own else []
-    return "\n\n".join(_table(heading, ((e.name, e.line) for e in found)) for heading, found in tables)
+    return "\n\n".join(
+        _table(heading, ((e.name, e.line) for e in found)) for heading, found in tables
+    )
 
 
 def _causes() -> list[Row]:

@@ -35,7 +35,9 @@ def serve(study: PlannedStudy, swept: StudyResult, port: int = 0) -> None:
     from shipcosim.report.study.server import study_server
 
     def simulate(number: int) -> bool:
-        return run_and_print(study.prepare(number), swept.folder / f"run-{number}", force=True).passed
+        return run_and_print(
+            study.prepare(number), swept.folder / f"run-{number}", force=True
+        ).passed
 
     numbers = [int(number) for number in swept.runs["run"]]
     server = study_server(swept.folder, numbers, simulate, port)

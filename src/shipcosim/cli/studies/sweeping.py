@@ -41,7 +41,9 @@ def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
             swept = study.run(progress=progress, **options)
         except KeyboardInterrupt:
             kept = shown_path(study.folder)
-            typer.echo(f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True)
+            typer.echo(
+                f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True
+            )
             raise typer.Exit(INTERRUPTED) from None
     _say(swept)
     return swept
@@ -53,15 +55,30 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
 
     Where there is no terminal, a line at the start, when the first runs show how long all will take, and each tenth.
     """
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
 
     console = Console(stderr=True, highlight=False)
     each = plan.duration / max(len(plan), 1)
-    columns = [TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[pace]}")]
+    columns = [
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[pace]}"),
+    ]
     columns.append(TimeRemainingColumn())
     console.print(f"{plan.study.name}: {len(plan):,} runs of {each:,.0f} s.")
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task, first, said = bar.add_task("", total=len(plan), pace=""), [], []
+    with Progress(
+        *columns, console=console, transient=True, disable=not console.is_terminal
+    ) as bar:
+        task = bar.add_task("", total=len(plan), pace="")
+        first = []
+        said = []
 
         def report(done: int, total: int) -> None:
             elapsed = bar.tasks[0].elapsed or 0.0
@@ -73,7 +90,9 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
             if rate and not said and elapsed - first[0][1] > 2.0 and done < total:
                 said.append(done)
                 left = total - done
-                console.print(f"{pace}: about {_time(left / rate)} for the {left:,} runs that are left.")
+                console.print(
+                    f"{pace}: about {_time(left / rate)} for the {left:,} runs that are left."
+                )
 
         yield report
 
@@ -89,7 +108,9 @@ def _say(swept: Swept) -> None:
     """The summary, errors, and where the page is."""
     console = Console(highlight=False, soft_wrap=True)
     if 0 < len(swept.summary) <= SHOWN:
-        text = swept.summary.to_string(index=False, na_rep="", float_format=lambda value: f"{value:.4g}")
+        text = swept.summary.to_string(
+            index=False, na_rep="", float_format=lambda value: f"{value:.4g}"
+        )
         console.print(text, markup=False)
     if "indices" in swept.tables:
         _say_indices(console, swept)
@@ -100,10 +121,17 @@ def _say(swept: Swept) -> None:
     counts = swept.about["runs"]
     errors = swept.runs.loc[swept.runs["error"] != "", "error"]
     if len(errors):
-        console.print(Text(f"{counts['failed']} runs failed, the first with: {errors.iloc[0]}", style="bold red"))
+        console.print(
+            Text(
+                f"{counts['failed']} runs failed, the first with: {errors.iloc[0]}",
+                style="bold red",
+            )
+        )
     left = counts["planned"] - counts["done"]
     open_ = f"; {left:,} are left, which the same command does" if left else ""
-    console.print(f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False)
+    console.print(
+        f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False
+    )
     console.print(f"Page: {shown_path(swept.folder / 'report.html')}", markup=False)
 
 
@@ -113,7 +141,12 @@ def _say_indices(console: Console, swept: Swept) -> None:
     factors = [one.name for one in swept.plan.study.factor]
     for key, part in indices.groupby(["quantity", *factors], sort=False):
         quantity, *levels = key if isinstance(key, tuple) else (key,)
-        of = ", ".join([str(quantity), *(f"{name} {level}" for name, level in zip(factors, levels, strict=True))])
+        of = ", ".join(
+            [
+                str(quantity),
+                *(f"{name} {level}" for name, level in zip(factors, levels, strict=True)),
+            ]
+        )
         more = f", {MOST_IMPORTANT} of {len(part)} parameters" if len(part) > MOST_IMPORTANT else ""
         console.print(f"Sobol indices of {of}{more}:", markup=False)
         shown = part.head(MOST_IMPORTANT)
@@ -126,14 +159,24 @@ def _say_indices(console: Console, swept: Swept) -> None:
 
 def _say_trials(console: Console, swept: Swept) -> None:
     """Trials of a search that no other beats, and the one as shipped."""
-    trials, tune = swept.tables["trials"], swept.plan.study.tune
+    trials = swept.tables["trials"]
+    tune = swept.plan.study.tune
     assert tune is not None
     names = [one.quantity for one in tune.objective]
     front = trials.loc[trials["pareto"]].sort_values(by=names[0])
     said = f"of {len(trials)} trials no other beats {len(front)}; trial 0 is as shipped."
-    console.print(f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}", markup=False)
+    console.print(
+        f"{', '.join(f'{one.quantity} {one.direction}d' for one in tune.objective)}: {said}",
+        markup=False,
+    )
     shown = front.iloc[:: max(-(-len(front) // SHOWN), 1)]
     ours = trials[trials["as_shipped"] & ~trials["trial"].isin(shown["trial"])]
-    columns = ["trial", *names, *(one.name for one in swept.plan.samples.columns)] if swept.plan.samples else []
+    columns = (
+        ["trial", *names, *(one.name for one in swept.plan.samples.columns)]
+        if swept.plan.samples
+        else []
+    )
     text = type(trials)({name: [*shown[name], *ours[name]] for name in columns})
-    console.print(text.to_string(index=False, float_format=lambda value: f"{value:.4g}"), markup=False)
+    console.print(
+        text.to_string(index=False, float_format=lambda value: f"{value:.4g}"), markup=False
+    )

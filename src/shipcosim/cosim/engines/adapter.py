@@ -85,19 +85,28 @@ class Job:
 
     def __init__(self, system: System, scenario: Scenario, options: RunOptions):
         if options.order != "jacobi":
-            raise ShipcosimError(f"Only the engine fmpy knows the order '{options.order}'; the others have jacobi.")
-        self.system, self.scenario, self._grid = system, scenario, time_grid_of(scenario)
-        self.progress, inputs = options.progress, options.inputs
+            raise ShipcosimError(
+                f"Only the engine fmpy knows the order '{options.order}'; the others have jacobi."
+            )
+        self.system = system
+        self.scenario = scenario
+        self._grid = time_grid_of(scenario)
+        self.progress = options.progress
+        inputs = options.inputs
         self.times = self._grid.times
         self._fed = input_values(inputs, system, self.times) if inputs is not None else {}
         self._known = {"inputs_sha256": digest(inputs)} if inputs is not None else {}
         self.plan = make_plan(system, scenario, self._fed)
-        self.connections = [c for c in system.connections if c.source[0] is not None and c.target[0] is not None]
+        self.connections = [
+            c for c in system.connections if c.source[0] is not None and c.target[0] is not None
+        ]
         self._all_changes = list(changes(scenario, self.plan, self._grid))
         self._values = {kind: self._external_values(kind) for kind in self.plan.layouts}
         self.external = dict(self._external_inputs())
         last = {(change.step, change.end): change for change in self._all_changes}
-        self.changes = [c for c in last.values() if c.end[0] is not None and c.end not in self.external]
+        self.changes = [
+            c for c in last.values() if c.end[0] is not None and c.end not in self.external
+        ]
 
     @property
     def n_steps(self) -> int:
@@ -121,7 +130,9 @@ class Job:
             yield first, last, {end: value for end, value in now.items() if value != before[end]}
             before = now
 
-    def table(self, outputs: Mapping[str, Sequence[np.ndarray]], attributes: Mapping[str, object]) -> xarray.Dataset:
+    def table(
+        self, outputs: Mapping[str, Sequence[np.ndarray]], attributes: Mapping[str, object]
+    ) -> xarray.Dataset:
         """Table of a run.
 
         Parameters
@@ -131,11 +142,22 @@ class Job:
         attributes : dict
             What is known beyond the plan and the scenario.
         """
-        rows = min((len(column) for columns in outputs.values() for column in columns), default=len(self.times))
+        rows = min(
+            (len(column) for columns in outputs.values() for column in columns),
+            default=len(self.times),
+        )
         every = slice(0, rows, self._grid.steps_per_row)
-        recorded = {kind: [c[every] for c in self._columns(kind, arrays)] for kind, arrays in outputs.items()}
+        recorded = {
+            kind: [c[every] for c in self._columns(kind, arrays)]
+            for kind, arrays in outputs.items()
+        }
         times = self.times[every]
-        known = attributes_of(self.system, self.scenario) | self._known | {"start_time": 0.0} | dict(attributes)
+        known = (
+            attributes_of(self.system, self.scenario)
+            | self._known
+            | {"start_time": 0.0}
+            | dict(attributes)
+        )
         return make_table(times, columns_of(self.plan, len(times), recorded), known)
 
     def _external_values(self, kind):
@@ -162,7 +184,8 @@ class Job:
         yield from outputs
         yield from (self._values[kind][:, row] for row in external)
         for i in inputs:
-            end, connection = layout.inputs[i], layout.connections[i]
+            end = layout.inputs[i]
+            connection = layout.connections[i]
             if end in self.external:
                 yield self.external[end].values
             else:
@@ -197,7 +220,10 @@ class Session(Protocol):
 
 
 def run_on(
-    engine: str, open_session: Callable[[Job], AbstractContextManager[Session]], job: Job, about: Mapping[str, object]
+    engine: str,
+    open_session: Callable[[Job], AbstractContextManager[Session]],
+    job: Job,
+    about: Mapping[str, object],
 ) -> xarray.Dataset:
     """Run a job on an engine.
 
@@ -223,7 +249,12 @@ def run_on(
     """
 
     def table(complete):
-        known = {"engine": engine, "order": "jacobi", "complete": int(complete), "remarks": json.dumps([])}
+        known = {
+            "engine": engine,
+            "order": "jacobi",
+            "complete": int(complete),
+            "remarks": json.dumps([]),
+        }
         return job.table(session.outputs(), known | dict(about))
 
     with delayed_interrupt() as check_interrupt, _opened(engine, open_session, job) as session:
@@ -245,7 +276,8 @@ def _opened(engine, open_session, job):
 
 
 def _advance(session, job, check_interrupt):
-    progress, report_at = job.progress, perf_counter()
+    progress = job.progress
+    report_at = perf_counter()
     for first, last, inputs in job.intervals():
         check_interrupt()
         for end, value in inputs.items():
@@ -259,7 +291,10 @@ def _advance(session, job, check_interrupt):
 
 
 def unsupported(
-    engine: str, job: Job, complaint_of: Callable[[Connection], str | None], others: Iterable[Problem] = ()
+    engine: str,
+    job: Job,
+    complaint_of: Callable[[Connection], str | None],
+    others: Iterable[Problem] = (),
 ) -> list[Problem]:
     """What an engine cannot do of a job, which it would otherwise ignore or die of.
 
@@ -280,16 +315,25 @@ def unsupported(
             found = f"runs as model exchange, which {engine} does not do."
             problems.append(Problem(component.name, found, "The engine fmpy does."))
         if wide := [v.name for v in component.fmu.variables.values() if v.type in WIDE]:
-            found = f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
+            found = (
+                f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
+            )
             problems.append(Problem(component.name, found))
         if items := [v.name for v in component.fmu.variables.values() if v.kind == "Enumeration"]:
             problems.append(
-                Problem(component.name, f"has enumerations, which {engine} has not: {', '.join(items[:5])}.")
+                Problem(
+                    component.name,
+                    f"has enumerations, which {engine} has not: {', '.join(items[:5])}.",
+                )
             )
     for connection in job.connections:
         if found := _unsupported_connection(job, connection) or complaint_of(connection):
             place = f"{label(connection.source)} -> {label(connection.target)}"
-            problems.append(Problem(place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."))
+            problems.append(
+                Problem(
+                    place, f"{engine} cannot make this connection: {found}.", "The engine fmpy can."
+                )
+            )
     return problems
 
 

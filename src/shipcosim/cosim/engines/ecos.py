@@ -29,7 +29,11 @@ from shipcosim.ssp import Connection, System
 if TYPE_CHECKING:
     import xarray
 
-TYPES = {"Real": ("real", c_double, float), "Integer": ("integer", c_int, int), "Boolean": ("bool", c_bool, bool)}
+TYPES = {
+    "Real": ("real", c_double, float),
+    "Integer": ("integer", c_int, int),
+    "Boolean": ("bool", c_bool, bool),
+}
 """Names and types that it has for values."""
 REMARK = "ecos does not say when an FMU fails, it goes on: hold the result against that of another engine."
 START = "start"  # name of the parameter set; ecos applies none without a name
@@ -40,7 +44,9 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     check_installed()
     job = Job(system, scenario, options)
     added = sums(job.connections)
-    if problems := unsupported("ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)):
+    if problems := unsupported(
+        "ecos", job, lambda c: "it is added to others" if c in added else None, _problems(job)
+    ):
         raise ShipcosimError(problems)
     about = {"ecospy_version": version("ecospy"), "remarks": json.dumps([REMARK])}
     return run_on("ecos", EcosSession, job, about)
@@ -104,8 +110,10 @@ class EcosSession:
     """
 
     def __init__(self, job: Job):
-        self._job, self.n_done = job, 0
-        self._transformations, self._changes = defaultdict(list), defaultdict(list)
+        self._job = job
+        self.n_done = 0
+        self._transformations = defaultdict(list)
+        self._changes = defaultdict(list)
         for change in job.changes:
             self._changes[change.step].append(change)
         self._records = [_Record(job, kind) for kind in TYPES]
@@ -127,7 +135,9 @@ class EcosSession:
 
     def advance(self, last: int) -> None:
         """Go on to the step of this number."""
-        step, simulation, one = _function("step"), c_void_p(self._simulation.sim), c_size_t(1)
+        step = _function("step")
+        simulation = c_void_p(self._simulation.sim)
+        one = c_size_t(1)
         for k in range(self.n_done, last):
             if k in self._changes:
                 self._act(self._changes[k])
@@ -154,7 +164,9 @@ class EcosSession:
             self._structure = stack.enter_context(EcosSimulationStructure())
             self._fill(self._structure)
             step_size = self._job.scenario.step_size
-            self._simulation = stack.enter_context(EcosSimulation(structure=self._structure, step_size=step_size))
+            self._simulation = stack.enter_context(
+                EcosSimulation(structure=self._structure, step_size=step_size)
+            )
             self._simulation.init(parameter_set=START)
         except Exception as error:  # ecospy has no type of its own
             raise EngineError(str(error)) from error
@@ -184,11 +196,15 @@ class EcosSession:
     def _act(self, changes):
         """Make changes that are due before a step: first those to inputs, which get the values from before it."""
         variable = self._job.plan.variable
-        for change in sorted(changes, key=lambda change: variable(change.end).causality == "output"):
+        for change in sorted(
+            changes, key=lambda change: variable(change.end).causality == "output"
+        ):
             for transformation in self._transformations[change.end]:
                 if transformation.connection.target == change.end:
                     transformation.target = _modifier(change)
-                    source = self._simulation.get_real(_identifier(transformation.connection.source))
+                    source = self._simulation.get_real(
+                        _identifier(transformation.connection.source)
+                    )
                     self._simulation.set_real(_identifier(change.end), transformation(source))
                 else:
                     transformation.source = _modifier(change)
@@ -200,7 +216,9 @@ class _Record:
     def __init__(self, job, kind):
         name, self._type, _ = TYPES[kind]
         ends = job.plan.layouts[kind].outputs
-        self.kind, self._get, self._n = kind, _function(f"get_{name}"), len(ends)
+        self.kind = kind
+        self._get = _function(f"get_{name}")
+        self._n = len(ends)
         self._values = (self._type * len(ends))()
         self._names = [c_char_p(_identifier(end).encode()) for end in ends]
         self._places = [byref(self._values, i * sizeof(self._type)) for i in range(len(ends))]
@@ -224,7 +242,9 @@ def _identifier(end: End) -> str:
 
 def _modifier(change):
     """A change as (scale, shift)."""
-    return {"override": (0, change.value), "bias": (1, change.value), "reset": (1, 0)}[change.action]
+    return {"override": (0, change.value), "bias": (1, change.value), "reset": (1, 0)}[
+        change.action
+    ]
 
 
 def _function(name):

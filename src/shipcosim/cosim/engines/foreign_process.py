@@ -57,7 +57,9 @@ def readers(
     """
     if scenario.events or scenario.set or scenario.components:
         found = "A tool that reads the file itself knows no events, start values or swapped FMUs of ours."
-        raise ShipcosimError(Problem(scenario.name or "scenario", found, "Compare the system alone."))
+        raise ShipcosimError(
+            Problem(scenario.name or "scenario", found, "Compare the system alone.")
+        )
     hosts = ["libcosim"] if Path(path).suffix == ".xml" else ["libcosim", "ecos"]
     return {host: partial(_run, host, str(path), scenario, set_name) for host in hosts}
 
@@ -70,7 +72,13 @@ def _run(host, path, scenario, set_name, system):
         for v in component.fmu.variables.values()
         if v.causality == "output" and v.kind in KINDS
     }
-    job = {"path": path, "step": scenario.step_size, "n": grid.last, "set": set_name, "ends": list(outputs.values())}
+    job = {
+        "path": path,
+        "step": scenario.step_size,
+        "n": grid.last,
+        "set": set_name,
+        "ends": list(outputs.values()),
+    }
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         values = _values(host, job, Path(folder))
     columns = [(name, values[:, i], end[-1], "") for i, (name, end) in enumerate(outputs.items())]
@@ -86,7 +94,9 @@ def _values(host, job, folder):
     except subprocess.TimeoutExpired:
         raise ShipcosimError(Problem(host, f"does not end within {LIMIT:g} s.")) from None
     if (folder / "refused.txt").exists():
-        raise ShipcosimError(Problem(host, f"refuses the file. {(folder / 'refused.txt').read_text()}"))
+        raise ShipcosimError(
+            Problem(host, f"refuses the file. {(folder / 'refused.txt').read_text()}")
+        )
     if not (folder / "values.npy").exists():
         raise ShipcosimError(Problem(host, "crashes."))
     return np.load(folder / "values.npy")
@@ -102,7 +112,9 @@ def main(folder: str) -> None:
     try:
         rows = list({"libcosim": _libcosim, "ecos": _ecos}[job["host"]](job))
     except (Exception, AssertionError) as error:
-        (place / "refused.txt").write_text(str(error).splitlines()[0][:300] if str(error) else type(error).__name__)
+        (place / "refused.txt").write_text(
+            str(error).splitlines()[0][:300] if str(error) else type(error).__name__
+        )
         return
     np.save(place / "partial.npy", np.array(rows, dtype=float))
     (place / "partial.npy").rename(place / "values.npy")
@@ -121,7 +133,10 @@ def _libcosim(job):
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer)
     calls = {kind: getattr(observer, f"last_{kind.lower()}_values") for kind in KINDS}
-    ends = [(calls[kind], execution.slave_index_from_instance_name(n), r) for n, _, r, kind, _ in job["ends"]]
+    ends = [
+        (calls[kind], execution.slave_index_from_instance_name(n), r)
+        for n, _, r, kind, _ in job["ends"]
+    ]
     for _ in range(job["n"]):
         if not execution.step():
             raise EngineError("A step fails.")
@@ -135,7 +150,11 @@ def _ecos(job):
     simulation = EcosSimulation(ssp_path=job["path"], step_size=job["step"])
     if not simulation.init(parameter_set=job["set"]):
         raise EngineError(EcosLib.get_last_error())
-    calls = {"Real": simulation.get_real, "Integer": simulation.get_integer, "Boolean": simulation.get_bool}
+    calls = {
+        "Real": simulation.get_real,
+        "Integer": simulation.get_integer,
+        "Boolean": simulation.get_bool,
+    }
     for _ in range(job["n"]):
         simulation.step()
         yield [calls[kind](f"{name}::{variable}") for name, variable, _, kind, _ in job["ends"]]

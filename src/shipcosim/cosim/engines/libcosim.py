@@ -21,7 +21,12 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from shipcosim.cosim.engines.adapter import EngineError, Job, held, indices, run_on
-from shipcosim.cosim.engines.osp_job import events_json, nanoseconds, structure_of, unsupported_by_libcosim
+from shipcosim.cosim.engines.osp_job import (
+    events_json,
+    nanoseconds,
+    structure_of,
+    unsupported_by_libcosim,
+)
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End
 from shipcosim.errors import Problem, ShipcosimError
@@ -32,7 +37,10 @@ from shipcosim.ssp import System
 if TYPE_CHECKING:
     import xarray
 
-SERIES = {"Real": ("REAL", "real", c_double, np.float64), "Integer": ("INTEGER", "integer", c_int, np.int32)}
+SERIES = {
+    "Real": ("REAL", "real", c_double, np.float64),
+    "Integer": ("INTEGER", "integer", c_int, np.int32),
+}
 """What its observer of time series can hold, in the names and types that it goes by there."""
 
 
@@ -66,13 +74,16 @@ class LibcosimSession:
     """
 
     def __init__(self, job: Job):
-        self._job, self._stack = job, ExitStack()
+        self._job = job
+        self._stack = ExitStack()
         self._execution: Any = None
         self._series: Any = None
         self._override: Any = None
         self._step = nanoseconds(job.scenario.step_size)
         self._stack.enter_context(imports_undone())
-        self._folder = Path(self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-")))
+        self._folder = Path(
+            self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-"))
+        )
         try:
             self._open()
         except BaseException:
@@ -88,7 +99,8 @@ class LibcosimSession:
 
     def set_input(self, end: End, value: float) -> None:
         """Set an input that no component feeds, from the next step on."""
-        name, variable = end[0], self._job.plan.variable(end)
+        name = end[0]
+        variable = self._job.plan.variable(end)
         set_values = getattr(self._override, f"slave_{variable.kind.lower()}_values")
         self._check(set_values(self._indices[str(name)], [variable.value_reference], [value]))
 
@@ -103,7 +115,8 @@ class LibcosimSession:
 
     def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind. Ends the execution."""
-        n_rows, columns = self.n_done + 1, {}
+        n_rows = self.n_done + 1
+        columns = {}
         for kind in SERIES:
             columns[kind] = [None] * len(self._job.plan.layouts[kind].outputs)
             for name, slave in self._indices.items():
@@ -125,7 +138,8 @@ class LibcosimSession:
         except AssertionError as error:
             raise EngineError(str(error)) from error
         self._indices: dict[str, int] = {
-            name: self._execution.slave_index_from_instance_name(name) for name in self._job.system.components
+            name: self._execution.slave_index_from_instance_name(name)
+            for name in self._job.system.components
         }
         for name in self._job.system.components:
             self._start(name)
@@ -135,10 +149,14 @@ class LibcosimSession:
         self._observe()
 
     def _start(self, name):
-        variables, slave = self._job.system.components[name].fmu.variables, self._indices[name]
+        variables = self._job.system.components[name].fmu.variables
+        slave = self._indices[name]
         for variable, value in self._job.starts(name).items():
-            kind, reference = variables[variable].kind, variables[variable].value_reference
-            self._check(getattr(self._execution, f"{kind.lower()}_initial_value")(slave, reference, value))
+            kind = variables[variable].kind
+            reference = variables[variable].value_reference
+            self._check(
+                getattr(self._execution, f"{kind.lower()}_initial_value")(slave, reference, value)
+            )
 
     def _load_events(self):
         from libcosimpy.CosimManipulator import CosimManipulator
@@ -160,20 +178,26 @@ class LibcosimSession:
             for name, slave in self._indices.items():
                 for variable in indices(self._job, name, kind)[1]:
                     start = self._series.start_time_series
-                    self._check(start(slave, variable.value_reference, CosimVariableType[type_name]))
+                    self._check(
+                        start(slave, variable.value_reference, CosimVariableType[type_name])
+                    )
         self._flags = None
         if self._job.plan.layouts["Boolean"].outputs:
             self._flags = FlagObserver(self._folder, self._flag_names())
             self._check(self._execution.add_observer(self._flags))
 
     def _flag_names(self):
-        named = {name: [v.name for v in indices(self._job, name, "Boolean")[1]] for name in self._indices}
+        named = {
+            name: [v.name for v in indices(self._job, name, "Boolean")[1]] for name in self._indices
+        }
         return {name: flags for name, flags in named.items() if flags}
 
     def _samples(self, kind, slave, variable, n_rows):
         """Values and numbers of the steps after which a variable was observed. libcosimpy's own call loses the last."""
         _, name, c_type, dtype = SERIES[kind]
-        values, steps, times = np.zeros(n_rows, dtype), np.zeros(n_rows, np.int64), np.zeros(n_rows, np.int64)
+        values = np.zeros(n_rows, dtype)
+        steps = np.zeros(n_rows, np.int64)
+        times = np.zeros(n_rows, np.int64)
         buffers = [
             array.ctypes.data_as(POINTER(kind))
             for array, kind in ((values, c_type), (steps, c_int64), (times, c_int64))
@@ -188,13 +212,18 @@ class LibcosimSession:
         return values[:count], steps[:count]
 
     def _flag_columns(self, n_rows):
-        ends, columns = self._job.plan.layouts["Boolean"].outputs, {}
+        ends = self._job.plan.layouts["Boolean"].outputs
+        columns = {}
         if not ends:
             return []
-        self._execution = self._flags = None  # what the observer has written is complete once both are gone
+        self._execution = self._flags = (
+            None  # what the observer has written is complete once both are gone
+        )
         for name, flags in self._flag_names().items():
             flag_file = next(
-                f for f in self._folder.iterdir() if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name)
+                f
+                for f in self._folder.iterdir()
+                if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name)
             )
             table = np.loadtxt(flag_file, delimiter=",", skiprows=1, ndmin=2)
             for i, flag in enumerate(flags):
@@ -231,7 +260,9 @@ class FlagObserver:
         ]
         file = folder / "LogConfig.xml"
         file.write_text(f"<simulators>{''.join(lines)}</simulators>", encoding="utf-8")
-        create = _function("cosim_file_observer_create_from_cfg", _observer_pointer(), [c_char_p, c_char_p])
+        create = _function(
+            "cosim_file_observer_create_from_cfg", _observer_pointer(), [c_char_p, c_char_p]
+        )
         self._pointer = create(str(folder).encode(), str(file).encode())
 
     def ptr(self) -> Any:

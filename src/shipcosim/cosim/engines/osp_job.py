@@ -28,7 +28,9 @@ def structure_of(
     end_time : float, optional
         [s]
     """
-    step, sources, values = job.scenario.step_size, sources or {}, values or {}
+    step = job.scenario.step_size
+    sources = sources or {}
+    values = values or {}
     simulators = [
         Simulator(
             name,
@@ -47,7 +49,9 @@ def event_of(job: Job, change: SignalChange) -> dict[str, object]:
     time = float(seconds_text(job.scenario.step_size * change.step))
     event = {"time": time, "model": component, "variable": variable, "action": change.action}
     if change.action != "reset":
-        event["value"] = {"Real": float, "Boolean": bool}.get(job.plan.variable(change.end).kind, int)(change.value)
+        event["value"] = {"Real": float, "Boolean": bool}.get(
+            job.plan.variable(change.end).kind, int
+        )(change.value)
     return event
 
 
@@ -66,21 +70,28 @@ def unsupported_by_libcosim(job: Job) -> list[Problem]:
 def _problems(job: Job) -> Iterator[Problem]:
     """What libcosim would ignore or die of, beside connections."""
     if abs(job.scenario.step_size * 1e9 - nanoseconds(job.scenario.step_size)) > 1e-6:
-        found = (
-            f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
-        )
+        found = f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
         yield Problem("step_size", found)
     for component in job.system.components.values():
         if component.fmu.fmi_version != "2.0":
-            yield Problem(component.name, f"is an FMU of FMI {component.fmu.fmi_version}; libcosim runs FMI 2.0.")
+            yield Problem(
+                component.name,
+                f"is an FMU of FMI {component.fmu.fmi_version}; libcosim runs FMI 2.0.",
+            )
 
 
 def _complaint_of(job: Job) -> Callable[[Connection], str | None]:
     def complaint(connection):
-        source, target = (job.plan.variable(end).causality for end in (connection.source, connection.target))
+        source, target = (
+            job.plan.variable(end).causality for end in (connection.source, connection.target)
+        )
         if (source, target) != ("output", "input"):
             return f"it goes from {source} to {target}"
-        return "it is transformed and added to others" if connection in added and is_linear(connection) else None
+        return (
+            "it is transformed and added to others"
+            if connection in added and is_linear(connection)
+            else None
+        )
 
     added = sums(job.connections)
     return complaint

@@ -13,7 +13,11 @@ import zipfile
 from pathlib import Path
 
 from shipcosim.cosim.export.container_description import BINARY, container_description
-from shipcosim.cosim.export.container_variables import ContainerVariable, exposed_variables, library_type
+from shipcosim.cosim.export.container_variables import (
+    ContainerVariable,
+    exposed_variables,
+    library_type,
+)
 from shipcosim.cosim.master.order import sources_first
 from shipcosim.cosim.master.plan import label
 from shipcosim.errors import Problem, ShipcosimError
@@ -64,7 +68,9 @@ def write_container(
     token = _token(configuration, files)
     description = container_description(system, exposed, token, step_size)
     files["modelDescription.xml"] = description
-    files["resources/container.json"] = json.dumps({"instantiationToken": token, **configuration}, indent=1).encode()
+    files["resources/container.json"] = json.dumps(
+        {"instantiationToken": token, **configuration}, indent=1
+    ).encode()
     write_archive(path, files)
     return problems
 
@@ -79,13 +85,19 @@ def _problems(system, step_size):
         name = f"{label(connection.source)} -> {label(connection.target)}"
         known = f"{name}: " if name not in connection.place else ""
         for found in _connection_faults(connection, system, targets):
-            yield Problem(connection.place, f"{known}{found}", "The container FMU copies values as they are.")
+            yield Problem(
+                connection.place, f"{known}{found}", "The container FMU copies values as they are."
+            )
         targets.add(connection.target)
     for connection in system.given:
         if (connection.factor, connection.offset, connection.mapping) != (1.0, 0.0, None):
             name = f"{label(connection.source)} -> {label(connection.target)}"
             found = f"{name}: the parameter's value changes on its way (unit conversion or transformation)."
-            yield Problem(connection.place or name, found, "Give the connector the unit of the FMU's parameter.")
+            yield Problem(
+                connection.place or name,
+                found,
+                "Give the connector the unit of the FMU's parameter.",
+            )
 
 
 def _component_problems(component, step_size):
@@ -94,14 +106,24 @@ def _component_problems(component, step_size):
         found = f"{fmu.path.name} is no co-simulation FMU of FMI 2.0 or 3.0."
         yield Problem(component.name, found, "The container FMU steps no other ones.")
     elif component.implementation == "ModelExchange":
-        yield Problem(component.name, "is asked for as model exchange.", "The container FMU does co-simulation alone.")
+        yield Problem(
+            component.name,
+            "is asked for as model exchange.",
+            "The container FMU does co-simulation alone.",
+        )
     for name in component.start:
         if library_type(fmu, name) is None:
-            what = "an element of an array" if fmu.variables[name].whole else f"of type {fmu.variables[name].type}"
+            what = (
+                "an element of an array"
+                if fmu.variables[name].whole
+                else f"of type {fmu.variables[name].type}"
+            )
             found = f"{name} gets a start value and is {what}."
             yield Problem(component.name, found, "The container FMU cannot set it.")
     if component.step_size not in (None, step_size):
-        found = f"has a step of {component.step_size:g} s of its own; the exchange has {step_size:g} s."
+        found = (
+            f"has a step of {component.step_size:g} s of its own; the exchange has {step_size:g} s."
+        )
         yield Problem(component.name, found, "The container FMU steps all components alike.")
 
 
@@ -111,7 +133,11 @@ def _repeated(system):
         others = [c.name for c in system.components.values() if c.fmu.path == component.fmu.path]
         if len(others) > 1 and component.fmu.capability("canBeInstantiatedOnlyOncePerProcess"):
             found = f"{component.fmu.path.name} can be instantiated only once in a process, but makes up"
-            yield Problem(component.name, f"{found} {', '.join(others)}.", "Export it again without this limit.")
+            yield Problem(
+                component.name,
+                f"{found} {', '.join(others)}.",
+                "Export it again without this limit.",
+            )
 
 
 def _connection_faults(connection, system, targets):
@@ -130,7 +156,11 @@ def _connection_faults(connection, system, targets):
     if connection.source[0] is None and connection.target[0] is None:
         yield "an input of the system is its output, with no component between."
     ends = [end for end in (connection.source, connection.target) if end[0] is not None]
-    types = list(dict.fromkeys(library_type(system.components[name].fmu, variable) for name, variable in ends))
+    types = list(
+        dict.fromkeys(
+            library_type(system.components[name].fmu, variable) for name, variable in ends
+        )
+    )
     if None in types:
         yield "its type is an array, Binary or Clock."
     elif len(types) > 1:
@@ -140,7 +170,10 @@ def _connection_faults(connection, system, targets):
 def _paths(system):
     """Folder in the resources for each FMU file, of plain letters: not every FMU can read others in an address."""
     files = dict.fromkeys(component.fmu.path for component in system.components.values())
-    return {file: f"{number:02}_{re.sub('[^A-Za-z0-9_]', '', file.stem)}" for number, file in enumerate(files)}
+    return {
+        file: f"{number:02}_{re.sub('[^A-Za-z0-9_]', '', file.stem)}"
+        for number, file in enumerate(files)
+    }
 
 
 def _files(file):
@@ -159,7 +192,9 @@ def _configuration(system, exposed, paths, step_size, sweeps):
         "fixedStepSize": step_size,
         "parallelDoStep": False,
         "components": [_component(component, paths) for component in system.components.values()],
-        "variables": [_variable(one, system, numbers) for one in [*exposed, *_hidden(system, exposed)]],
+        "variables": [
+            _variable(one, system, numbers) for one in [*exposed, *_hidden(system, exposed)]
+        ],
         "connections": list(_connections(system, numbers)) * sweeps,
     }
 
@@ -182,7 +217,9 @@ def _hidden(system, exposed):
         for name, value in component.start.items():
             if (component.name, name) not in shown:
                 variable = component.fmu.variables[name]
-                yield ContainerVariable("", "local", variable, ((component.name, name),), start=value)
+                yield ContainerVariable(
+                    "", "local", variable, ((component.name, name),), start=value
+                )
 
 
 def _variable(one, system, numbers):
@@ -190,23 +227,33 @@ def _variable(one, system, numbers):
     known = {
         "variableType": library_type(system.components[name].fmu, variable),
         "mappings": [
-            {"component": numbers[name], "valueReference": system.components[name].fmu.variables[own].value_reference}
+            {
+                "component": numbers[name],
+                "valueReference": system.components[name].fmu.variables[own].value_reference,
+            }
             for name, own in one.ends
         ],
     }
-    return known if one.start is None or one.causality == "output" else known | {"start": [text_of(one.start)]}
+    return (
+        known
+        if one.start is None or one.causality == "output"
+        else known | {"start": [text_of(one.start)]}
+    )
 
 
 def _connections(system, numbers):
     """Connections between components, those of one type between two of them together, sources first."""
     together = {}
     for connection in system.connections:
-        (source, variable), (target, _) = connection.source, connection.target
+        (source, variable) = connection.source
+        (target, _) = connection.target
         if source is not None and target is not None:
             kind = library_type(system.components[source].fmu, variable)
             together.setdefault((source, target, kind), []).append(connection)
     place = {name: position for position, name in enumerate(sources_first(system))}
-    for source, target, kind in sorted(together, key=lambda key: (place[key[0]], place[key[1]], key[2])):
+    for source, target, kind in sorted(
+        together, key=lambda key: (place[key[0]], place[key[1]], key[2])
+    ):
         pairs = together[source, target, kind]
         yield {
             "variableType": kind,

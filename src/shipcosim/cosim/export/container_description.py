@@ -3,7 +3,12 @@
 from xml.etree import ElementTree as xml
 
 from shipcosim import __version__
-from shipcosim.cosim.export.container_variables import FMI2_TYPES, ContainerVariable, is_structured, library_type
+from shipcosim.cosim.export.container_variables import (
+    FMI2_TYPES,
+    ContainerVariable,
+    is_structured,
+    library_type,
+)
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import System
 from shipcosim.ssp.xml.values import text_of
@@ -12,7 +17,9 @@ BINARY = "container_fmu"
 """modelIdentifier, which is the name of the library."""
 
 
-def container_description(system: System, exposed: list[ContainerVariable], token: str, step_size: float) -> bytes:
+def container_description(
+    system: System, exposed: list[ContainerVariable], token: str, step_size: float
+) -> bytes:
     """The model description, the same bytes for the same system.
 
     Parameters
@@ -33,7 +40,9 @@ def container_description(system: System, exposed: list[ContainerVariable], toke
         guid=token,
         description=f"{len(system.components)} components of the system {system.name}",
         generationTool=f"shipcosim {__version__}",
-        variableNamingConvention="structured" if all(is_structured(one.name) for one in exposed) else "flat",
+        variableNamingConvention="structured"
+        if all(is_structured(one.name) for one in exposed)
+        else "flat",
         numberOfEventIndicators="0",
     )
     xml.SubElement(root, "CoSimulation", _abilities(system))
@@ -55,7 +64,9 @@ def _abilities(system):
     fmus = [component.fmu for component in system.components.values()]
     return {
         "modelIdentifier": BINARY,
-        "needsExecutionTool": str(any(fmu.capability("needsExecutionTool") for fmu in fmus)).lower(),
+        "needsExecutionTool": str(
+            any(fmu.capability("needsExecutionTool") for fmu in fmus)
+        ).lower(),
         "canHandleVariableCommunicationStepSize": "false",
         "canBeInstantiatedOnlyOncePerProcess": str(
             any(fmu.capability("canBeInstantiatedOnlyOncePerProcess") for fmu in fmus)
@@ -72,7 +83,9 @@ def _add_units(root, system, exposed):
         found = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
         if len({(unit.exponents, unit.factor, unit.offset) for unit in found}) > 1:
             text = f"The unit {name} is defined in two ways by its FMUs."
-            raise ShipcosimError(Problem(system.name, text, "An FMU can have one definition of a unit."))
+            raise ShipcosimError(
+                Problem(system.name, text, "An FMU can have one definition of a unit.")
+            )
         element = xml.SubElement(definitions, "Unit", name=name)
         for unit in found:
             xml.SubElement(element, "BaseUnit", unit.base_unit_attributes)
@@ -81,19 +94,27 @@ def _add_units(root, system, exposed):
 
 def _add_types(root, exposed):
     """Enumerations, each with a name of its own; returns the names by items."""
-    kinds = dict.fromkeys(tuple(one.variable.items.items()) for one in exposed if one.variable.items)
+    kinds = dict.fromkeys(
+        tuple(one.variable.items.items()) for one in exposed if one.variable.items
+    )
     names = {items: f"Enumeration{number}" for number, items in enumerate(kinds, start=1)}
     if names:
         definitions = xml.SubElement(root, "TypeDefinitions")
     for items, name in names.items():
-        element = xml.SubElement(xml.SubElement(definitions, "SimpleType", name=name), "Enumeration")
+        element = xml.SubElement(
+            xml.SubElement(definitions, "SimpleType", name=name), "Enumeration"
+        )
         for item, value in items:
             xml.SubElement(element, "Item", name=item, value=str(value))
     return names
 
 
 def _add_experiment(root, system, step_size):
-    times = {"startTime": system.experiment.start_time, "stopTime": system.experiment.stop_time, "stepSize": step_size}
+    times = {
+        "startTime": system.experiment.start_time,
+        "stopTime": system.experiment.stop_time,
+        "stepSize": step_size,
+    }
     given = {name: repr(float(time)) for name, time in times.items() if time is not None}
     xml.SubElement(root, "DefaultExperiment", given)
 
@@ -105,15 +126,23 @@ def _time_name(exposed):
 
 def _scalar_variable(reference, one, system, types):
     variable = one.variable
-    element = xml.Element("ScalarVariable", name=one.name, valueReference=str(reference), causality=one.causality)
+    element = xml.Element(
+        "ScalarVariable", name=one.name, valueReference=str(reference), causality=one.causality
+    )
     if one.description:
         element.set("description", one.description)
     element.set("variability", _variability(one))
     if one.causality != "input":
         element.set("initial", "calculated" if one.causality == "output" else "exact")
-    values = {"start": text_of(one.start)} if one.start is not None and one.causality != "output" else {}
+    values = (
+        {"start": text_of(one.start)} if one.start is not None and one.causality != "output" else {}
+    )
     name, own = one.ends[0]
-    kind = "Enumeration" if variable.items else FMI2_TYPES[str(library_type(system.components[name].fmu, own))]
+    kind = (
+        "Enumeration"
+        if variable.items
+        else FMI2_TYPES[str(library_type(system.components[name].fmu, own))]
+    )
     if kind == "Enumeration":
         values["declaredType"] = types[tuple(variable.items.items())]
     if kind == "Real" and one.unit:
@@ -129,12 +158,18 @@ def _scalar_variable(reference, one, system, types):
 def _variability(one):
     if one.causality == "parameter":
         return "tunable" if one.variable.variability == "tunable" else "fixed"
-    return "continuous" if one.variable.kind == "Real" and one.variable.variability == "continuous" else "discrete"
+    return (
+        "continuous"
+        if one.variable.kind == "Real" and one.variable.variability == "continuous"
+        else "discrete"
+    )
 
 
 def _add_structure(root, exposed):
     structure = xml.SubElement(root, "ModelStructure")
-    indices = [str(index) for index, one in enumerate(exposed, start=2) if one.causality == "output"]
+    indices = [
+        str(index) for index, one in enumerate(exposed, start=2) if one.causality == "output"
+    ]
     for kind in ("Outputs", "InitialUnknowns") if indices else ():
         unknowns = xml.SubElement(structure, kind)
         for index in indices:

@@ -51,7 +51,9 @@ def library_type(fmu: FmuDescription, name: str) -> str | None:
     return LIBRARY_TYPES.get(variable.type, variable.type)
 
 
-def exposed_variables(system: System, connectors_only: bool, problems: list[Problem]) -> list[ContainerVariable]:
+def exposed_variables(
+    system: System, connectors_only: bool, problems: list[Problem]
+) -> list[ContainerVariable]:
     """Variables of the container, in the order of the system.
 
     Parameters
@@ -63,7 +65,9 @@ def exposed_variables(system: System, connectors_only: bool, problems: list[Prob
     problems : list of Problem
         Takes what a connector cannot be, and remarks on what is left out.
     """
-    exposed = [one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")]
+    exposed = [
+        one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")
+    ]
     if connectors_only:
         return exposed
     names = {one.name for one in exposed}
@@ -85,12 +89,15 @@ def _connectors(system, problems):
             found = f"The {causality} {signal.name} is connected to nothing and is left out."
             problems.append(Problem(system.name, found, severity="remark"))
             continue
-        variable, start = _variable(system, ends[0]), signal.start
+        variable = _variable(system, ends[0])
+        start = signal.start
         if start is None and causality != "output":
             start = _common_start(system, signal, ends, problems)
         shown = start if causality != "output" else None
         description = signal.description or (variable.description if len(ends) == 1 else "")
-        yield ContainerVariable(signal.name, causality, variable, ends, shown, signal.unit, description)
+        yield ContainerVariable(
+            signal.name, causality, variable, ends, shown, signal.unit, description
+        )
 
 
 def _signals(system):
@@ -112,7 +119,9 @@ def _common_start(system, signal, ends, problems):
     starts = {system.components[name].start_value(variable) for name, variable in ends}
     if len(starts) > 1:
         found = f"{signal.name} has no start value, and {', '.join(map(label, ends))} start with different ones."
-        problems.append(Problem(system.name, found, "Set a start value for it: an FMU has to state one."))
+        problems.append(
+            Problem(system.name, found, "Set a start value for it: an FMU has to state one.")
+        )
     return starts.pop()
 
 
@@ -128,7 +137,13 @@ def _variables(system, fed):
             else:
                 continue
             yield ContainerVariable(
-                label(end), variable.causality, variable, (end,), start, variable.unit, variable.description
+                label(end),
+                variable.causality,
+                variable,
+                (end,),
+                start,
+                variable.unit,
+                variable.description,
             )
 
 
@@ -138,7 +153,11 @@ def _is_shown(one, system, problems, severity):
     kind = library_type(system.components[name].fmu, variable)
     if kind in FMI2_TYPES:
         return True
-    what = "an element of an array" if one.variable.whole is not None else f"of type {one.variable.type}"
+    what = (
+        "an element of an array"
+        if one.variable.whole is not None
+        else f"of type {one.variable.type}"
+    )
     found = f"{one.name} is {what}, which FMI 2.0 has not"
     found += "; it is left out." if severity == "remark" else "."
     problems.append(Problem(system.name, found, severity=severity))

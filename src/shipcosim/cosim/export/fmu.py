@@ -29,7 +29,12 @@ Times are rounded differently in the last digit inside the container."""
 
 
 def export_fmu(
-    system: System, path: str | os.PathLike, step_size: float, *, connectors_only: bool = False, check: bool = True
+    system: System,
+    path: str | os.PathLike,
+    step_size: float,
+    *,
+    connectors_only: bool = False,
+    check: bool = True,
 ) -> list[Problem]:
     """Write a system as one FMU of FMI 2.0 co-simulation.
 
@@ -59,16 +64,21 @@ def export_fmu(
     """
     if not check:
         return write_container(system, Path(path), step_size, connectors_only=connectors_only)
-    ours, differing = None, []
+    ours = None
+    differing = []
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         for sweeps in SWEEPS:
             tried = Path(folder) / f"{sweeps}.fmu"
-            remarks = write_container(system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps)
+            remarks = write_container(
+                system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps
+            )
             ours = _run(system, step_size, RunOptions()) if ours is None else ours
             container = _run(block_of(tried), step_size, RunOptions(isolate=True, timeout=LIMIT))
             differing = _differences(ours, container)
             if not differing:
-                write_container(system, Path(path), step_size, connectors_only=connectors_only, sweeps=sweeps)
+                write_container(
+                    system, Path(path), step_size, connectors_only=connectors_only, sweeps=sweeps
+                )
                 return remarks
     remedy = (
         "Components whose outputs follow their inputs at once are passed on in another order there; where the last "
@@ -83,23 +93,33 @@ def block_of(fmu: Path) -> System:
 
 
 def _run(system, step_size, options):
-    scenario = Scenario(description="side by side", step_size=step_size, stop_time=STEPS * step_size)
+    scenario = Scenario(
+        description="side by side", step_size=step_size, stop_time=STEPS * step_size
+    )
     return run(system, scenario, options)
 
 
 def _differences(ours, theirs):
     """Sentences on the outputs of the container that differ from the system's, the worst first."""
-    found, scales = [], _scales(ours)
+    found = []
+    scales = _scales(ours)
     for name in theirs.data_vars:
         shown = name.removeprefix("block.")
         if shown not in ours or theirs[name].dtype.kind not in "fbi":
             continue
-        a, b = ours[shown].values.astype(float), theirs[name].values.astype(float)
-        error, scale = np.abs(a - b), max(scales[_kind(ours, shown)], np.abs(b).max(), 1e-9)
+        a = ours[shown].values.astype(float)
+        b = theirs[name].values.astype(float)
+        error = np.abs(a - b)
+        scale = max(scales[_kind(ours, shown)], np.abs(b).max(), 1e-9)
         if error.max() > TOLERANCE * scale:
             row = int(error.argmax())
             time = float(ours["time"][row])
-            found.append((error.max() / scale, f"{shown} is {a[row]:.9g} at t = {time:g} s, in the FMU {b[row]:.9g}."))
+            found.append(
+                (
+                    error.max() / scale,
+                    f"{shown} is {a[row]:.9g} at t = {time:g} s, in the FMU {b[row]:.9g}.",
+                )
+            )
     return [text for _, text in sorted(found, reverse=True)]
 
 
@@ -109,7 +129,9 @@ def _scales(table):
     for name in table.data_vars:
         if table[name].dtype.kind in "fbi":
             kind = _kind(table, name)
-            found[kind] = max(found.get(kind, 0.0), float(np.abs(table[name].values.astype(float)).max()))
+            found[kind] = max(
+                found.get(kind, 0.0), float(np.abs(table[name].values.astype(float)).max())
+            )
     return found
 
 

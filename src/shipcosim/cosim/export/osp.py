@@ -17,7 +17,8 @@ from shipcosim.scenario.osp import scenario_text
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.xml.markup import free_name
 
-STRUCTURE, SCENARIO = "OspSystemStructure.xml", "scenario.json"
+STRUCTURE = "OspSystemStructure.xml"
+SCENARIO = "scenario.json"
 TYPES = ("Real", "Integer", "Boolean", "String")
 """Types of initial values that OSP has."""
 
@@ -57,7 +58,9 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     if problems:
         raise ShipcosimError(problems)
     names = _file_names(system)
-    sources = {name: quote(names[component.fmu.path]) for name, component in system.components.items()}
+    sources = {
+        name: quote(names[component.fmu.path]) for name, component in system.components.items()
+    }
     values = {name: _initial_values(job, name) for name in system.components}
     structure = structure_of(job, sources, values, end_time=scenario.stop_time)
     files = {STRUCTURE: structure.encode()}
@@ -87,8 +90,13 @@ def _as_typed(value, kind):
 
 def _initial_values(job, name):
     variables = job.system.components[name].fmu.variables
-    starts = {variable: (variables[variable].kind, value) for variable, value in job.starts(name).items()}
-    return {v: (kind, _as_typed(value, kind) if kind in KINDS else value) for v, (kind, value) in starts.items()}
+    starts = {
+        variable: (variables[variable].kind, value) for variable, value in job.starts(name).items()
+    }
+    return {
+        v: (kind, _as_typed(value, kind) if kind in KINDS else value)
+        for v, (kind, value) in starts.items()
+    }
 
 
 def _values_problems(job):
@@ -96,7 +104,10 @@ def _values_problems(job):
         for variable in component.start:
             kind = component.fmu.variables[variable].kind
             if kind not in TYPES:
-                yield Problem(f"{name}.{variable}", f"is set and is {kind}; OSP has no initial value of this type.")
+                yield Problem(
+                    f"{name}.{variable}",
+                    f"is set and is {kind}; OSP has no initial value of this type.",
+                )
 
 
 def _file_names(system):
@@ -105,7 +116,10 @@ def _file_names(system):
     for component in system.components.values():
         path = component.fmu.path
         if path not in names:
-            names[path] = free_name(path.stem, {name.removesuffix(".fmu") for name in names.values()}) + ".fmu"
+            names[path] = (
+                free_name(path.stem, {name.removesuffix(".fmu") for name in names.values()})
+                + ".fmu"
+            )
     return names
 
 
@@ -151,5 +165,7 @@ def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> 
     except OSError as error:
         for path in partial.values():
             path.unlink(missing_ok=True)
-        raise ShipcosimError(Problem(str(folder), f"Cannot be written: {error.strerror}.")) from None
+        raise ShipcosimError(
+            Problem(str(folder), f"Cannot be written: {error.strerror}.")
+        ) from None
     return remarks

@@ -65,9 +65,13 @@ class Master:
         check_interrupt: Callable[[], None],
         sequential: bool = False,
     ):
-        self._components, self._exchanges, self._names = components, exchanges, names
-        self._string_connections, self._parameter_connections = string_connections, parameter_connections
-        self._check_interrupt, self._sequential = check_interrupt, sequential
+        self._components = components
+        self._exchanges = exchanges
+        self._names = names
+        self._string_connections = string_connections
+        self._parameter_connections = parameter_connections
+        self._check_interrupt = check_interrupt
+        self._sequential = sequential
         self._all_exchanges = list(exchanges.values())
 
     def initialise(self, start_time: float, stop_time: float) -> None:
@@ -98,15 +102,23 @@ class Master:
     def _iterate_start(self):
         """Iterate over the components in initialisation mode until no input changes any more."""
         self._transfer(0)
-        inputs, moving = {}, {}
-        feeding = [component for component in self._components if component.feeds]  # the others change no input
+        inputs = {}
+        moving = {}
+        feeding = [
+            component for component in self._components if component.feeds
+        ]  # the others change no input
         for iteration in range(MOST_ITERATIONS + len(self._components)):
-            last, inputs = inputs, self._inputs()
+            last = inputs
+            inputs = self._inputs()
             changed = [_transferred(connection) for connection in self._parameter_connections]
             if iteration and last == inputs and not any(changed):
                 return
             if iteration >= MOST_ITERATIONS:
-                moving |= {name: abs(value - last[name]) for name, value in inputs.items() if value != last[name]}
+                moving |= {
+                    name: abs(value - last[name])
+                    for name, value in inputs.items()
+                    if value != last[name]
+                }
             self._check_interrupt()
             for component in feeding:
                 with _failing(component, "at the start"):
@@ -115,9 +127,7 @@ class Master:
             self._transfer(0)
         if any(change > SAME * abs(inputs[name]) for name, change in moving.items()):
             names = ", ".join(name for name in inputs if name in moving)
-            found = (
-                f"the start does not settle: after {MOST_ITERATIONS} sweeps over the components {names} still change."
-            )
+            found = f"the start does not settle: after {MOST_ITERATIONS} sweeps over the components {names} still change."
             remedy = "They lie on or behind a loop of direct feedthrough. One of it has to hold its output over a step."
             raise Failure(Problem("initialisation", found, remedy))
 
@@ -156,8 +166,11 @@ class Master:
         ------
         Failure, KeyboardInterrupt
         """
-        clock, first, last = grid.times.tolist(), grid.first, grid.last
-        steps_per_row, report_at = grid.steps_per_row, perf_counter()
+        clock = grid.times.tolist()
+        first = grid.first
+        last = grid.last
+        steps_per_row = grid.steps_per_row
+        report_at = perf_counter()
         for k in range(first, last):
             if k in actions:
                 self._act(actions[k])
@@ -218,11 +231,15 @@ class Master:
         if "Real" not in self._exchanges:
             return
         values = self._exchanges["Real"].modified_sources
-        if isfinite(values.dot(values)) or np.isfinite(values).all():  # quick, as a rule; squares may overflow
+        if (
+            isfinite(values.dot(values)) or np.isfinite(values).all()
+        ):  # quick, as a rule; squares may overflow
             return
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         found = f"is {values[row]} at t = {time:.9g} s."
-        raise Failure(Problem(self._names["Real"][0][row], found, "Every value has to be a finite number."))
+        raise Failure(
+            Problem(self._names["Real"][0][row], found, "Every value has to be a finite number.")
+        )
 
 
 def failed_step(component: ComponentInstance, time: float, error: SlaveError) -> Failure:
@@ -235,7 +252,9 @@ def _transferred(connection, *arguments):
     try:
         return connection.transfer(*arguments)
     except SlaveError as error:
-        raise Failure(Problem(connection.place, f"its value cannot be passed on. {error}")) from error
+        raise Failure(
+            Problem(connection.place, f"its value cannot be passed on. {error}")
+        ) from error
 
 
 @contextmanager

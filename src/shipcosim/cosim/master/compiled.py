@@ -22,7 +22,8 @@ from shipcosim.native.component import CALL
 
 DONE, FAILED, NOT_FINITE = range(3)
 HOST = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int64)
-INT, P = ctypes.c_int64, ctypes.c_void_p
+INT = ctypes.c_int64
+P = ctypes.c_void_p
 
 
 class _Exchange(ctypes.Structure):
@@ -31,7 +32,18 @@ class _Exchange(ctypes.Structure):
         *((name, INT) for name in ("n_sources", "n_outputs", "n_inputs", "n_transferred")),
         *((name, P) for name in ("sources", "modified", "transferred", "inputs")),
         ("n_connections", INT),
-        *((name, P) for name in ("source", "target", "period", "factor", "offset", "mapped", "mapping_first")),
+        *(
+            (name, P)
+            for name in (
+                "source",
+                "target",
+                "period",
+                "factor",
+                "offset",
+                "mapped",
+                "mapping_first",
+            )
+        ),
         *((name, P) for name in ("mapping_from", "mapping_to")),
         ("n_sums", INT),
         *((name, P) for name in ("sum_row", "sum_first", "sum_end")),
@@ -104,7 +116,11 @@ class CompiledMaster(Master):
             return
         if (loop := self._loop) is None or not loop.take_anew(external):
             loop = _CompiledLoop(self, grid, external, recorders)
-        k, first, last, steps, report_at = grid.first, grid.first, grid.last, 16, perf_counter()
+        k = grid.first
+        first = grid.first
+        last = grid.last
+        steps = 16
+        report_at = perf_counter()
         due = sorted(step for step in actions if step > first)
         try:
             while k < last:
@@ -122,11 +138,17 @@ class CompiledMaster(Master):
                     raise
                 while due and due[0] <= k:
                     due.pop(0)
-                end, began = min(k + steps, due[0] if due else last, last), perf_counter()
+                end = min(k + steps, due[0] if due else last, last)
+                began = perf_counter()
                 k = loop.run(k, end)
-                steps = 2 * steps if perf_counter() - began < 0.5 * BETWEEN_REPORTS else max(1, steps // 2)
+                steps = (
+                    2 * steps
+                    if perf_counter() - began < 0.5 * BETWEEN_REPORTS
+                    else max(1, steps // 2)
+                )
         finally:
-            self._loop, self.reasons = loop, loop.reasons
+            self._loop = loop
+            self.reasons = loop.reasons
         if last % grid.steps_per_row == 0:
             recorders.record()
         if progress is not None:
@@ -147,17 +169,24 @@ class _CompiledLoop:
     """The arrays of a run as the compiled loop sees them."""
 
     def __init__(self, master: CompiledMaster, grid: TimeGrid, external, recorders: Recorders):
-        self._master, self._clock, self._recorders = master, np.ascontiguousarray(grid.times, dtype=float), recorders
-        self._components, self._exchanges = master._components, list(master._exchanges.items())
+        self._master = master
+        self._clock = np.ascontiguousarray(grid.times, dtype=float)
+        self._recorders = recorders
+        self._components = master._components
+        self._exchanges = list(master._exchanges.items())
         self._kept: list[Any] = []  # arrays that the structures point to
         self._kept_for_now: dict[str, list[Any]] = {}
-        self._library = libraries([files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8")])[0]
+        self._library = libraries(
+            [files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8")]
+        )[0]
         self._steps = self._compiled(grid)
         self._error: BaseException | None = None
         self._c_exchanges = (_Exchange * len(self._exchanges))(
             *(self._exchange(kind, exchange) for kind, exchange in self._exchanges)
         )
-        self._c_components = (_Component * len(self._components))(*map(self._component, self._components))
+        self._c_components = (_Component * len(self._components))(
+            *map(self._component, self._components)
+        )
         kinds = [kind for kind, _ in self._exchanges]
         self._host = HOST(self._stepped_by_python)
         self._system = _System(
@@ -179,7 +208,9 @@ class _CompiledLoop:
     def take_anew(self, external) -> bool:
         """Begin again in the same arrays, with the components' numbers after another start; whether that can be."""
         time, step_size = self._first_step
-        if self._reasons or not all(step.take_anew(time, step_size) for step in self._steps.values()):
+        if self._reasons or not all(
+            step.take_anew(time, step_size) for step in self._steps.values()
+        ):
             return False
         self._error, self._system.stop = None, 0
         self._take_external(external)
@@ -190,7 +221,9 @@ class _CompiledLoop:
         """Steps k to end; the step that comes next. Raises Failure."""
         reached = INT(k)
         self._system.n_rows = self._recorders.n_rows
-        status = self._library.run(ctypes.byref(self._system), INT(k), INT(end), ctypes.byref(reached))
+        status = self._library.run(
+            ctypes.byref(self._system), INT(k), INT(end), ctypes.byref(reached)
+        )
         self._recorders.n_rows = self._system.n_rows
         if status == FAILED:
             assert self._error is not None
@@ -208,12 +241,21 @@ class _CompiledLoop:
         """Take overrides and biases as they are now."""
         kept = self._kept_for_now["modifiers"] = []
         for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
-            for name, modifiers in (("output", exchange.output_modifiers), ("input", exchange.input_modifiers)):
+            for name, modifiers in (
+                ("output", exchange.output_modifiers),
+                ("input", exchange.input_modifiers),
+            ):
                 active = modifiers.active
                 setattr(structure, f"n_{name}_modifiers", len(active))
-                setattr(structure, f"{name}_row", self._pointer(np.array(list(active), dtype=np.int64), kept))
+                setattr(
+                    structure,
+                    f"{name}_row",
+                    self._pointer(np.array(list(active), dtype=np.int64), kept),
+                )
                 for column, part in enumerate(("scale", "shift")):
-                    values = np.array([modifier[column] for modifier in active.values()], dtype=float)
+                    values = np.array(
+                        [modifier[column] for modifier in active.values()], dtype=float
+                    )
                     setattr(structure, f"{name}_{part}", self._pointer(values, kept))
             structure.version = exchange.version
 
@@ -236,8 +278,12 @@ class _CompiledLoop:
         time = float(grid.times[grid.first])
         self._first_step = time, float(grid.times[grid.first + 1]) - time
         found = dict(zip(ours, compiled_steps(list(ours.values()), *self._first_step), strict=True))
-        self._reasons: dict[str, object] = {name: "its code is not ours" for name in objects if name not in ours}
-        self._reasons |= {name: step for name, step in found.items() if isinstance(step, Untraceable)}
+        self._reasons: dict[str, object] = {
+            name: "its code is not ours" for name in objects if name not in ours
+        }
+        self._reasons |= {
+            name: step for name, step in found.items() if isinstance(step, Untraceable)
+        }
         return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
 
     def _exchange(self, kind: str, exchange: Exchange) -> _Exchange:
@@ -254,14 +300,24 @@ class _CompiledLoop:
             len(exchange.outputs),
             len(exchange.inputs),
             len(exchange.transferred),
-            *map(self._pointer, (exchange.sources, exchange.modified_sources, exchange.transferred, exchange.inputs)),
+            *map(
+                self._pointer,
+                (
+                    exchange.sources,
+                    exchange.modified_sources,
+                    exchange.transferred,
+                    exchange.inputs,
+                ),
+            ),
             len(due),
             self._whole(connection.source for _, connection in due),
             self._whole(row for row, _ in due),
             self._whole(connection.period for _, connection in due),
             self._real(connection.factor for _, connection in due),
             self._real(connection.offset for _, connection in due),
-            self._whole(-1 if connection.mapping is None else next(numbers) for _, connection in due),
+            self._whole(
+                -1 if connection.mapping is None else next(numbers) for _, connection in due
+            ),
             self._whole(firsts),
             self._real(key for mapping in mappings for key in mapping),
             self._real(value for mapping in mappings for value in mapping.values()),
@@ -288,8 +344,11 @@ class _CompiledLoop:
         if step is None:
             return made
         kinds = {kind: number for number, (kind, _) in enumerate(self._exchanges)}
-        made.step, made.call, made.n_memory = step.function, step.call, len(step.memory) - 2
-        made.memory, made.kept = self._pointer(step.memory), self._pointer(step.kept)
+        made.step = step.function
+        made.call = step.call
+        made.n_memory = len(step.memory) - 2
+        made.memory = self._pointer(step.memory)
+        made.kept = self._pointer(step.kept)
         for name, rows in (("input", component.input_rows), ("output", component.output_rows)):
             found = [
                 (step.places[variable.name], kinds[kind], first + number)
@@ -303,7 +362,8 @@ class _CompiledLoop:
 
     def _stepped_by_python(self, number: int, k: int) -> int:
         """Take a step that is not compiled, or read its outputs (-1 less the number); 1 where it fails."""
-        reading, number = number < 0, -1 - number if number < 0 else number
+        reading = number < 0
+        number = -1 - number if number < 0 else number
         component = self._components[number]
         try:
             for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):

@@ -88,12 +88,15 @@ class ComponentInstance:
             First row and variables of this component.
         """
         self.output_rows[kind], self.input_rows[kind] = outputs, inputs
-        (first, variables), (first_input, inputs_set) = outputs, inputs
+        (first, variables) = outputs
+        (first_input, inputs_set) = inputs
         if variables:
             buffer = exchange.sources[first : first + len(variables)]
             self._gets.append((f"Get{kind}", self.slave.getter(kind, variables, buffer)))
         if inputs_set:
-            call = self.slave.setter(kind, inputs_set, exchange.inputs[first_input : first_input + len(inputs_set)])
+            call = self.slave.setter(
+                kind, inputs_set, exchange.inputs[first_input : first_input + len(inputs_set)]
+            )
             if kind == "Real":
                 self._set_reals = call
             else:
@@ -158,5 +161,7 @@ def _set(slave, values):
         try:
             buffer = np.array(numbers, dtype=BUFFER_TYPES[kind])
         except OverflowError:
-            raise SlaveError(f"{variables[0].name} cannot be {numbers[0]}: it has more than 63 bits.") from None
+            raise SlaveError(
+                f"{variables[0].name} cannot be {numbers[0]}: it has more than 63 bits."
+            ) from None
         slave.check(f"Set{kind}", slave.setter(kind, variables, buffer)())

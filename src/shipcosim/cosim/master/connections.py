@@ -74,11 +74,19 @@ class ParameterConnection:
     """
 
     def __init__(
-        self, source: Port, target: Port, factor: float = 1.0, offset: float = 0.0, mapping: Mapping | None = None
+        self,
+        source: Port,
+        target: Port,
+        factor: float = 1.0,
+        offset: float = 0.0,
+        mapping: Mapping | None = None,
     ):
         self.place = f"{source.slave.name}.{source.variable.name} -> {target.slave.name}.{target.variable.name}"
-        self._source, self._target = source.slave, target.slave
-        self._factor, self._offset, self._mapping = factor, offset, mapping or {}
+        self._source = source.slave
+        self._target = target.slave
+        self._factor = factor
+        self._offset = offset
+        self._mapping = mapping or {}
         self._from = np.zeros(1, dtype=BUFFER_TYPES[source.kind])
         self._to = np.zeros(1, dtype=BUFFER_TYPES[target.kind])
         self._get = source.slave.getter(source.kind, [source.variable], self._from)

@@ -47,7 +47,9 @@ def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[SignalCh
         for action, name, value in event.changes if step >= grid.first else ():
             end = plan.system.split(name)
             items = plan.system.inputs[name].items if end[0] is None else plan.variable(end).items
-            yield SignalChange(step, action, end, items.get(value, value) if isinstance(value, str) else value)
+            yield SignalChange(
+                step, action, end, items.get(value, value) if isinstance(value, str) else value
+            )
 
 
 def event_actions(
@@ -66,7 +68,8 @@ def event_actions(
 def modifiers_of(end: End, plan: Plan, exchanges: Mapping[str, Exchange]) -> tuple[Modifiers, int]:
     """Where overrides and biases of a component's variable are kept, and its row there."""
     kind = plan.kind_of(end)
-    layout, exchange = plan.layouts[kind], exchanges[kind]
+    layout = plan.layouts[kind]
+    exchange = exchanges[kind]
     if end in layout.inputs:
         return exchange.input_modifiers, layout.inputs.index(end)
     return exchange.output_modifiers, layout.outputs.index(end)
@@ -108,7 +111,11 @@ def external_values(
     for end in changing:
         column = ends.index(end)
         values[:, column] = fed.get(end[1], values[:, column])
-        due = [c._replace(step=c.step - grid.first) for c in changes(scenario, plan, grid) if c.end == end]
+        due = [
+            c._replace(step=c.step - grid.first)
+            for c in changes(scenario, plan, grid)
+            if c.end == end
+        ]
         modify(values[:, column], active.get(end[1]), due)
     return values
 

@@ -26,15 +26,26 @@ def inner_connections(plan: Plan) -> list[Connection]:
 
 def _is_inner(connection: Connection, plan: Plan) -> bool:
     ends = (connection.source, connection.target)
-    if connection.initial or connection.mapping or None in (connection.source[0], connection.target[0]):
+    if (
+        connection.initial
+        or connection.mapping
+        or None in (connection.source[0], connection.target[0])
+    ):
         return False
     components = [plan.system.components[name or ""] for name, _ in ends]
-    is_free = plan.modified.isdisjoint(ends) and all(plan.multiples[one.name] == 1 for one in components)
-    smooth = all(interface_type_of(one) == "ModelExchange" and one.fmu.n_event_indicators == 0 for one in components)
+    is_free = plan.modified.isdisjoint(ends) and all(
+        plan.multiples[one.name] == 1 for one in components
+    )
+    smooth = all(
+        interface_type_of(one) == "ModelExchange" and one.fmu.n_event_indicators == 0
+        for one in components
+    )
     return is_free and smooth and all(plan.variable(end).kind == "Real" for end in ends)
 
 
-def exchanged_at_steps(plan: Plan, inner: Sequence[Connection], how: str, step_size: float) -> list[str]:
+def exchanged_at_steps(
+    plan: Plan, inner: Sequence[Connection], how: str, step_size: float
+) -> list[str]:
     """What is to be known of components in model exchange that are wired together and not integrated as one system.
 
     Parameters
@@ -53,13 +64,18 @@ def exchanged_at_steps(plan: Plan, inner: Sequence[Connection], how: str, step_s
     list of str
         A sentence for each pair.
     """
-    groups, said = groups_of(inner), {}
+    groups = groups_of(inner)
+    said = {}
     for c in plan.system.connections:
         pair = tuple(sorted({c.source[0] or "", c.target[0] or ""}))
         is_carried = c in inner and any(set(pair) <= group for group in groups)
         if is_carried or "" in pair or pair in said or not _is_of_models(c, plan):
             continue
-        what = "run in model exchange, wired together" if len(pair) > 1 else "runs in model exchange, wired to itself"
+        what = (
+            "run in model exchange, wired together"
+            if len(pair) > 1
+            else "runs in model exchange, wired to itself"
+        )
         why = how or _why_apart(c, plan)
         said[pair] = (
             f"{' and '.join(pair)} {what}, but not as one system: {why}. What they exchange is held for "
@@ -104,12 +120,17 @@ def followed_inputs(connections: Sequence[Connection], name: str) -> frozenset[t
     """Kind and name of a component's inputs that a common solver carries values to."""
     groups = groups_of(connections)
     return frozenset(
-        ("Real", c.target[1]) for c in connections if c.target[0] == name and any(name in group for group in groups)
+        ("Real", c.target[1])
+        for c in connections
+        if c.target[0] == name and any(name in group for group in groups)
     )
 
 
 def couple(
-    plan: Plan, instances: Mapping[str, ComponentInstance], order: Sequence[str], connections: Sequence[Connection]
+    plan: Plan,
+    instances: Mapping[str, ComponentInstance],
+    order: Sequence[str],
+    connections: Sequence[Connection],
 ) -> None:
     """Have the groups of a run step with one solver each; the last of a group in the order of the steps does it.
 
@@ -128,7 +149,11 @@ def couple(
 
     for group in groups_of(connections):
         names = [name for name in order if name in group]
-        members = {name: slave for name in names if isinstance(slave := instances[name].slave, ModelExchange)}
+        members = {
+            name: slave
+            for name in names
+            if isinstance(slave := instances[name].slave, ModelExchange)
+        }
         wires = [
             Wire(
                 (c.source[0] or "", plan.variable(c.source)),

@@ -56,7 +56,9 @@ def input_values(table: xarray.Dataset, system: System, times: np.ndarray) -> di
         return _values(table, system, times)
     except ShipcosimError as error:
         file = table.encoding.get("source", "inputs")
-        raise ShipcosimError([replace(p, where=p.where.replace("inputs", file, 1)) for p in error.problems]) from error
+        raise ShipcosimError(
+            [replace(p, where=p.where.replace("inputs", file, 1)) for p in error.problems]
+        ) from error
 
 
 def _values(table, system, times):
@@ -65,7 +67,8 @@ def _values(table, system, times):
     if problems:
         raise ShipcosimError(problems)
     rows = _rows(clock, times)
-    problems, fed = list(_gaps(table, clock[rows])), {}
+    problems = list(_gaps(table, clock[rows]))
+    fed = {}
     for name in table.data_vars:
         try:
             fed[str(name)] = _column(table[name][rows], system.inputs[name], clock[rows], times)
@@ -94,14 +97,19 @@ def interpolated(table: xarray.Dataset, system: System, names: Iterable[str]) ->
         If there is no such column.
     """
     columns = map(str, table.data_vars)
-    reals = {name for name in columns if name in system.inputs and system.inputs[name].type == "Real"}
-    table, problems = table.copy(), []
+    reals = {
+        name for name in columns if name in system.inputs and system.inputs[name].type == "Real"
+    }
+    table = table.copy()
+    problems = []
     for pattern in names:
         matching = [name for name in reals if fnmatchcase(name, pattern)]
         matching = [pattern] if pattern in table.data_vars else matching
         if not matching:
             remedy = suggestion(pattern, map(str, table.data_vars))
-            problems.append(Problem("inputs", f"no column '{pattern}' can be interpolated.", remedy))
+            problems.append(
+                Problem("inputs", f"no column '{pattern}' can be interpolated.", remedy)
+            )
         for name in matching:
             table[name].attrs["interpolation"] = "linear"
     if problems:
@@ -113,7 +121,11 @@ def digest(table: xarray.Dataset) -> str:
     """SHA-256 of a table's times, names, units and values."""
     sha = hashlib.sha256(np.ascontiguousarray(table["time"].values, dtype=float).tobytes())
     for name, column in sorted(table.data_vars.items()):
-        about = str(name), column.attrs.get("units") or "", column.attrs.get("interpolation", "held")
+        about = (
+            str(name),
+            column.attrs.get("units") or "",
+            column.attrs.get("interpolation", "held"),
+        )
         sha.update("\0".join(about).encode())
         sha.update(np.ascontiguousarray(column.values, dtype=float).tobytes())
     return sha.hexdigest()
@@ -122,11 +134,17 @@ def digest(table: xarray.Dataset) -> str:
 def _unknown(table, system):
     unknown = [str(name) for name in table.data_vars if name not in system.inputs]
     if unknown:
-        shown = ", ".join(f"'{name}'" for name in unknown[:8]) + (", ..." if len(unknown) > 8 else "")
+        shown = ", ".join(f"'{name}'" for name in unknown[:8]) + (
+            ", ..." if len(unknown) > 8 else ""
+        )
         found = f"{system.name} has no input {shown}."
-        yield Problem("inputs", found, f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns.")
+        yield Problem(
+            "inputs", found, f"{suggestion(unknown[0], system.inputs)} Rename or drop such columns."
+        )
     if not table.data_vars:
-        yield Problem("inputs", "The table has no column beside time.", suggestion("", system.inputs))
+        yield Problem(
+            "inputs", "The table has no column beside time.", suggestion("", system.inputs)
+        )
 
 
 def _clock_problems(clock):
@@ -143,7 +161,8 @@ def _clock_problems(clock):
 
 def _rows(clock, times):
     """The rows that are needed: from the last one at or before the first time to the first one at or after the last."""
-    start, end = times[0], times[-1]
+    start = times[0]
+    end = times[-1]
     if clock[0] > start + CLOSE or clock[-1] < end - CLOSE:
         found = f"The table goes from {clock[0]:.9g} s to {clock[-1]:.9g} s, the run from {start:.9g} s to {end:.9g} s."
         remedy = "Start later or stop earlier: the table has to cover the run from the first step to the last."
@@ -163,23 +182,30 @@ def _gaps(table, clock):
     for row in np.flatnonzero(apart > longest * (1.0 + 1e-9))[:5]:
         between = f"{clock[row]:.9g} s and {clock[row + 1]:.9g} s"
         found = f"There is no row between {between}; {longest:.3g} s are allowed."
-        remedy = "Run the components before and after it, fill it, or allow it (max_gap, --max-gap)."
+        remedy = (
+            "Run the components before and after it, fill it, or allow it (max_gap, --max-gap)."
+        )
         yield Problem("inputs", found, remedy)
 
 
 def _column(column, signal, clock, times):
     """Values of a column at the times, in the unit of the input that it feeds."""
-    how, values = column.attrs.get("interpolation", "held"), column.values
+    how = column.attrs.get("interpolation", "held")
+    values = column.values
     if how not in INTERPOLATIONS or (how == "linear" and signal.type != "Real"):
         remedy = "It can be 'held', or 'linear' for a Real."
         raise ShipcosimError(Problem("", f"interpolation = {how!r} of a {signal.type}.", remedy))
     if len(bad := np.flatnonzero(~np.isfinite(values))):
         more = f" So are {len(bad) - 1} more of the rows that are needed." if len(bad) > 1 else ""
         remedy = "Fill or drop such rows; a dropped row is held or interpolated over."
-        raise ShipcosimError(Problem("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy))
+        raise ShipcosimError(
+            Problem("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
+        )
     if signal.type != "Real" and np.any(off := values != np.round(values)):
         found = f"is {values[off][0]} at {clock[off][0]:.9g} s."
-        raise ShipcosimError(Problem("", found, f"It feeds a {signal.type}, which takes whole numbers."))
+        raise ShipcosimError(
+            Problem("", found, f"It feeds a {signal.type}, which takes whole numbers.")
+        )
     factor, offset = conversion(column.attrs.get("units"), signal.unit)
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset
     if how == "linear":
@@ -196,7 +222,8 @@ def _interpolated(clock, values, times, turn):
     """Values between the rows, (n,); `turn` is a full turn of an angle, or None."""
     if len(clock) == 1:
         return values[_before(clock, times)]
-    row, rise = np.minimum(_before(clock, times), len(clock) - 2), np.diff(values)
+    row = np.minimum(_before(clock, times), len(clock) - 2)
+    rise = np.diff(values)
     if turn is not None:
         rise = (rise + 0.5 * turn) % turn - 0.5 * turn
     share = np.clip((times - clock[row]) / np.diff(clock)[row], 0.0, 1.0)

@@ -33,12 +33,20 @@ class SlaveSource(Protocol):
 def make_exchanges(plan: Plan) -> dict[str, Exchange]:
     """Exchange of each kind that occurs in a plan."""
     exchanges = {}
-    for kind, dtype in BUFFER_TYPES.items():  # Real is last: its external values may follow the others
+    for (
+        kind,
+        dtype,
+    ) in BUFFER_TYPES.items():  # Real is last: its external values may follow the others
         layout = plan.layouts[kind]
         if layout.outputs or layout.inputs:
             external = np.array(list(layout.external.values()), dtype=dtype)
-            type_changes = [(row, exchanges[source_kind], source) for row, source_kind, source in layout.type_changes]
-            exchanges[kind] = Exchange(len(layout.outputs), external, layout.connections, type_changes)
+            type_changes = [
+                (row, exchanges[source_kind], source)
+                for row, source_kind, source in layout.type_changes
+            ]
+            exchanges[kind] = Exchange(
+                len(layout.outputs), external, layout.connections, type_changes
+            )
     return exchanges
 
 
@@ -73,15 +81,24 @@ def make_components(
         If an FMU cannot be instantiated or does not take its start values.
     """
     instances = {}
-    feeding = {connection.source[0] for connection in plan.system.connections if connection.target[0] is not None}
+    feeding = {
+        connection.source[0]
+        for connection in plan.system.connections
+        if connection.target[0] is not None
+    }
     for component in plan.system.components.values():
         check_interrupt()
-        fmu, name, multiple = component.fmu, component.name, plan.multiples[component.name]
+        fmu = component.fmu
+        name = component.name
+        multiple = plan.multiples[component.name]
         try:
             slave = slaves.instance_of(component)
             if isinstance(slave, ModelExchange):
                 slave.followed = followed_inputs(inner, name)
-            set_start_values(slave, [(fmu.variables[variable], value) for variable, value in component.start.items()])
+            set_start_values(
+                slave,
+                [(fmu.variables[variable], value) for variable, value in component.start.items()],
+            )
         except SlaveError as error:
             raise Failure(Problem(name, f"{fmu.path.name} cannot be started. {error}")) from error
         # The step, for an FMU that can take no other one.
@@ -98,9 +115,18 @@ def make_string_connections(plan: Plan, components: Components) -> list[StringCo
     """Connections between String or Binary variables."""
     made = []
     for connection in plan.string_connections:
-        source, target = (_instance(components, end) for end in (connection.source, connection.target))
-        ends = source.slave, plan.variable(connection.source), target.slave, plan.variable(connection.target)
-        made.append(StringConnection(*ends, connection.mapping, lcm(source.multiple, target.multiple)))
+        source, target = (
+            _instance(components, end) for end in (connection.source, connection.target)
+        )
+        ends = (
+            source.slave,
+            plan.variable(connection.source),
+            target.slave,
+            plan.variable(connection.target),
+        )
+        made.append(
+            StringConnection(*ends, connection.mapping, lcm(source.multiple, target.multiple))
+        )
     return made
 
 

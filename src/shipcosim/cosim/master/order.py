@@ -20,7 +20,8 @@ def sources_first(system: System) -> list[str]:
     names = list(system.components)
     feeds = {name: set() for name in names}
     for connection in system.connections:
-        source, target = connection.source[0], connection.target[0]
+        source = connection.source[0]
+        target = connection.target[0]
         if source and target and source != target:
             feeds[target].add(source)
     ordered = []

@@ -50,13 +50,19 @@ class Layout:
     @property
     def names(self) -> tuple[list[str], list[str]]:
         """Names of the sources and of the inputs, for messages."""
-        return [label(end) for end in (*self.outputs, *self.external)], [label(end) for end in self.inputs]
+        return [label(end) for end in (*self.outputs, *self.external)], [
+            label(end) for end in self.inputs
+        ]
 
     @property
     def transferred_names(self) -> list[str]:
         """Names of all that connections bring: the inputs and, behind them, the terms of those that are sums."""
-        sums = [(label(end), len(c.terms)) for end, c in zip(self.inputs, self.connections, strict=True)]
-        return [label(end) for end in self.inputs] + [f"{name}[{i}]" for name, n in sums for i in range(n)]
+        sums = [
+            (label(end), len(c.terms)) for end, c in zip(self.inputs, self.connections, strict=True)
+        ]
+        return [label(end) for end in self.inputs] + [
+            f"{name}[{i}]" for name, n in sums for i in range(n)
+        ]
 
 
 @dataclass(frozen=True)
@@ -148,13 +154,18 @@ def make_plan(
     ShipcosimError
         If the master cannot run this: no interface type that it can run, steps that do not fit.
     """
-    base, duration = scenario.step_size, scenario.stop_time - start_time
-    problems = [p for c in system.components.values() for p in _component_problems(c, base, duration)]
+    base = scenario.step_size
+    duration = scenario.stop_time - start_time
+    problems = [
+        p for c in system.components.values() for p in _component_problems(c, base, duration)
+    ]
     if problems := problems + list(_connection_problems(system)):
         raise ShipcosimError(problems)
     ends = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     ends |= {system.split(signal) for signal in modified}
-    multiples = {name: whole_steps(c.step_size or base, base) or 1 for name, c in system.components.items()}
+    multiples = {
+        name: whole_steps(c.step_size or base, base) or 1 for name, c in system.components.items()
+    }
     layouts = {kind: Layout() for kind in BUFFER_TYPES}
     plan = Plan(system, multiples, layouts, [], [], set(), ends, _kinds(system))
     _lay_out(plan, _sorted_connections(plan, from_table))
@@ -178,7 +189,11 @@ def _sorted_connections(plan, from_table):
 
 
 def _kinds(system):
-    types = {variable.type for component in system.components.values() for variable in component.fmu.variables.values()}
+    types = {
+        variable.type
+        for component in system.components.values()
+        for variable in component.fmu.variables.values()
+    }
     return KINDS | ({"Integer": "Long", "Enumeration": "Long"} if types.intersection(WIDE) else {})
 
 
@@ -187,16 +202,27 @@ def _component_problems(component, base, duration):
     if interface_type_of(component) is None:
         yield Problem(component.name, *missing_interface_type(component))
     if step is not None and not whole_steps(step, base):
-        yield Problem(component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s.")
+        yield Problem(
+            component.name, f"its step of {step:g} s is no multiple of the step size {base:g} s."
+        )
     elif step is not None and whole_steps(duration, step) is None:
-        yield Problem(component.name, f"its step of {step:g} s does not divide the run's {duration:g} s.")
+        yield Problem(
+            component.name, f"its step of {step:g} s does not divide the run's {duration:g} s."
+        )
     arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
     if arrays:
-        yield Problem(component.name, f"has arrays that are not taken apart: {', '.join(arrays[:5])}.")
+        yield Problem(
+            component.name, f"has arrays that are not taken apart: {', '.join(arrays[:5])}."
+        )
     for variable in component.fmu.variables.values():
-        if variable.type == "UInt64" and (start := component.start_value(variable.name) or 0) >= 2**63:
+        if (
+            variable.type == "UInt64"
+            and (start := component.start_value(variable.name) or 0) >= 2**63
+        ):
             yield Problem(
-                component.name, f"{variable.name} starts with {start}.", "Values of 64 bits end at 2**63 - 1."
+                component.name,
+                f"{variable.name} starts with {start}.",
+                "Values of 64 bits end at 2**63 - 1.",
             )
     for found in resized(component):
         yield Problem(component.name, found, RESIZE)
@@ -205,10 +231,17 @@ def _component_problems(component, base, duration):
 def _connection_problems(system):
     for connection in system.connections:
         name = connection.target[0]
-        if name is not None and system.components[name].fmu.variables[connection.target[1]].kind == "Clock":
+        if (
+            name is not None
+            and system.components[name].fmu.variables[connection.target[1]].kind == "Clock"
+        ):
             found = "is a Clock. FMUs are stepped without event mode, in which clocks do not tick."
             yield Problem(label(connection.target), found, "Leave the clock unconnected.")
-        if connection.initial and name is not None and system.components[name].fmu.fmi_version == "1.0":
+        if (
+            connection.initial
+            and name is not None
+            and system.components[name].fmu.fmi_version == "1.0"
+        ):
             found = "its value comes from a connection, but FMI 1.0 has no initialisation mode to set it in."
             yield Problem(label(connection.target), found, "Set it as a start value.")
 
@@ -218,7 +251,9 @@ def _has_values(source, plan, from_table):
     component, name = source
     if component is not None:
         return True
-    signal = plan.system.inputs.get(name)  # what a parameter of the system passes on are start values already
+    signal = plan.system.inputs.get(
+        name
+    )  # what a parameter of the system passes on are start values already
     if signal is None or signal.type == "String":
         return False
     return signal.start is not None or name in from_table or source in plan.modified
@@ -229,7 +264,8 @@ def _lay_out(plan, by_input):
     sources = {connection.source for connections in by_input.values() for connection in connections}
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
-            end, kind = (component.name, variable.name), plan.kind(variable)
+            end = (component.name, variable.name)
+            kind = plan.kind(variable)
             if kind is not None and (variable.causality == "output" or end in sources):
                 plan.layouts[kind].outputs.append(end)
     for component in plan.system.components.values():
@@ -238,7 +274,9 @@ def _lay_out(plan, by_input):
             if end in by_input or (end in plan.modified and variable.causality != "output"):
                 layout = plan.layouts[plan.kind(variable)]
                 layout.inputs.append(end)
-                first, *more = [_input_connection(plan, layout, end, c) for c in by_input.get(end, [None])]
+                first, *more = [
+                    _input_connection(plan, layout, end, c) for c in by_input.get(end, [None])
+                ]
                 layout.connections.append(replace(first, added=tuple(more)))
 
 

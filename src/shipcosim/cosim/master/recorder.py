@@ -22,7 +22,8 @@ class Recorders:
     """
 
     def __init__(self, by_kind: dict[str, Recorder]):
-        self.by_kind, self.n_rows = by_kind, 0
+        self.by_kind = by_kind
+        self.n_rows = 0
 
     def record(self) -> None:
         """Keep the present values as the next row."""
@@ -56,7 +57,13 @@ class Recorder:
         If the table does not fit into memory.
     """
 
-    def __init__(self, exchange: Exchange, n_rows: int, external: Sequence[int] = (), inputs: Sequence[int] = ()):
+    def __init__(
+        self,
+        exchange: Exchange,
+        n_rows: int,
+        external: Sequence[int] = (),
+        inputs: Sequence[int] = (),
+    ):
         self._exchange = exchange
         self._n_outputs = len(exchange.outputs)
         self.external = np.array(external, dtype=int) + self._n_outputs
@@ -74,7 +81,8 @@ class Recorder:
 
     def record(self, row: int) -> None:
         """Keep the present values as a row."""
-        values, sources = self.rows[row], self._exchange.modified_sources
+        values = self.rows[row]
+        sources = self._exchange.modified_sources
         values[: self._n_outputs] = sources[: self._n_outputs]
         if len(self.external):
             values[self._n_outputs : self._first_input] = sources[self.external]

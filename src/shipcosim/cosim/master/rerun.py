@@ -23,10 +23,18 @@ def changed_values(before: System, system: System) -> dict[str, Values] | None:
     before, system : System
         Made from one system by `with_values`.
     """
-    if system.connections is not before.connections or list(system.components) != list(before.components):
+    if system.connections is not before.connections or list(system.components) != list(
+        before.components
+    ):
         return None
-    inputs = ({name: signal.start is None for name, signal in one.inputs.items()} for one in (before, system))
-    found = {name: _changed(before.components[name], component) for name, component in system.components.items()}
+    inputs = (
+        {name: signal.start is None for name, signal in one.inputs.items()}
+        for one in (before, system)
+    )
+    found = {
+        name: _changed(before.components[name], component)
+        for name, component in system.components.items()
+    }
     if next(inputs) != next(inputs) or any(values is None for values in found.values()):
         return None
     return {name: values for name, values in found.items() if values is not None}
@@ -39,8 +47,11 @@ def _changed(before: Component, component: Component) -> Values | None:
         or before.start.keys() - component.start
     ):
         return None
-    variables, unknown = component.fmu.variables, object()
-    pairs = ((name, value, before.start.get(name, unknown)) for name, value in component.start.items())
+    variables = component.fmu.variables
+    unknown = object()
+    pairs = (
+        (name, value, before.start.get(name, unknown)) for name, value in component.start.items()
+    )
     return [(variables[name], value) for name, value, earlier in pairs if value is not earlier]
 
 
@@ -49,11 +60,17 @@ def with_numbers(plan: Plan, system: System) -> Plan:
 
     def start(end):
         component, name = end
-        return (system.inputs[name].start if component is None else system.components[component].start_value(name)) or 0
+        return (
+            system.inputs[name].start
+            if component is None
+            else system.components[component].start_value(name)
+        ) or 0
 
     layouts = {}
     for kind, layout in plan.layouts.items():
         following = {row for row, _, _ in layout.type_changes}
-        external = {end: 0 if row in following else start(end) for row, end in enumerate(layout.external)}
+        external = {
+            end: 0 if row in following else start(end) for row, end in enumerate(layout.external)
+        }
         layouts[kind] = replace(layout, external=external)
     return replace(plan, system=system, layouts=layouts)

@@ -17,7 +17,10 @@ from shipcosim.scenario import Scenario
 from shipcosim.snapshot import Snapshot
 from shipcosim.ssp import System
 
-ABILITIES = ("canGetAndSetFMUstate", "canSerializeFMUstate"), ("canGetAndSetFMUState", "canSerializeFMUState")
+ABILITIES = (
+    ("canGetAndSetFMUstate", "canSerializeFMUstate"),
+    ("canGetAndSetFMUState", "canSerializeFMUState"),
+)
 """What an FMU has to declare so that its state can be stored, in FMI 2.0 and 3.0."""
 
 
@@ -31,7 +34,9 @@ def check_storable(system: System) -> None:
             problems.append(Problem(component.name, found, "Run the system without storing it."))
             continue
         needed = ABILITIES[fmu.fmi_version.startswith("3")]
-        lacking = [name for name in needed if fmu.interfaces["CoSimulation"].get(name) not in ("true", "1")]
+        lacking = [
+            name for name in needed if fmu.interfaces["CoSimulation"].get(name) not in ("true", "1")
+        ]
         if lacking:
             found = f"{fmu.path.name} cannot store its state: it does not declare {' and '.join(lacking)}."
             problems.append(Problem(component.name, found, "Run the system without storing it."))
@@ -41,34 +46,50 @@ def check_storable(system: System) -> None:
 
 def check_fit(snapshot: Snapshot, system: System, scenario: Scenario) -> None:
     """Raise ShipcosimError where a system or a scenario cannot go on from a snapshot."""
-    where, problems = f"snapshot at {snapshot.time:g} s", []
+    where = f"snapshot at {snapshot.time:g} s"
+    problems = []
     if scenario.step_size != snapshot.step_size:
         found = f"it was stored in a run with steps of {snapshot.step_size:g} s, this one has {scenario.step_size:g} s."
         problems.append(Problem(where, found, "The step size cannot change on the way."))
     if set(snapshot.fmus) != set(system.components):
-        found = f"it holds {', '.join(snapshot.fmus)}; the system has {', '.join(system.components)}."
+        found = (
+            f"it holds {', '.join(snapshot.fmus)}; the system has {', '.join(system.components)}."
+        )
         problems.append(Problem(where, found, "Continue with the system that was stored."))
     else:
-        problems += _changed_fmus(snapshot, system, where) or _changed_values(snapshot, system, where)
+        problems += _changed_fmus(snapshot, system, where) or _changed_values(
+            snapshot, system, where
+        )
     if problems:
         raise ShipcosimError(problems)
 
 
 def _changed_fmus(snapshot, system, where):
     present = hashes(system)
-    remedy = "A state belongs to the code that it comes from. Continue with the FMU that was stored."
+    remedy = (
+        "A state belongs to the code that it comes from. Continue with the FMU that was stored."
+    )
     return [
-        Problem(where, f"{name}: {component.fmu.path.name} is another FMU than the one that was stored.", remedy)
+        Problem(
+            where,
+            f"{name}: {component.fmu.path.name} is another FMU than the one that was stored.",
+            remedy,
+        )
         for name, component in system.components.items()
         if present[name] != snapshot.fmus[name]
     ]
 
 
 def _changed_values(snapshot, system, where):
-    present, stored = start_values(system), snapshot.start_values
+    present = start_values(system)
+    stored = snapshot.start_values
     remedy = "It is part of the stored state. An event can change inputs, outputs and tunable parameters."
     return [
-        Problem(where, f"{name} was {stored.get(name)!r} and would now be {present.get(name)!r}.", remedy)
+        Problem(
+            where,
+            f"{name} was {stored.get(name)!r} and would now be {present.get(name)!r}.",
+            remedy,
+        )
         for name in sorted(present | stored)
         if present.get(name) != stored.get(name)
     ]
@@ -96,13 +117,21 @@ def take_snapshot(
     Failure
         If an FMU does not give its state.
     """
-    outputs, inputs, modifiers = {}, {}, modifiers_after(scenario, plan, grid, active)
+    outputs = {}
+    inputs = {}
+    modifiers = modifiers_after(scenario, plan, grid, active)
     for kind, exchange in exchanges.items():
         layout = plan.layouts[kind]
         outputs |= zip(map(label, layout.outputs), exchange.outputs.tolist(), strict=True)
         inputs |= zip(layout.transferred_names, exchange.transferred.tolist(), strict=True)
-        modifiers |= {label(layout.outputs[row]): found for row, found in exchange.output_modifiers.active.items()}
-        modifiers |= {label(layout.inputs[row]): found for row, found in exchange.input_modifiers.active.items()}
+        modifiers |= {
+            label(layout.outputs[row]): found
+            for row, found in exchange.output_modifiers.active.items()
+        }
+        modifiers |= {
+            label(layout.inputs[row]): found
+            for row, found in exchange.input_modifiers.active.items()
+        }
     return Snapshot(
         system=plan.system.name,
         start_time=grid.start_time,
@@ -113,7 +142,10 @@ def take_snapshot(
         outputs=outputs,
         inputs=inputs,
         changes=modifiers,
-        states={name: _stored(component, component.slave.state) for name, component in components.items()},
+        states={
+            name: _stored(component, component.slave.state)
+            for name, component in components.items()
+        },
     )
 
 
@@ -157,4 +189,6 @@ def _stored(component, call, *arguments):
     try:
         return call(*arguments)
     except SlaveError as error:
-        raise Failure(Problem(component.name, f"its state cannot be stored or restored. {error}")) from error
+        raise Failure(
+            Problem(component.name, f"its state cannot be stored or restored. {error}")
+        ) from error

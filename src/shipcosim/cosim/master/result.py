@@ -26,11 +26,17 @@ def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
     """
     layout = plan.layouts[kind]
     external = [i for i, end in enumerate(layout.external) if end[0] is None]
-    inputs = [i for i, end in enumerate(layout.inputs) if end not in plan.connected or end in plan.modified]
+    inputs = [
+        i
+        for i, end in enumerate(layout.inputs)
+        if end not in plan.connected or end in plan.modified
+    ]
     return external, inputs
 
 
-def columns_of(plan: Plan, n_rows: int, recorded: Mapping[str, Sequence[np.ndarray]]) -> list[Column]:
+def columns_of(
+    plan: Plan, n_rows: int, recorded: Mapping[str, Sequence[np.ndarray]]
+) -> list[Column]:
     """Columns of the table of a run.
 
     Parameters
@@ -52,7 +58,9 @@ def columns_of(plan: Plan, n_rows: int, recorded: Mapping[str, Sequence[np.ndarr
         external, inputs = recorded_rows(plan, kind)
         names = list(layout.external)
         ends = [*layout.outputs, *(names[i] for i in external), *(layout.inputs[i] for i in inputs)]
-        values |= zip(ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True)
+        values |= zip(
+            ends, (a.astype(bool) if kind == "Boolean" else a for a in arrays), strict=True
+        )
     return [*_connectors(plan, values), *_variables(plan, values, n_rows)]
 
 
@@ -65,12 +73,19 @@ def _connectors(plan, values):
         if connection.target[0] is None and (source := values.get(connection.source)) is not None:
             signal = plan.system.outputs.get(connection.target[1])
             if signal is not None:
-                yield signal.name, _passed_on(source, connection), signal.unit or "", signal.description
+                yield (
+                    signal.name,
+                    _passed_on(source, connection),
+                    signal.unit or "",
+                    signal.description,
+                )
 
 
 def _passed_on(values, connection):
     if connection.mapping is not None:
-        values = np.array([connection.mapping.get(v, v) for v in values.tolist()], dtype=values.dtype)
+        values = np.array(
+            [connection.mapping.get(v, v) for v in values.tolist()], dtype=values.dtype
+        )
     if (connection.factor, connection.offset) != (1.0, 0.0):
         values = connection.factor * values + connection.offset
     return values
@@ -80,9 +95,15 @@ def _variables(plan, values, n):
     """Columns of the components' outputs and external values, in the order of the system and of the FMUs."""
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
-            end, kind = (component.name, variable.name), plan.kind(variable)
+            end = (component.name, variable.name)
+            kind = plan.kind(variable)
             column = values.get(end)
-            if column is None and kind and variable.causality == "input" and end not in plan.connected:
+            if (
+                column is None
+                and kind
+                and variable.causality == "input"
+                and end not in plan.connected
+            ):
                 start = component.start_value(variable.name) or 0
                 column = np.full(n, start, dtype=bool if kind == "Boolean" else BUFFER_TYPES[kind])
             if column is not None and variable.causality in ("input", "output", "parameter"):
@@ -109,9 +130,14 @@ def hashes(system: System) -> dict[str, str]:
 def attributes_of(system: System, scenario: Scenario) -> dict:
     """What has to be known to repeat a run, as texts and numbers."""
     starts = start_values(system)
-    starts |= {name: signal.start for name, signal in system.inputs.items() if signal.start is not None}
+    starts |= {
+        name: signal.start for name, signal in system.inputs.items() if signal.start is not None
+    }
     digests = hashes(system)
-    fmus = {c.name: {"file": c.fmu.path.name, "sha256": digests[c.name]} for c in system.components.values()}
+    fmus = {
+        c.name: {"file": c.fmu.path.name, "sha256": digests[c.name]}
+        for c in system.components.values()
+    }
     return {
         "scenario": scenario.name,
         "description": scenario.description,
@@ -125,7 +151,9 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
         "numpy_version": version("numpy"),
         "python_version": platform.python_version(),
         "start_values": json.dumps(starts, default=str),
-        "seeds": json.dumps({name: value for name, value in starts.items() if name.endswith("seed")}),
+        "seeds": json.dumps(
+            {name: value for name, value in starts.items() if name.endswith("seed")}
+        ),
         "events": json.dumps([event.model_dump() for event in scenario.events]),
         "fmus": json.dumps(fmus),
         "swapped": json.dumps({name: Path(file).name for name, file in system.swapped.items()}),
@@ -135,7 +163,9 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
 def fingerprint(system: System) -> str:
     """SHA-256 of how a system is wired: components, connections, connectors; start values are not part of it."""
     wiring = {
-        "components": [(c.name, c.step_size, *_interface_asked_for(c)) for c in system.components.values()],
+        "components": [
+            (c.name, c.step_size, *_interface_asked_for(c)) for c in system.components.values()
+        ],
         "connections": [
             (c.source, c.target, c.factor, c.offset, list((c.mapping or {}).items()), c.initial)
             for c in system.connections

@@ -26,7 +26,12 @@ from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
 from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
-from shipcosim.cosim.master.restore import check_fit, check_storable, restore_snapshot, take_snapshot
+from shipcosim.cosim.master.restore import (
+    check_fit,
+    check_storable,
+    restore_snapshot,
+    take_snapshot,
+)
 from shipcosim.cosim.master.result import Column, attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
@@ -61,13 +66,16 @@ class Interrupted(KeyboardInterrupt):
 
 def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Dataset:
     """Run a checked system with our own master. See `shipcosim.cosim.simulate`."""
-    resume, store = opened(options.resume), writer(options.store)
+    resume = opened(options.resume)
+    store = writer(options.store)
     if resume is not None:
         check_fit(resume, system, scenario)
     if store is not None:
         check_storable(system)
     start_time, first = (resume.start_time, resume.step) if resume else (options.start_time, 0)
-    simulation = Simulation(system, scenario, time_grid_of(scenario, start_time, first, options.until), options, resume)
+    simulation = Simulation(
+        system, scenario, time_grid_of(scenario, start_time, first, options.until), options, resume
+    )
     instances = IsolatedInstances(system, options.timeout) if options.isolate else Instances()
     with delayed_interrupt() as check_interrupt, instances:
         simulation.run(instances, check_interrupt, options.progress)
@@ -110,16 +118,25 @@ class Simulation:
         resume: Snapshot | None = None,
         repeated: bool = False,
     ):
-        order, inputs, self._engine = options.order, options.inputs, options.engine
+        order = options.order
+        inputs = options.inputs
+        self._engine = options.engine
         if order not in ORDERS:
-            raise ShipcosimError(f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}")
-        self._scenario, self._grid, self._order, self._inputs, self._resume = scenario, grid, order, inputs, resume
+            raise ShipcosimError(
+                f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}"
+            )
+        self._scenario = scenario
+        self._grid = grid
+        self._order = order
+        self._inputs = inputs
+        self._resume = resume
         self._fed = fed = input_values(inputs, system, grid.run_times) if inputs is not None else {}
         self._active = resume.changes if resume else {}
         self._plan = make_plan(system, scenario, fed, self._active, grid.start_time)
         self._exchanges = make_exchanges(self._plan)
         self._external = self._external_over_time()
-        self._repeated, self._fresh = repeated, None
+        self._repeated = repeated
+        self._fresh = None
         self._components: Components = {}
         self._together: list[set[str]] = []
         self._remarks: list[str] = []
@@ -153,7 +170,8 @@ class Simulation:
         RunError, Interrupted
             With the table so far.
         """
-        exchanges, grid = self._exchanges, self._grid
+        exchanges = self._exchanges
+        grid = self._grid
         try:
             if self._master is None:
                 self._instantiate(slaves, check_interrupt)
@@ -161,7 +179,9 @@ class Simulation:
             assert master is not None
             master.initialise(grid.start_time, grid.stop_time)
             if self._resume is not None:
-                restore_snapshot(self._resume, self._plan, exchanges, self._strings, self._components)
+                restore_snapshot(
+                    self._resume, self._plan, exchanges, self._strings, self._components
+                )
                 master.resume(grid.first)
             actions = event_actions(self._scenario, self._plan, exchanges, grid)
             master.run(grid, actions, self._external, self._recorders, progress)
@@ -172,15 +192,30 @@ class Simulation:
 
     def _instantiate(self, slaves, check_interrupt):
         """Instantiate the FMUs and wire them."""
-        plan, exchanges, step_size = self._plan, self._exchanges, self._scenario.step_size
-        apart = "" if isinstance(slaves, Instances) else "isolated, each has a process and a solver of its own"
-        apart = apart if self._order == "jacobi" else "one after the other, each steps with a solver of its own"
+        plan = self._plan
+        exchanges = self._exchanges
+        step_size = self._scenario.step_size
+        apart = (
+            ""
+            if isinstance(slaves, Instances)
+            else "isolated, each has a process and a solver of its own"
+        )
+        apart = (
+            apart
+            if self._order == "jacobi"
+            else "one after the other, each steps with a solver of its own"
+        )
         inner = [] if apart else inner_connections(plan)
         self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
-        self._components = make_components(plan, exchanges, slaves, step_size, check_interrupt, inner)
+        self._components = make_components(
+            plan, exchanges, slaves, step_size, check_interrupt, inner
+        )
         couple(plan, self._components, stepping_order(plan, self._order), inner)
         if self._repeated and can_rewind(plan, self._components):
-            states = {name: one.slave.python_object._get_fmu_state() for name, one in self._components.items()}
+            states = {
+                name: one.slave.python_object._get_fmu_state()
+                for name, one in self._components.items()
+            }
             self._fresh = plan.system, states
         self._together = groups_of(inner)
         self._strings = make_string_connections(plan, self._components)
@@ -203,7 +238,11 @@ class Simulation:
             return False
         self._plan = with_numbers(self._plan, system)
         for kind, exchange in self._exchanges.items():
-            exchange.reset(np.array(list(self._plan.layouts[kind].external.values()), dtype=exchange.sources.dtype))
+            exchange.reset(
+                np.array(
+                    list(self._plan.layouts[kind].external.values()), dtype=exchange.sources.dtype
+                )
+            )
         self._external, self._recorders.n_rows = self._external_over_time(), 0
         try:
             for name, component in self._components.items():
@@ -218,7 +257,12 @@ class Simulation:
             self._master.give_back()
         try:
             return take_snapshot(
-                self._plan, self._exchanges, self._components, self._grid, self._scenario, self._active
+                self._plan,
+                self._exchanges,
+                self._components,
+                self._grid,
+                self._scenario,
+                self._active,
             )
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=True)) from failure
@@ -252,14 +296,21 @@ class Simulation:
         if self._resume is not None:
             known["continued_from"] = self._resume.time
         if self._together:
-            known["integrated_together"] = "; ".join(", ".join(sorted(group)) for group in self._together)
+            known["integrated_together"] = "; ".join(
+                ", ".join(sorted(group)) for group in self._together
+            )
         return known | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
 
     def remarks(self) -> list[str]:
         """What does not stop the run and should be known, each once."""
         in_python = self._master.reasons if isinstance(self._master, CompiledMaster) else {}
-        remarks = [*self._remarks, *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items())]
-        remarks += [text for component in self._components.values() for text in component.slave.remarks()]
+        remarks = [
+            *self._remarks,
+            *(f"stepped by Python, {name}: {reason}" for name, reason in in_python.items()),
+        ]
+        remarks += [
+            text for component in self._components.values() for text in component.slave.remarks()
+        ]
         return list(dict.fromkeys(remarks))
 
     def table(self, complete: bool) -> xarray.Dataset:
@@ -270,7 +321,9 @@ class Simulation:
         """External values of each exchange that change, and what they are at each step of the time grid."""
         changing = []
         for kind, exchange in self._exchanges.items():
-            values = external_values(self._scenario, self._plan, kind, self._grid, self._fed, self._active)
+            values = external_values(
+                self._scenario, self._plan, kind, self._grid, self._fed, self._active
+            )
             if values is not None:
                 exchange.external[:] = values[0]
                 changing.append((exchange.external, values))

@@ -44,7 +44,11 @@ class InputConnection:
     def transferred(self, values: np.ndarray) -> np.ndarray:
         """What arrives over time of a source: (n,) arrays with one value for each base step."""
         values = values[np.arange(len(values)) // self.period * self.period]
-        passed = values if self.mapping is None else np.array([self.mapping.get(v, v) for v in values.tolist()])
+        passed = (
+            values
+            if self.mapping is None
+            else np.array([self.mapping.get(v, v) for v in values.tolist()])
+        )
         if (self.factor, self.offset) != (1.0, 0.0):
             passed = self.factor * passed + self.offset
         return passed.astype(values.dtype)
@@ -151,14 +155,17 @@ class Exchange:
     ):
         dtype = external.dtype
         self.sources = np.concatenate([np.zeros(n_outputs, dtype=dtype), external])
-        self.outputs, self.external = self.sources[:n_outputs], self.sources[n_outputs:]
+        self.outputs = self.sources[:n_outputs]
+        self.external = self.sources[n_outputs:]
         self.modified_sources = self.sources.copy()
         self.numbered = single, self._sums, n = _numbered(connections)
         self.transferred = np.zeros(n, dtype=dtype)
         self.inputs = np.zeros(len(connections), dtype=dtype)
         self._unmodified_inputs = self.transferred[: len(connections)]
-        self.output_modifiers, self.input_modifiers = Modifiers(), Modifiers()
-        self.version, self._counts_versions = 0, dtype.kind != "f"
+        self.output_modifiers = Modifiers()
+        self.input_modifiers = Modifiers()
+        self.version = 0
+        self._counts_versions = dtype.kind != "f"
         self.type_changes = type_changes
         periods = sorted({connection.period for _, connection in single})
         self._groups = [_ConnectionGroup(single, period, n) for period in periods]
@@ -171,8 +178,10 @@ class Exchange:
             array[:] = 0
         self.external[:] = external
         self.modified_sources[:] = self.sources
-        self.output_modifiers, self.input_modifiers = Modifiers(), Modifiers()
-        self.version, self._passed_on = 0, ()
+        self.output_modifiers = Modifiers()
+        self.input_modifiers = Modifiers()
+        self.version = 0
+        self._passed_on = ()
 
     def transfer(self, count: int) -> None:
         """Pass on what is due after `count` base steps, transformed and with overrides and biases.
@@ -216,9 +225,14 @@ def _numbered(connections):
 
     The terms of sums have rows of their own, behind those of the inputs.
     """
-    single = [(row, connection) for row, connection in enumerate(connections) if not connection.added]
-    sums, n = [], len(connections)
-    for row, terms in ((row, connection.terms) for row, connection in enumerate(connections) if connection.added):
+    single = [
+        (row, connection) for row, connection in enumerate(connections) if not connection.added
+    ]
+    sums = []
+    n = len(connections)
+    for row, terms in (
+        (row, connection.terms) for row, connection in enumerate(connections) if connection.added
+    ):
         single += enumerate(terms, start=n)
         sums.append((row, slice(n, n + len(terms))))
         n += len(terms)
@@ -231,13 +245,23 @@ class _ConnectionGroup:
     def __init__(self, single, period, n):
         rows = [row for row, connection in single if connection.period == period]
         due = [connection for _, connection in single if connection.period == period]
-        self.period, self.rows, self.is_all = period, np.array(rows, dtype=int), len(rows) == n
+        self.period = period
+        self.rows = np.array(rows, dtype=int)
+        self.is_all = len(rows) == n
         self.sources = np.array([connection.source for connection in due], dtype=int)
-        linear = [i for i, connection in enumerate(due) if (connection.factor, connection.offset) != (1.0, 0.0)]
+        linear = [
+            i
+            for i, connection in enumerate(due)
+            if (connection.factor, connection.offset) != (1.0, 0.0)
+        ]
         self.linear = np.array(linear, dtype=int)
         self.factor = np.array([due[i].factor for i in linear])
         self.offset = np.array([due[i].offset for i in linear])
-        self.mappings = [(i, connection.mapping) for i, connection in enumerate(due) if connection.mapping is not None]
+        self.mappings = [
+            (i, connection.mapping)
+            for i, connection in enumerate(due)
+            if connection.mapping is not None
+        ]
 
     def transfer(self, sources, transferred):
         values = transferred if self.is_all else np.empty(len(self.rows), dtype=transferred.dtype)

@@ -51,7 +51,9 @@ class TimeGrid:
         return self.times[first_row : self.last + 1 : self.steps_per_row]
 
 
-def time_grid_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, until: float | None = None) -> TimeGrid:
+def time_grid_of(
+    scenario: Scenario, start_time: float = 0.0, first: int = 0, until: float | None = None
+) -> TimeGrid:
     """Time grid of a run.
 
     Parameters
@@ -70,10 +72,15 @@ def time_grid_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, un
     ShipcosimError
         If a time does not fall on a step, or nothing is left to do.
     """
-    step, end = scenario.step_size, scenario.stop_time if until is None else until
+    step = scenario.step_size
+    end = scenario.stop_time if until is None else until
     n, last = (whole_steps(time - start_time, step) for time in (scenario.stop_time, end))
-    ends = {"stop time": (scenario.stop_time, n)} | ({} if until is None else {"until": (until, last)})
-    problems = [Problem(name, *_off_step(t, start_time, step)) for name, (t, k) in ends.items() if k is None]
+    ends = {"stop time": (scenario.stop_time, n)} | (
+        {} if until is None else {"until": (until, last)}
+    )
+    problems = [
+        Problem(name, *_off_step(t, start_time, step)) for name, (t, k) in ends.items() if k is None
+    ]
     if n is not None and last is not None and not first < last <= n:
         begin = start_time + first * step
         found = f"the run would go from {begin:g} s to {end:g} s."
@@ -91,4 +98,7 @@ def time_grid_of(scenario: Scenario, start_time: float = 0.0, first: int = 0, un
 
 def _off_step(time, start_time, step):
     nearest = start_time + max(1, round((time - start_time) / step)) * step
-    return f"{time:g} s is no whole number of steps of {step:g} s after {start_time:g} s.", f"{nearest:.9g} s would be."
+    return (
+        f"{time:g} s is no whole number of steps of {step:g} s after {start_time:g} s.",
+        f"{nearest:.9g} s would be.",
+    )

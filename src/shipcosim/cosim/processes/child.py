@@ -48,7 +48,8 @@ def serve() -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
     with Instances() as instances:
-        handler, failure = RequestHandler(instances), None
+        handler = RequestHandler(instances)
+        failure = None
         send(target, (True, None, []))
         while True:
             try:
@@ -59,7 +60,14 @@ def serve() -> None:
                 result, failure = _done(getattr(handler, function), arguments)
             if wants_answer:
                 flush()
-                send(target, (failure is None, result if failure is None else failure, handler.new_messages()))
+                send(
+                    target,
+                    (
+                        failure is None,
+                        result if failure is None else failure,
+                        handler.new_messages(),
+                    ),
+                )
                 failure = None
 
 
@@ -83,7 +91,8 @@ class RequestHandler:
     """
 
     def __init__(self, instances: Instances):
-        self._instances, self._n_told = instances, 0
+        self._instances = instances
+        self._n_told = 0
         self._slave: Any = None
         self._prepared: list[tuple[Callable, Any]] = []
 
@@ -95,7 +104,9 @@ class RequestHandler:
         """Call a method of the slave."""
         return getattr(self._slave, method)(*arguments)
 
-    def prepare(self, method: str, kind: str, variables: Sequence[Variable], buffer: np.ndarray | None) -> int:
+    def prepare(
+        self, method: str, kind: str, variables: Sequence[Variable], buffer: np.ndarray | None
+    ) -> int:
         """Prepare a call that is made often, without a buffer a step; its number."""
         arguments = () if buffer is None else (kind, variables, buffer)
         self._prepared.append((getattr(self._slave, method)(*arguments), buffer))
@@ -112,7 +123,9 @@ class RequestHandler:
         call, buffer = self._prepared[number]
         return call(), buffer.tobytes()
 
-    def step(self, number: int, time: float, step_size: float, getters: Sequence[int]) -> list[tuple[int, bytes]]:
+    def step(
+        self, number: int, time: float, step_size: float, getters: Sequence[int]
+    ) -> list[tuple[int, bytes]]:
         """Make a prepared step, then get what will be asked for next: what `get` gives for each."""
         self._slave.check("DoStep", self._prepared[number][0](time, step_size))
         return [self.get(getter) for getter in getters]
@@ -120,13 +133,15 @@ class RequestHandler:
     def new_messages(self) -> list[tuple[int, str]]:
         """Messages logged since the last time."""
         messages = self._slave.messages if self._slave else []
-        first, self._n_told = self._n_told, len(messages)
+        first = self._n_told
+        self._n_told = len(messages)
         return messages[first:]
 
 
 def _own_pipes():
     """The pipes to the run, which nobody else here gets hold of, and a function that brings out what was printed."""
-    source, target = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    source = os.fdopen(os.dup(0), "rb")
+    target = os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)

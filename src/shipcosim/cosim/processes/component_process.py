@@ -14,12 +14,15 @@ from typing import Any, BinaryIO, cast
 from shipcosim.cosim.processes.child import receive, send
 from shipcosim.cosim.slaves.slave import SlaveError
 
-START = "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
+START = (
+    "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
+)
 START_TIMEOUT = 60.0
 """For a process to start. [s]"""
 EXIT_TIMEOUT = 5.0
 """For a process that has nothing more to do. [s]"""
-MOST_LINES, LAST_LINES = 1000, 3
+MOST_LINES = 1000
+LAST_LINES = 3
 """Lines that a component prints and that are shown at most, and of them those that are told where it fails."""
 MOST_BYTES = 4096
 """Of a line that a component prints."""
@@ -40,7 +43,9 @@ class ComponentProcess:
 
     def __init__(self, name: str, folder: str, timeout: float):
         self.messages: list[tuple[int, str]] = []
-        self._name, self._timeout, self._was_late = name, timeout, False
+        self._name = name
+        self._timeout = timeout
+        self._was_late = False
         self._deadline: float | None = None
         self._last: deque[str] = deque(maxlen=LAST_LINES)
         self._process = subprocess.Popen(
@@ -87,7 +92,9 @@ class ComponentProcess:
 
     def receive_answer(self) -> Any:
         """Answer to the request that was sent."""
-        went_well, result, messages = self._within(self._requested, self._timeout, receive, self._answers)
+        went_well, result, messages = self._within(
+            self._requested, self._timeout, receive, self._answers
+        )
         self.messages += messages
         if not went_well:
             raise SlaveError(result)
@@ -160,9 +167,11 @@ class ComponentProcess:
 
     def _print_output(self):
         """Pass on to stderr what the component prints, with its name."""
-        pipe, n = cast(BinaryIO, self._process.stderr), 0
+        pipe = cast(BinaryIO, self._process.stderr)
+        n = 0
         while line := pipe.readline(MOST_BYTES):
-            text, n = line.decode("utf-8", errors="replace").rstrip() + "\n", n + 1
+            text = line.decode("utf-8", errors="replace").rstrip() + "\n"
+            n = n + 1
             self._last.append(text)
             if n <= MOST_LINES:
                 print(f"[{self._name}] {text}", end="", file=sys.stderr, flush=True)

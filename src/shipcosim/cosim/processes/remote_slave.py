@@ -34,7 +34,8 @@ class RemoteSlave(Slave):
     """
 
     def __init__(self, component: Component, process: ComponentProcess):
-        self.name, self._process = component.name, process
+        self.name = component.name
+        self._process = process
         self._is_stepping = False
         self._getters: list[int] = []
         self._fetched: dict[int, tuple[int, bytes]] = {}
@@ -46,9 +47,12 @@ class RemoteSlave(Slave):
         """What it logged: (status, text)."""
         return self._process.messages
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer; what goes wrong is said by the next call."""
-        what, number = f"Set{kind}", self._prepared("setter", kind, variables, buffer)
+        what = f"Set{kind}"
+        number = self._prepared("setter", kind, variables, buffer)
 
         def set_all():
             self._finish()
@@ -57,9 +61,12 @@ class RemoteSlave(Slave):
 
         return set_all
 
-    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def getter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
-        what, number = f"Get{kind}", self._prepared("getter", kind, variables, buffer)
+        what = f"Get{kind}"
+        number = self._prepared("getter", kind, variables, buffer)
         self._getters.append(number)
 
         def get_all():
@@ -156,11 +163,13 @@ class IsolatedInstances:
     """
 
     def __init__(self, system: System, timeout: float):
-        self._names, self._timeout = list(system.components), timeout
+        self._names = list(system.components)
+        self._timeout = timeout
 
     def __enter__(self) -> Self:
         self._processes: dict[str, ComponentProcess] = {}
-        self._over, self._stack = Event(), ExitStack()
+        self._over = Event()
+        self._stack = ExitStack()
         with self._stack:  # undoes all where a process cannot be started
             folder = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
             folder = self._stack.enter_context(folder)

@@ -16,7 +16,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.slaves.model_exchange import CLOSE, EVENT, MOST_EVENTS, TOLERANCE, ModelExchange
+from shipcosim.cosim.slaves.model_exchange import (
+    CLOSE,
+    EVENT,
+    MOST_EVENTS,
+    TOLERANCE,
+    ModelExchange,
+)
 from shipcosim.cosim.slaves.slave import OK, SlaveError
 from shipcosim.ssp import Variable
 
@@ -51,7 +57,8 @@ class CoupledModels:
     """
 
     def __init__(self, members: Mapping[str, ModelExchange], wires: Sequence[Wire]):
-        self._members, self._wires = dict(members), list(wires)
+        self._members = dict(members)
+        self._wires = list(wires)
         self._solver: Cvode | None = None
         self._slices: dict[str, slice] = {}
         self._ends = [self._prepared(name) for name in self._members]
@@ -62,12 +69,23 @@ class CoupledModels:
     def _prepared(self, name: str) -> tuple[ModelExchange, np.ndarray, tuple, np.ndarray, tuple]:
         """A member with the rows of the wires from it and into it, and the calls that get and set them."""
         slave = self._members[name]
-        sources = np.array([i for i, wire in enumerate(self._wires) if wire.source[0] == name], dtype=int)
-        targets = np.array([i for i, wire in enumerate(self._wires) if wire.target[0] == name], dtype=int)
-        got, given = np.zeros(len(sources)), np.zeros(len(targets))
-        getter = slave.getter("Real", [self._wires[i].source[1] for i in sources], got) if len(sources) else None
+        sources = np.array(
+            [i for i, wire in enumerate(self._wires) if wire.source[0] == name], dtype=int
+        )
+        targets = np.array(
+            [i for i, wire in enumerate(self._wires) if wire.target[0] == name], dtype=int
+        )
+        got = np.zeros(len(sources))
+        given = np.zeros(len(targets))
+        getter = (
+            slave.getter("Real", [self._wires[i].source[1] for i in sources], got)
+            if len(sources)
+            else None
+        )
         setter = (
-            slave.plain_setter("Real", [self._wires[i].target[1] for i in targets], given) if len(targets) else None
+            slave.plain_setter("Real", [self._wires[i].target[1] for i in targets], given)
+            if len(targets)
+            else None
         )
         return slave, sources, (getter, got), targets, (setter, given)
 
@@ -106,7 +124,8 @@ class CoupledModels:
     def _integrate(self, time, end):
         """Integrate to a time, through time and step events of the members."""
         solver = self._solver or self._start_solver()
-        near, n_events = CLOSE * max(abs(end), end - time), 0
+        near = CLOSE * max(abs(end), end - time)
+        n_events = 0
         now = time
         if any(slave.mode == EVENT for slave in self._members.values()):
             self._enter_continuous_time(solver, now)
@@ -117,7 +136,9 @@ class CoupledModels:
                 now = stop if abs(reached - stop) <= near else reached
                 self._derivatives(now, solver.states.ctypes.data_as(POINTER(c_double)), None)
             due = [
-                slave for slave in self._members.values() if slave.completed_step() or slave.next_event <= now + near
+                slave
+                for slave in self._members.values()
+                if slave.completed_step() or slave.next_event <= now + near
             ]
             if due:
                 for slave in due:
@@ -125,7 +146,9 @@ class CoupledModels:
                 self._enter_continuous_time(solver, now)
                 n_events += 1
             if n_events > MOST_EVENTS:
-                raise SlaveError(f"Together they had more than {MOST_EVENTS} events until t = {now:.9g} s.")
+                raise SlaveError(
+                    f"Together they had more than {MOST_EVENTS} events until t = {now:.9g} s."
+                )
 
     def _enter_continuous_time(self, solver: Cvode, time: float) -> None:
         """Continue in continuous time, from the states that the members now have."""
@@ -161,7 +184,9 @@ class CoupledModels:
                     slave.checked("GetReal", get())
                     self._put_out[sources] = got
             wanted = self._factor * self._put_out + self._offset
-            settled = np.abs(wanted - self._fed) <= SAME * np.maximum(np.abs(wanted), np.abs(self._fed))
+            settled = np.abs(wanted - self._fed) <= SAME * np.maximum(
+                np.abs(wanted), np.abs(self._fed)
+            )
             if settled.all():
                 return
             self._fed = wanted
@@ -170,6 +195,9 @@ class CoupledModels:
                     given[:] = wanted[targets]
                     slave.checked("SetReal", put())
         inputs = ", ".join(
-            f"{self._wires[i].target[0]}.{self._wires[i].target[1].name}" for i in np.flatnonzero(~settled)
+            f"{self._wires[i].target[0]}.{self._wires[i].target[1].name}"
+            for i in np.flatnonzero(~settled)
         )
-        raise SlaveError(f"An algebraic loop does not settle: {inputs} still change after {MOST_SWEEPS} sweeps.")
+        raise SlaveError(
+            f"An algebraic loop does not settle: {inputs} still change after {MOST_SWEEPS} sweeps."
+        )

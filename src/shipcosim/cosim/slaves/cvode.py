@@ -18,12 +18,17 @@ from fmpy.sundials.sunmatrix_dense import SUNDenseMatrix
 
 from shipcosim.cosim.slaves.sundials import Context, free_memory, freeing
 
-BDF, ONE_STEP, ROOT_RETURN = lib.CV_BDF, 2, lib.CV_ROOT_RETURN
-RECOVERABLE, UNRECOVERABLE = 1, -1
+BDF = lib.CV_BDF
+ONE_STEP = 2
+ROOT_RETURN = lib.CV_ROOT_RETURN
+RECOVERABLE = 1
+UNRECOVERABLE = -1
 
 _set_stop_time = sundials_cvode.CVodeSetStopTime
-_set_stop_time.argtypes, _set_stop_time.restype = [c_void_p, c_double], c_int
-_free_solver, _free_matrix = freeing("SUNLinSolFree", SUNLinearSolver), freeing("SUNMatDestroy", SUNMatrix)
+_set_stop_time.argtypes = [c_void_p, c_double]
+_set_stop_time.restype = c_int
+_free_solver = freeing("SUNLinSolFree", SUNLinearSolver)
+_free_matrix = freeing("SUNMatDestroy", SUNMatrix)
 
 
 class SolverError(Exception):
@@ -51,10 +56,16 @@ class Cvode:
     What the functions raise ends the step and is raised by it; returning RECOVERABLE makes CVode try a smaller step.
     """
 
-    def __init__(self, n: int, derivatives: Callable, n_roots: int, roots: Callable, tolerance: float):
-        self._n, self._derivatives, self._roots, self._tolerance = n, derivatives, roots, tolerance
+    def __init__(
+        self, n: int, derivatives: Callable, n_roots: int, roots: Callable, tolerance: float
+    ):
+        self._n = n
+        self._derivatives = derivatives
+        self._roots = roots
+        self._tolerance = tolerance
         self._error: Exception | None = None
-        self._message, self._memory = b"", None
+        self._message = b""
+        self._memory = None
         self._context = Context(self._keep_message)
         context = self._context.arguments
         self._x, self._absolute = (N_VNew_Serial(max(n, 1), *context) for _ in range(2))
@@ -63,7 +74,10 @@ class Cvode:
         self.states[:], self._tolerances[:] = 0.0, 1.0
         self._matrix = SUNDenseMatrix(max(n, 1), max(n, 1), *context)
         self._solver = SUNLinSol_Dense(self._x, self._matrix, *context)
-        self._rhs, self._root_function = lib.CVRhsFn(self._evaluate), lib.CVRootFn(self._evaluate_roots)
+        self._rhs, self._root_function = (
+            lib.CVRhsFn(self._evaluate),
+            lib.CVRootFn(self._evaluate_roots),
+        )
         self._memory = lib.CVodeCreate(BDF, *context)
         self._context.watch(self._memory)
         self._check(lib.CVodeInit(self._memory, self._rhs, 0.0, self._x))
@@ -82,7 +96,8 @@ class Cvode:
 
     def step(self, stop: float) -> tuple[float, bool]:
         """Make one internal step, at most to a time; time reached and whether a root function is zero there."""
-        reached, self._error = c_double(), None
+        reached = c_double()
+        self._error = None
         self._check(_set_stop_time(self._memory, stop))
         flag = lib.CVode(self._memory, stop, self._x, byref(reached), ONE_STEP)
         self._check(flag)
@@ -118,7 +133,8 @@ class Cvode:
 
     def _check(self, flag):
         if self._error is not None:
-            error, self._error = self._error, None
+            error = self._error
+            self._error = None
             raise error
         if flag < 0:
             raise SolverError(f"CVode: {self._message.decode(errors='replace') or f'code {flag}'}")

@@ -19,7 +19,8 @@ from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, EventUpdate
 from shipcosim.cosim.slaves.slave import FAILED, FATAL, OK, SlaveError
 from shipcosim.ssp import Variable
 
-TRUE, FALSE = b"\x01", b"\x00"
+TRUE = b"\x01"
+FALSE = b"\x00"
 
 
 class Slave1(LibrarySlave):
@@ -28,7 +29,9 @@ class Slave1(LibrarySlave):
     _prefix = "fmi1"
     _terminate = "TerminateSlave"
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
@@ -40,7 +43,9 @@ class Slave1(LibrarySlave):
 
         return set_all
 
-    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def getter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         if kind == "Long":
             return self._long_getter(variables, buffer)
@@ -56,7 +61,8 @@ class Slave1(LibrarySlave):
 
     def stepper(self) -> Callable[[float, float], int]:
         """Prepared call that advances from a time by a step size and returns the status."""
-        do_step, component = self._function("DoStep"), self.component
+        do_step = self._function("DoStep")
+        component = self.component
         return lambda time, step_size: do_step(component, time, step_size, TRUE)
 
     def enter_initialisation(self, start_time: float, stop_time: float) -> None:
@@ -77,8 +83,13 @@ class Slave1(LibrarySlave):
 
     def _prepared(self, verb, kind, variables):
         """Buffer of the FMU's own type, sign of each variable, and the call."""
-        own = np.zeros(len(variables), dtype={"Real": np.float64, "Integer": np.int32, "Boolean": np.int8}[kind])
-        signs = np.array([-1 if variable.negated and kind != "Boolean" else 1 for variable in variables])
+        own = np.zeros(
+            len(variables),
+            dtype={"Real": np.float64, "Integer": np.int32, "Boolean": np.int8}[kind],
+        )
+        signs = np.array(
+            [-1 if variable.negated and kind != "Boolean" else 1 for variable in variables]
+        )
         pointer = {"Real": c_double, "Integer": c_int, "Boolean": c_char}[kind] * len(variables)
         arguments = references(variables), c_size_t(len(variables)), pointer.from_buffer(own)
         return own, signs, partial(self._function(verb + kind), self.component, *arguments)
@@ -100,7 +111,9 @@ class Slave1(LibrarySlave):
         from fmpy.logging import addLoggerProxy
 
         callbacks = fmi1.fmi1CallbackFunctions()
-        callbacks.logger = fmi1.fmi1CallbackLoggerTYPE(lambda env, name, status, kind, text: self._log(status, text))
+        callbacks.logger = fmi1.fmi1CallbackLoggerTYPE(
+            lambda env, name, status, kind, text: self._log(status, text)
+        )
         callbacks.allocateMemory = fmi1.fmi1CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi1.fmi1CallbackFreeMemoryTYPE(free)
         addLoggerProxy(byref(callbacks))
@@ -148,7 +161,9 @@ class Model1(ModelExchange, Slave1):
         info = self._event_info()
         self.call("EventUpdate", FALSE, byref(info))
         next_event = info.nextEventTime if info.upcomingTimeEvent != FALSE else inf
-        return EventUpdate(info.iterationConverged == FALSE, info.terminateSimulation != FALSE, next_event)
+        return EventUpdate(
+            info.iterationConverged == FALSE, info.terminateSimulation != FALSE, next_event
+        )
 
     @staticmethod
     def _event_info():

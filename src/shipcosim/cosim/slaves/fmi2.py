@@ -27,7 +27,9 @@ class Slave2(LibrarySlave):
         "deserialise": "DeSerializeFMUstate",
     }
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
@@ -35,7 +37,9 @@ class Slave2(LibrarySlave):
             return self._direct.setter(kind, variables, buffer)
         return self._exchange("Set", kind, variables, buffer)
 
-    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def getter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         if kind == "Long":
             return self._long_getter(variables, buffer)
@@ -47,7 +51,8 @@ class Slave2(LibrarySlave):
         """Prepared call that advances from a time by a step size and returns the status."""
         if self._direct is not None:
             return self._direct.stepper()
-        do_step, component = self._function("DoStep"), self.component
+        do_step = self._function("DoStep")
+        component = self.component
         return lambda time, step_size: do_step(component, time, step_size, 1)
 
     def enter_initialisation(self, start_time: float, stop_time: float) -> None:
@@ -76,9 +81,13 @@ class Slave2(LibrarySlave):
         from fmpy.logging import addLoggerProxy
 
         callbacks = fmi2.fmi2CallbackFunctions()
-        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(lambda env, name, status, kind, text: self._log(status, text))
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
+            lambda env, name, status, kind, text: self._log(status, text)
+        )
         callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        if not (self._is_python or self._is_container):  # they log text as a format: % in it would read wild memory
+        if not (
+            self._is_python or self._is_container
+        ):  # they log text as a format: % in it would read wild memory
             addLoggerProxy(byref(callbacks))
         self._fmu.instantiate(callbacks=callbacks, loggingOn=True)

@@ -23,7 +23,11 @@ TYPES = {
     "Float32": np.float32,
     "Boolean": np.bool_,
     "Enumeration": np.int64,
-    **{f"{sign}Int{bits}": np.dtype(f"{sign.lower()}int{bits}") for sign in ("", "U") for bits in (8, 16, 32, 64)},
+    **{
+        f"{sign}Int{bits}": np.dtype(f"{sign.lower()}int{bits}")
+        for sign in ("", "U")
+        for bits in (8, 16, 32, 64)
+    },
 }
 
 
@@ -40,27 +44,37 @@ class Slave3(LibrarySlave):
         "deserialise": "DeserializeFMUState",
     }
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         groups = list(self._type_groups("Set", variables, buffer.dtype))
 
         def set_all():
             for group in groups:
                 values = buffer[group.rows]
-                status = self.status_of_range(values, group.values.dtype, group.variables) if group.narrows else None
+                status = (
+                    self.status_of_range(values, group.values.dtype, group.variables)
+                    if group.narrows
+                    else None
+                )
                 if status is not None:
                     return status
                 self._load_arrays(group)
                 group.values[group.positions] = values
                 for variable, first in group.arrays:
-                    self._array_values[variable.value_reference] = group.values[first : first + _size(variable)].copy()
+                    self._array_values[variable.value_reference] = group.values[
+                        first : first + _size(variable)
+                    ].copy()
                 if (status := group.call()) >= FAILED:
                     return status
             return OK
 
         return set_all
 
-    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def getter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         groups = list(self._type_groups("Get", variables, buffer.dtype))
 
@@ -69,7 +83,11 @@ class Slave3(LibrarySlave):
                 if (status := group.call()) >= FAILED:
                     return status
                 values = group.values[group.positions]
-                status = self.status_of_range(values, buffer.dtype, group.variables) if group.narrows else None
+                status = (
+                    self.status_of_range(values, buffer.dtype, group.variables)
+                    if group.narrows
+                    else None
+                )
                 if status is not None:
                     return status
                 buffer[group.rows] = values
@@ -79,7 +97,11 @@ class Slave3(LibrarySlave):
 
     def stepper(self) -> Callable[[float, float], int]:
         """Prepared call that advances from a time by a step size and returns the status."""
-        do_step, event, terminate, early, reached = self._function("DoStep"), c_bool(), c_bool(), c_bool(), c_double()
+        do_step = self._function("DoStep")
+        event = c_bool()
+        terminate = c_bool()
+        early = c_bool()
+        reached = c_double()
         results = byref(event), byref(terminate), byref(early), byref(reached)
 
         def step(time, step_size):
@@ -93,25 +115,36 @@ class Slave3(LibrarySlave):
         layout = ArrayLayout(variables)
         texts = (c_char_p * layout.n)()
         if variables[0].kind == "Binary":
-            sizes, data = (c_size_t * layout.n)(), (c_void_p * layout.n)()
+            sizes = (c_size_t * layout.n)()
+            data = (c_void_p * layout.n)()
             self._call_binary("GetBinary", layout, sizes, data)
-            values = [bytes((c_ubyte * n).from_address(at)) if n else b"" for n, at in zip(sizes, data, strict=True)]
+            values = [
+                bytes((c_ubyte * n).from_address(at)) if n else b""
+                for n, at in zip(sizes, data, strict=True)
+            ]
             return [values[position] for position in layout.positions]
         self.call("GetString", layout.references, len(layout.references), texts, layout.n)
         return [(texts[position] or b"").decode() for position in layout.positions]
 
     def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
         """Set String variables, or Binary ones."""
-        layout, is_binary = ArrayLayout(variables), variables[0].kind == "Binary"
-        whole: list[Any] = [value for variable in layout.variables for value in self._present_texts(variable)]
+        layout = ArrayLayout(variables)
+        is_binary = variables[0].kind == "Binary"
+        whole: list[Any] = [
+            value for variable in layout.variables for value in self._present_texts(variable)
+        ]
         for position, value in zip(layout.positions, values, strict=True):
             whole[position] = value
         for variable, first in zip(layout.variables, layout.offsets, strict=True):
             self._array_values[variable.value_reference] = whole[first : first + _size(variable)]
         if is_binary:
-            data = [(c_ubyte * max(len(value), 1)).from_buffer_copy(value or b"\0") for value in whole]
+            data = [
+                (c_ubyte * max(len(value), 1)).from_buffer_copy(value or b"\0") for value in whole
+            ]
             pointers = (c_void_p * layout.n)(*(cast(one, c_void_p).value for one in data))
-            self._call_binary("SetBinary", layout, (c_size_t * layout.n)(*map(len, whole)), pointers)
+            self._call_binary(
+                "SetBinary", layout, (c_size_t * layout.n)(*map(len, whole)), pointers
+            )
         else:
             texts = (c_char_p * layout.n)(*(value.encode() for value in whole))
             self.call("SetString", layout.references, len(layout.references), texts, layout.n)
@@ -161,7 +194,8 @@ class Slave3(LibrarySlave):
     def _instantiate(self):
         self._array_values = {}  # values that arrays were set to, by value reference
         self._fmu.instantiate(
-            loggingOn=True, logMessage=lambda environment, status, category, text: self._log(status, text)
+            loggingOn=True,
+            logMessage=lambda environment, status, category, text: self._log(status, text),
         )
 
 
@@ -186,12 +220,17 @@ class ArrayLayout:
     """
 
     def __init__(self, variables: Sequence[Variable]):
-        wholes: dict[int, Any] = {variable.value_reference: variable.whole or variable for variable in variables}
+        wholes: dict[int, Any] = {
+            variable.value_reference: variable.whole or variable for variable in variables
+        }
         sizes = [_size(whole) for whole in wholes.values()]
-        self.variables, self.n = list(wholes.values()), sum(sizes)
+        self.variables = list(wholes.values())
+        self.n = sum(sizes)
         self.offsets = [sum(sizes[:i]) for i in range(len(sizes))]
         begin = dict(zip(wholes, self.offsets, strict=True))
-        self.positions = [begin[variable.value_reference] + variable.place for variable in variables]
+        self.positions = [
+            begin[variable.value_reference] + variable.place for variable in variables
+        ]
         self.references = (c_uint * len(wholes))(*wholes)
 
 
@@ -225,13 +264,28 @@ class TypeGroup:
 
     narrows = False
 
-    def __init__(self, component: Any, function: Any, variables: Sequence[Variable], rows: np.ndarray, dtype: Any):
+    def __init__(
+        self,
+        component: Any,
+        function: Any,
+        variables: Sequence[Variable],
+        rows: np.ndarray,
+        dtype: Any,
+    ):
         layout = ArrayLayout(variables)
-        self.variables, self.rows, self.positions = variables, rows, np.array(layout.positions)
+        self.variables = variables
+        self.rows = rows
+        self.positions = np.array(layout.positions)
         self.values = np.zeros(layout.n, dtype=dtype)
-        self.arrays = [pair for pair in zip(layout.variables, layout.offsets, strict=True) if pair[0].dimensions]
+        self.arrays = [
+            pair
+            for pair in zip(layout.variables, layout.offsets, strict=True)
+            if pair[0].dimensions
+        ]
         values = cast(self.values.ctypes.data, function.argtypes[3])
-        self.call = partial(function, component, layout.references, len(layout.references), values, layout.n)
+        self.call = partial(
+            function, component, layout.references, len(layout.references), values, layout.n
+        )
 
 
 def _size(variable):

@@ -44,25 +44,33 @@ class DirectCalls:
     """
 
     def __init__(self, target: Any, log: Callable[[int, str], None]):
-        self.target, self._log = target, log
+        self.target = target
+        self._log = log
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """See `Slave.setter`."""
         if kind == "Real":
             return self._reals_setter(_references(variables), buffer)
-        method, references = getattr(self.target, f"set_{kind.lower()}"), _references(variables)
+        method = getattr(self.target, f"set_{kind.lower()}")
+        references = _references(variables)
 
         def set_all():
             values = buffer.tolist()
             try:
-                method(references, [value != 0 for value in values] if kind == "Boolean" else values)
+                method(
+                    references, [value != 0 for value in values] if kind == "Boolean" else values
+                )
             except Exception as error:
                 return self._failed(error)
             return OK
 
         return set_all
 
-    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def getter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """See `Slave.getter`."""
         get_values = self.target.prepared_getter(kind, _references(variables))
         pack = _packer(buffer, "d" if kind == "Real" else "i")
@@ -77,7 +85,8 @@ class DirectCalls:
         return get_all
 
     def _reals_setter(self, references, buffer):
-        set_values, values_of = self.target.real_setter(references), buffer.tolist
+        set_values = self.target.real_setter(references)
+        values_of = buffer.tolist
 
         def set_all():
             try:
@@ -90,7 +99,8 @@ class DirectCalls:
 
     def stepper(self) -> Callable[[float, float], int]:
         """See `Slave.stepper`."""
-        target, advance = self.target, self.target.advance
+        target = self.target
+        advance = self.target.advance
 
         def step(time, step_size):
             try:

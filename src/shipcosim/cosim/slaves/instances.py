@@ -25,7 +25,9 @@ class Instances:
     def __enter__(self) -> Self:
         self._slaves: dict[str, LibrarySlave] = {}
         self._stack = ExitStack()
-        self._unpacked = self._stack.enter_context(UnpackedFmus()) if self._shared is None else self._shared
+        self._unpacked = (
+            self._stack.enter_context(UnpackedFmus()) if self._shared is None else self._shared
+        )
         return self
 
     def __exit__(self, *_):
@@ -43,7 +45,8 @@ class Instances:
         SlaveError
             If it cannot be instantiated.
         """
-        name, fmu = component.name, component.fmu
+        name = component.name
+        fmu = component.fmu
         if name in self._slaves:
             try:
                 self._slaves[name].reset()

@@ -15,7 +15,11 @@ def interface_type_of(component: Component) -> str | None:
 
 def missing_interface_type(component: Component) -> tuple[str, str]:
     """What is found and what would be right where `interface_type_of` finds nothing."""
-    wanted = "co-simulation or model exchange" if component.implementation == "any" else component.implementation
+    wanted = (
+        "co-simulation or model exchange"
+        if component.implementation == "any"
+        else component.implementation
+    )
     offered = ", ".join(component.fmu.interfaces) or "nothing"
     found = f"{component.fmu.path.name} offers no {wanted}. It offers {offered}."
     return found, "Export the FMU again in this form, or ask for the one that it has."

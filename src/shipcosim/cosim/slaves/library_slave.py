@@ -44,7 +44,8 @@ class LibrarySlave(Slave):
     component: Any
 
     def __init__(self, name: str, folder: Path, identifier: str, token: str):
-        self.name, self._identifier = name, identifier
+        self.name = name
+        self._identifier = identifier
         self._messages: list[tuple[int, str]] = []
         self._is_lost = False
         self._is_python = (Path(folder) / "resources" / "slavemodule.txt").is_file()
@@ -60,7 +61,9 @@ class LibrarySlave(Slave):
             )
             self._instantiate()
         except Exception as error:
-            raise SlaveError(self.last_messages() or f"{error} {_platform_hint(folder)}".strip()) from error
+            raise SlaveError(
+                self.last_messages() or f"{error} {_platform_hint(folder)}".strip()
+            ) from error
         finally:
             os.chdir(here)  # FMPy stays in the library's folder where loading fails
         self.component = self._fmu.component
@@ -81,13 +84,17 @@ class LibrarySlave(Slave):
         if status >= FAILED:
             self._is_lost = status == FATAL
             label = STATUS[status] if status < len(STATUS) else str(status)
-            raise SlaveError(f"{self._prefix}{function} returned '{label}'. {self.last_messages()}".strip())
+            raise SlaveError(
+                f"{self._prefix}{function} returned '{label}'. {self.last_messages()}".strip()
+            )
 
     def last_messages(self) -> str:
         """What the FMU logged as errors, or else what it logged last."""
         errors = [text for status, text in self.messages if status >= ERROR]
         words = "\n".join(errors[-3:] or [text for _, text in self.messages[-3:]])
-        return re.sub(r"(?m)^Fatal py exception encountered: .*\n", "", words)  # PythonFMU's own, names no cause
+        return re.sub(
+            r"(?m)^Fatal py exception encountered: .*\n", "", words
+        )  # PythonFMU's own, names no cause
 
     def free(self) -> None:
         """Free the instance and its library.
@@ -121,7 +128,9 @@ class LibrarySlave(Slave):
 
     def state(self) -> bytes:
         """The whole state, which `restore` of any instance of this FMU takes, in another process too."""
-        names, state, size = self._state_calls, c_void_p(), c_size_t()
+        names = self._state_calls
+        state = c_void_p()
+        size = c_size_t()
         self.call(names["get"], byref(state))
         try:
             self.call(names["size"], state, byref(size))
@@ -133,8 +142,15 @@ class LibrarySlave(Slave):
 
     def restore(self, data: bytes) -> None:
         """Bring the instance into a state from `state`."""
-        names, state, buffer = self._state_calls, c_void_p(), (c_char * len(data)).from_buffer_copy(data)
-        self.call(names["deserialise"], self._as_bytes(names["deserialise"], 1, buffer), len(data), byref(state))
+        names = self._state_calls
+        state = c_void_p()
+        buffer = (c_char * len(data)).from_buffer_copy(data)
+        self.call(
+            names["deserialise"],
+            self._as_bytes(names["deserialise"], 1, buffer),
+            len(data),
+            byref(state),
+        )
         try:
             self.call(names["set"], state)
         finally:
@@ -185,13 +201,19 @@ class LibrarySlave(Slave):
 
         return get_widened
 
-    def status_of_range(self, values: np.ndarray, kind: np.dtype, variables: Sequence[Variable]) -> int | None:
+    def status_of_range(
+        self, values: np.ndarray, kind: np.dtype, variables: Sequence[Variable]
+    ) -> int | None:
         """Status, logged with its reason, where a type cannot hold some values; None where it can hold all."""
         limits = np.finfo(kind) if kind.kind == "f" else np.iinfo(kind)
-        low, high = int(limits.min), int(limits.max)
+        low = int(limits.min)
+        high = int(limits.max)
         for variable, value in zip(variables, values.tolist(), strict=True):
             if abs(value) != float("inf") and value == value and not low <= value <= high:
-                self._note(ERROR, f"{variable.name} cannot be {value!r}: {kind} ends at {low:.4g} and {high:.4g}.")
+                self._note(
+                    ERROR,
+                    f"{variable.name} cannot be {value!r}: {kind} ends at {low:.4g} and {high:.4g}.",
+                )
                 return ERROR
         return None
 
@@ -241,4 +263,6 @@ def references(variables: Sequence[Variable]) -> Array:
 def _platform_hint(folder):
     binaries = Path(folder) / "binaries"
     there = sorted(path.name for path in binaries.iterdir()) if binaries.is_dir() else []
-    return f"The FMU brings binaries for: {', '.join(there) or 'no platform'}; this is {sys.platform}."
+    return (
+        f"The FMU brings binaries for: {', '.join(there) or 'no platform'}; this is {sys.platform}."
+    )

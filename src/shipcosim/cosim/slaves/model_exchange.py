@@ -36,7 +36,8 @@ MOST_STATES = 5000
 """Largest number of continuous states, whose Jacobian is dense."""
 CLOSE = 1e-12
 """Times that differ by less than this part of them are the same."""
-EVENT, CONTINUOUS = "event mode", "continuous-time mode"
+EVENT = "event mode"
+CONTINUOUS = "continuous-time mode"
 
 
 class EventUpdate(NamedTuple):
@@ -77,21 +78,27 @@ class ModelExchange(LibrarySlave):
         Frees the solver of the group that this one makes the steps of; called when this one is freed.
     """
 
-    DERIVATIVES, NOMINALS = "GetDerivatives", "GetNominalsOfContinuousStates"
+    DERIVATIVES = "GetDerivatives"
+    NOMINALS = "GetNominalsOfContinuousStates"
 
     def __init__(self, name: str, folder: Path, fmu: FmuDescription):
         self._description = fmu
         self._capabilities = fmu.interfaces["ModelExchange"]
         self._mode: str | None = None
         self._solver: Cvode | None = None
-        self._next_event, self._is_event_done = inf, False
+        self._next_event = inf
+        self._is_event_done = False
         self.followed: frozenset[tuple[str, str]] = frozenset()
         self.close_group: Callable[[], None] | None = None
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer where they have changed; returns the status."""
-        set_all, last, last_held = super().setter(kind, variables, buffer), None, None
+        set_all = super().setter(kind, variables, buffer)
+        last = None
+        last_held = None
         held = np.array([(kind, variable.name) not in self.followed for variable in variables])
 
         def set_changed():
@@ -102,7 +109,9 @@ class ModelExchange(LibrarySlave):
                 return OK
             if self._mode == CONTINUOUS:
                 self._enter_event_mode()
-            self._is_event_done, last, last_held = False, values, held_values
+            self._is_event_done = False
+            last = values
+            last_held = held_values
             return set_all()
 
         return set_changed
@@ -115,7 +124,9 @@ class ModelExchange(LibrarySlave):
             try:
                 self._integrate_to(time, time + step_size)
             except SolverError as error:
-                raise SlaveError(f"{self.last_messages()} {error} At t = {self._time:.9g} s.".strip()) from None
+                raise SlaveError(
+                    f"{self.last_messages()} {error} At t = {self._time:.9g} s.".strip()
+                ) from None
             return OK
 
         return step
@@ -127,10 +138,14 @@ class ModelExchange(LibrarySlave):
         self._leave_initialisation()
         self._n, self._n_indicators = self._sizes()
         if self._n > MOST_STATES:
-            raise SlaveError(f"It has {self._n} continuous states; at most {MOST_STATES} are integrated.")
+            raise SlaveError(
+                f"It has {self._n} continuous states; at most {MOST_STATES} are integrated."
+            )
         tolerance = self._description.experiment.get("tolerance", TOLERANCE)
         self._close_solver()
-        self._solver = solver = Cvode(self._n, self._derivatives, self._n_indicators, self._indicators, tolerance)
+        self._solver = solver = Cvode(
+            self._n, self._derivatives, self._n_indicators, self._indicators, tolerance
+        )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
         self._iterate_event()
 
@@ -172,7 +187,9 @@ class ModelExchange(LibrarySlave):
         """Time of its next event; infinite where it knows none. [s]"""
         return self._next_event
 
-    def plain_setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def plain_setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind without an event."""
         return super().setter(kind, variables, buffer)
 
@@ -190,7 +207,9 @@ class ModelExchange(LibrarySlave):
         """Get the derivatives into an (n_states,) array; status for the solver."""
         if not self._n:
             return 0
-        return self._status_for_solver(self.DERIVATIVES, derivatives.ctypes.data_as(POINTER(c_double)), self._n)
+        return self._status_for_solver(
+            self.DERIVATIVES, derivatives.ctypes.data_as(POINTER(c_double)), self._n
+        )
 
     def completed_step(self) -> bool:
         """Tell the FMU that a step of the solver is done; whether it asks for an event."""
@@ -223,7 +242,8 @@ class ModelExchange(LibrarySlave):
 
     def _integrate_to(self, time, end):
         """Integrate to a time, through all events on the way."""
-        near, n_events = CLOSE * max(abs(end), end - time), 0
+        near = CLOSE * max(abs(end), end - time)
+        n_events = 0
         if self._mode == EVENT:
             self._time = time
             self._enter_continuous_time()
@@ -245,7 +265,9 @@ class ModelExchange(LibrarySlave):
             self._enter_continuous_time()
             n_events += 1
             if n_events > MOST_EVENTS:
-                raise SlaveError(f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s.")
+                raise SlaveError(
+                    f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s."
+                )
 
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
@@ -256,7 +278,9 @@ class ModelExchange(LibrarySlave):
             if not needs_update:
                 self._is_event_done = True
                 return
-        raise SlaveError(f"An event does not settle: discrete states still change after {MOST_ITERATIONS} updates.")
+        raise SlaveError(
+            f"An event does not settle: discrete states still change after {MOST_ITERATIONS} updates."
+        )
 
     def _enter_continuous_time(self):
         """Continue in continuous time, from the states and nominal values that the FMU now has."""
@@ -332,7 +356,8 @@ class Model2(ModelExchange, Slave2):
     def _completed_step(self):
         if is_true(self._capabilities.get("completedIntegratorStepNotNeeded")):
             return False
-        event, terminates = c_int(), c_int()
+        event = c_int()
+        terminates = c_int()
         self.call("CompletedIntegratorStep", 1, byref(event), byref(terminates))
         if terminates.value:
             raise SlaveError("It asks to end the simulation.")
@@ -344,7 +369,9 @@ class Model2(ModelExchange, Slave2):
         info = fmi2EventInfo()
         self.call("NewDiscreteStates", byref(info))
         next_event = info.nextEventTime if info.nextEventTimeDefined else inf
-        return EventUpdate(info.newDiscreteStatesNeeded != 0, info.terminateSimulation != 0, next_event)
+        return EventUpdate(
+            info.newDiscreteStatesNeeded != 0, info.terminateSimulation != 0, next_event
+        )
 
 
 class Model3(ModelExchange, Slave3):
@@ -360,20 +387,29 @@ class Model3(ModelExchange, Slave3):
 
     def _sizes(self):
         sizes = c_size_t(), c_size_t()
-        for function, size in zip(("GetNumberOfContinuousStates", "GetNumberOfEventIndicators"), sizes, strict=True):
+        for function, size in zip(
+            ("GetNumberOfContinuousStates", "GetNumberOfEventIndicators"), sizes, strict=True
+        ):
             self.call(function, byref(size))
         return sizes[0].value, sizes[1].value
 
     def _completed_step(self):
         if not is_true(self._capabilities.get("needsCompletedIntegratorStep")):
             return False
-        event, terminates = c_bool(), c_bool()
+        event = c_bool()
+        terminates = c_bool()
         self.call("CompletedIntegratorStep", True, byref(event), byref(terminates))
         if terminates.value:
             raise SlaveError("It asks to end the simulation.")
         return event.value
 
     def _update_discrete_states(self):
-        needed, terminates, nominals, values, defined, time = *(c_bool() for _ in range(5)), c_double()
-        self.call("UpdateDiscreteStates", *map(byref, (needed, terminates, nominals, values, defined, time)))
+        needed, terminates, nominals, values, defined, time = (
+            *(c_bool() for _ in range(5)),
+            c_double(),
+        )
+        self.call(
+            "UpdateDiscreteStates",
+            *map(byref, (needed, terminates, nominals, values, defined, time)),
+        )
         return EventUpdate(needed.value, terminates.value, time.value if defined.value else inf)

@@ -50,11 +50,15 @@ class Slave:
         texts = [text for status, text in self.messages if status == WARNING]
         return [text if text.startswith(self.name) else f"{self.name}: {text}" for text in texts]
 
-    def setter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def setter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         raise NotImplementedError
 
-    def getter(self, kind: str, variables: Sequence[Variable], buffer: np.ndarray) -> Callable[[], int]:
+    def getter(
+        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
+    ) -> Callable[[], int]:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         raise NotImplementedError
 

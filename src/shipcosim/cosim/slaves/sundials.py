@@ -35,7 +35,9 @@ class Context:
             return
         context = types.SUNContext()
         sundials_context.SUNContext_Create(types.SUN_COMM_NULL, byref(context))
-        self._handler = types.SUNErrHandlerFn(lambda line, function, file, message, *others: note(message))
+        self._handler = types.SUNErrHandlerFn(
+            lambda line, function, file, message, *others: note(message)
+        )
         core_library().SUNContext_ClearErrHandlers(context)  # the one that is there prints
         sundials_context.SUNContext_PushErrHandler(context, self._handler, None)
         self.arguments = (context,)
@@ -60,7 +62,8 @@ def core_library() -> Any:
 def freeing(name: str, kind: Any) -> Callable[[Any], int]:
     """Function that frees objects of one kind, such as ``SUNMatDestroy``."""
     function = getattr(core_library(), name)
-    function.argtypes, function.restype = [kind], c_int
+    function.argtypes = [kind]
+    function.restype = c_int
     return function
 
 

@@ -28,7 +28,9 @@ class UnpackedFmus:
     """Folders of FMUs. What is not in the cache leaves at the end of a ``with`` statement, and so do its modules."""
 
     def __enter__(self) -> Self:
-        self._temporary = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
+        self._temporary = tempfile.TemporaryDirectory(
+            prefix="shipcosim-", ignore_cleanup_errors=True
+        )
         self._root = Path(self._temporary.name).resolve()
         self._folders = {}
         return self
@@ -60,7 +62,10 @@ class UnpackedFmus:
     @staticmethod
     def _imported(folder):
         """Names of the modules that come from a folder."""
-        files = {name: getattr(module, "__file__", None) or "" for name, module in list(sys.modules.items())}
+        files = {
+            name: getattr(module, "__file__", None) or ""
+            for name, module in list(sys.modules.items())
+        }
         return {name for name, file in files.items() if file.startswith(f"{folder}{os.sep}")}
 
 
@@ -73,9 +78,15 @@ def _in_cache(fmu: Path) -> Path | None:
             # True if all code of an FMU goes by a name that follows from its content; see `fmi.export.bundle`.
             names = entries(fmu)
             resources = {
-                name.split("/")[1] for name in names if name.startswith("resources/") and not name.endswith("/")
+                name.split("/")[1]
+                for name in names
+                if name.startswith("resources/") and not name.endswith("/")
             }
-            found = [name.removesuffix(".py") for name in resources if re.fullmatch(r"\w+_[0-9a-f]{16}\.py", name)]
+            found = [
+                name.removesuffix(".py")
+                for name in resources
+                if re.fullmatch(r"\w+_[0-9a-f]{16}\.py", name)
+            ]
             has_a_name_of_its_own = len(found) == 1 and resources == {
                 f"{found[0]}.py",
                 f"{found[0]}_code",

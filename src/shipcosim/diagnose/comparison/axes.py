@@ -115,7 +115,9 @@ class Axis:
 
     def total(self, commanded: Commanded) -> np.ndarray:
         """What all thrusters are commanded, (n,) array."""
-        return sum((self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size))
+        return sum(
+            (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
+        )
 
     def is_driven(self, commanded: Commanded) -> bool:
         """Whether the thrusters are commanded to do something on this axis, beside what is felt."""
@@ -164,7 +166,9 @@ class Axis:
 
     def unexplained(self, given: np.ndarray) -> float:
         """Mean square of the felt force that is left beside a given load, (n,) array, and all but the thrusters."""
-        return regressed(self.felt - given, self.rest, self.positive, self.block, self._prior).squares
+        return regressed(
+            self.felt - given, self.rest, self.positive, self.block, self._prior
+        ).squares
 
     @property
     def felt_unit(self) -> float:
@@ -185,18 +189,29 @@ class Axis:
         k = len(columns)
         every = np.concatenate([columns.T, self.rest], axis=1)
         positive = np.r_[np.full(k, one_sign), self.positive]
-        found = regressed(self.felt, every, positive, self.block, np.r_[np.full(k, np.inf), self._prior])
+        found = regressed(
+            self.felt, every, positive, self.block, np.r_[np.full(k, np.inf), self._prior]
+        )
         without = self._without
-        support = 0.5 * min(found.independent, without.independent) * np.log(without.squares / found.squares)
+        support = (
+            0.5
+            * min(found.independent, without.independent)
+            * np.log(without.squares / found.squares)
+        )
         hull, damping, std = self._water(found, k)
-        gains, deviations = found.coefficients[:k], found.std[:k]
+        gains = found.coefficients[:k]
+        deviations = found.std[:k]
         share = 1.0 - found.squares / self.felt_unit**2
         return AxisFit(gains, deviations, float(support), found.squares, share, damping, std, hull)
 
     @cached_property
     def _prior(self) -> np.ndarray:
         """What forces that no model knows may be, as coefficients of their columns."""
-        return np.where(self.positive, np.inf, STEADY_SHARE * self.size / np.sqrt((self.rest**2).mean(0) + 1e-30))
+        return np.where(
+            self.positive,
+            np.inf,
+            STEADY_SHARE * self.size / np.sqrt((self.rest**2).mean(0) + 1e-30),
+        )
 
     @cached_property
     def _without(self) -> Regression:
@@ -209,7 +224,11 @@ class Axis:
         columns = self.rest[:, :_OF_HULL]
         along = columns.T @ self.hull / max(float(self.hull @ self.hull), 1e-30)
         variance = float(along @ found.covariance[own, own] @ along)
-        return columns @ found.coefficients[own], float(along @ found.coefficients[own]), float(np.sqrt(variance))
+        return (
+            columns @ found.coefficients[own],
+            float(along @ found.coefficients[own]),
+            float(np.sqrt(variance)),
+        )
 
 
 def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
@@ -226,10 +245,13 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     -------
     list of three Axis
     """
-    kernel, motion, rows = felt.kernel, felt.motion, felt.usable
+    kernel = felt.kernel
+    motion = felt.motion
+    rows = felt.usable
     force = inertia(model) @ felt.rates + kernel.smooth(moving_mass(motion, model))
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
-    thrust, found = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull)), []
+    thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
+    found = []
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
     for i, (listed, sign) in enumerate(rest_of(motion, commanded)):
         rest = kernel.smooth(listed)[:, rows].T
@@ -252,13 +274,20 @@ def rest_of(motion: Motion, commanded: Commanded) -> list[tuple[np.ndarray, np.n
     -------
     list of three pairs, (q, n) array and (q,) bool array
     """
-    speeds, found = np.stack([motion.u, motion.v, motion.r]), []
+    speeds = np.stack([motion.u, motion.v, motion.r])
+    found = []
     wind = commanded.wind
     for i, groups in enumerate(_beside(speeds, motion.psi)):
         drag = [commanded.hull[i], -speeds[i], -speeds[i] * np.abs(speeds[i])]
-        positive = [*drag, *([wind[i]] if wind is not None and np.any(wind) else []), *groups["damping"]]
+        positive = [
+            *drag,
+            *([wind[i]] if wind is not None and np.any(wind) else []),
+            *groups["damping"],
+        ]
         listed = [*positive, *groups["coupling"], *groups["steady"]]
-        found.append((np.stack(np.broadcast_arrays(*listed)), np.arange(len(listed)) < len(positive)))
+        found.append(
+            (np.stack(np.broadcast_arrays(*listed)), np.arange(len(listed)) < len(positive))
+        )
     return found
 
 

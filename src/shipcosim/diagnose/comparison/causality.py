@@ -12,7 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.thresholds import CAUSAL_ORDER, CAUSAL_STEP, COMMANDS_BEFORE, HUBER
+from shipcosim.diagnose.comparison.thresholds import (
+    CAUSAL_ORDER,
+    CAUSAL_STEP,
+    COMMANDS_BEFORE,
+    HUBER,
+)
 from shipcosim.diagnose.numerics import least_squares
 
 if TYPE_CHECKING:
@@ -45,11 +50,14 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
     count = max(1, round(CAUSAL_STEP * unit / felt.kernel.step))
     motion = felt.motion
     speeds = blocks(np.stack([motion.u, motion.v, motion.r]), count)
-    heading, usable = blocks(motion.psi, count), blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
+    heading = blocks(motion.psi, count)
+    usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = np.arange(CAUSAL_ORDER + 1, usable.size)
     rows = rows[[bool(usable[row - CAUSAL_ORDER - 1 : row + 1].all()) for row in rows]]
     found = np.zeros(len(commanded))
-    loads = [blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded]
+    loads = [
+        blocks(sum(one.thrusters.values(), np.zeros_like(one.hull)), count) for one in commanded
+    ]
     for axis in range(3):
         past = _past(axis, speeds, heading, rows)
         if rows.size < 3 * past.shape[1]:
@@ -57,7 +65,9 @@ def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> n
         basis = np.linalg.qr(past)[0]
         left = _without(basis, speeds[axis][rows])
         for number, load in enumerate(loads):
-            before = np.stack([load[axis][rows - 1 - lag] for lag in range(COMMANDS_BEFORE)], axis=1)
+            before = np.stack(
+                [load[axis][rows - 1 - lag] for lag in range(COMMANDS_BEFORE)], axis=1
+            )
             found[number] += _gained(left, _without(basis, before))
     return found
 
@@ -72,7 +82,11 @@ def _past(axis: int, speeds: np.ndarray, heading: np.ndarray, rows: np.ndarray) 
     """What the motion before says of a velocity, scaled columns."""
     u, v, r = speeds
     own = speeds[axis]
-    columns = [speeds[one][rows - 1 - lag] for one in range(3) for lag in range(CAUSAL_ORDER if one == axis else 2)]
+    columns = [
+        speeds[one][rows - 1 - lag]
+        for one in range(3)
+        for lag in range(CAUSAL_ORDER if one == axis else 2)
+    ]
     products = (u * v, u * r, v * r, u * u, r * r, own * np.abs(own), np.abs(u) * own)
     columns += [product[rows - 1] for product in products]
     columns += [np.ones(rows.size), np.cos(heading[rows - 1]), np.sin(heading[rows - 1])]
@@ -91,7 +105,9 @@ def _gained(left: np.ndarray, columns: np.ndarray) -> float:
         return 0.0
     unit = columns / np.maximum(size, 1e-300)
     after = left - unit @ least_squares(unit, left)
-    bound = HUBER * 1.4826 * np.median(np.abs(after)) + 1e-300  # so that single jumps of a channel do not decide
+    bound = (
+        HUBER * 1.4826 * np.median(np.abs(after)) + 1e-300
+    )  # so that single jumps of a channel do not decide
 
     def loss(series):
         far = np.abs(series)

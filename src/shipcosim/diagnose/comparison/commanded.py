@@ -54,7 +54,8 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
     Commanded
     """
     inputs = record.inputs(model)
-    motion, size = felt.motion, record.time.size
+    motion = felt.motion
+    size = record.time.size
     steps = type(motion)(*(value[:-1] for value in motion))
     found = {name: _rows(load, size) for name, load in loads(steps, inputs, model).items()}
     hull = _rows(hull_loads(motion.u, motion.v, motion.r, hull=model.parts["hull"]), size)
@@ -63,7 +64,9 @@ def commanded_by(record: Record, felt: Felt, model: ShipModel) -> Commanded:
 
 def _rows(load: Load, size: int) -> np.ndarray:
     """A load as (3, n) array; what is known of each step only, held at the last row."""
-    rows = np.stack([np.broadcast_to(axis, np.broadcast_shapes(*map(np.shape, load))) for axis in load])
+    rows = np.stack(
+        [np.broadcast_to(axis, np.broadcast_shapes(*map(np.shape, load))) for axis in load]
+    )
     rows = np.broadcast_to(rows if rows.ndim > 1 else rows[:, None], (3, max(rows.shape[-1], 1)))
     return np.pad(rows, ((0, 0), (0, size - rows.shape[1])), mode="edge")
 
@@ -77,8 +80,11 @@ def inertia(model: ShipModel) -> np.ndarray:
 def moving_mass(motion: Motion, model: ShipModel) -> np.ndarray:
     """Loads that turning asks of the rigid body, C_RB(ν) ν, (3, n) array. [N, N, N.m]"""
     hull = model.parts["hull"]
-    mass, ahead = hull.rigid_body[0], hull.centre_of_gravity_x
-    u, v, r = motion.u, motion.v, motion.r
+    mass = hull.rigid_body[0]
+    ahead = hull.centre_of_gravity_x
+    u = motion.u
+    v = motion.v
+    r = motion.r
     return mass * np.stack([-r * (v + ahead * r), r * u, ahead * r * u])
 
 
@@ -86,6 +92,7 @@ def late(commanded: Commanded, rows: float) -> Commanded:
     """The same with thrusters that act that many rows later."""
     at = np.arange(commanded.hull.shape[1])
     moved = {
-        name: np.stack([np.interp(at - rows, at, axis) for axis in load]) for name, load in commanded.thrusters.items()
+        name: np.stack([np.interp(at - rows, at, axis) for axis in load])
+        for name, load in commanded.thrusters.items()
     }
     return replace(commanded, thrusters=moved)

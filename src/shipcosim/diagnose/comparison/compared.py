@@ -11,7 +11,12 @@ from shipcosim.diagnose.checked_log import CheckedLog
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
 from shipcosim.diagnose.comparison.crude_fit import crude_model
-from shipcosim.diagnose.comparison.crude_model import CrudeModel, CrudeNumber, crude_numbers, spoken_for
+from shipcosim.diagnose.comparison.crude_model import (
+    CrudeModel,
+    CrudeNumber,
+    crude_numbers,
+    spoken_for,
+)
 from shipcosim.diagnose.comparison.discrepancies import discrepancies_of, is_of_damping
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
@@ -98,7 +103,9 @@ class LogComparison:
 
     def given(self, model: ShipModel) -> ShipModel:
         """A ship as the system has her: without what was put into her beyond doubt."""
-        return self.crude.without(model) if self.crude is not None and self.is_started_with else model
+        return (
+            self.crude.without(model) if self.crude is not None and self.is_started_with else model
+        )
 
     def with_crude(self, model: ShipModel) -> ShipModel:
         """A ship with the crude model, beyond doubt or only where nothing else explains the log."""
@@ -111,7 +118,11 @@ class LogComparison:
     def spoken_for(self, cause: Cause, named: set[str], causes: dict[str, Cause]) -> bool:
         """Whether all that a cause could say is said, by a cause that is named or by a damping that differs."""
         axes = {one.axis for one in self.discrepancies if is_of_damping(one)}
-        said = {one.cause for one in causes.values() if one.axis and (one.axis in axes or one.cause in named)}
+        said = {
+            one.cause
+            for one in causes.values()
+            if one.axis and (one.axis in axes or one.cause in named)
+        }
         return spoken_for(cause, said, causes)
 
 
@@ -140,11 +151,13 @@ def compared(log: CheckedLog) -> ComparedLog:
     felt = felt_by(record, length)
     ship = with_surrogates(ship, record, first_motion(record, ship))
     errors = errors_of(record, felt, ship)
-    too_slow, unknown = _too_slow(log.repaired, ship), _unknown_thrusters(log.repaired, ship)
+    too_slow = _too_slow(log.repaired, ship)
+    unknown = _unknown_thrusters(log.repaired, ship)
     if too_slow or felt.usable.sum() < FEWEST_USABLE:
         return _stage(log, LogComparison(errors, (), obstacles=too_slow + unknown))
     commanded = commanded_by(record, felt, ship)
-    axes, over_none = axes_of(felt, commanded, ship), errors_over_none(record, felt, errors)
+    axes = axes_of(felt, commanded, ship)
+    over_none = errors_over_none(record, felt, errors)
     if unknown:
         missing = tuple(missing_loads(axes, commanded, felt, ship, over_none))
         large = tuple(one.discrepancy for one in missing if one.is_large)
@@ -167,7 +180,9 @@ def _started_with_crude_model(log: ComparedLog) -> ComparedLog:
     known = with_crude(log.comparison, log.repaired, log.ship, log.causes)
     if known.crude is None:
         return replace(log, comparison=known)
-    return replace(log, comparison=replace(known, is_started_with=True), ship=known.crude.on(log.ship))
+    return replace(
+        log, comparison=replace(known, is_started_with=True), ship=known.crude.on(log.ship)
+    )
 
 
 def with_crude(
@@ -180,11 +195,20 @@ def with_crude(
     felt = felt_by(record, length)
     logged = with_surrogates(logged, record, first_motion(record, logged))
     crude = crude_model(record, felt, logged, causes, comparison.errors["horizon_s"])
-    if crude is not None and crude.differs(PLAIN) and crude.errors is not None and crude.errors.is_better:
+    if (
+        crude is not None
+        and crude.differs(PLAIN)
+        and crude.errors is not None
+        and crude.errors.is_better
+    ):
         return replace(comparison, crude=crude)
-    remarks = () if crude is None or all(not one.axis for one in crude.numbers) else (_not_better(crude),)
+    remarks = (
+        () if crude is None or all(not one.axis for one in crude.numbers) else (_not_better(crude),)
+    )
     alone = ratio_alone(comparison.ratio, ship, causes)
-    return replace(comparison, crude=alone if alone and alone.differs(PLAIN) else None, remarks=remarks)
+    return replace(
+        comparison, crude=alone if alone and alone.differs(PLAIN) else None, remarks=remarks
+    )
 
 
 def _not_better(crude: CrudeModel) -> str:
@@ -196,7 +220,9 @@ def _not_better(crude: CrudeModel) -> str:
     )
 
 
-def ratio_alone(ratio: CommonRatio | None, ship: ShipModel, causes: dict[str, Cause]) -> CrudeModel | None:
+def ratio_alone(
+    ratio: CommonRatio | None, ship: ShipModel, causes: dict[str, Cause]
+) -> CrudeModel | None:
     """The crude model of a common ratio of thrust to inertia; None without a cause in the catalogue that says so."""
     thrust = next((one for one in crude_numbers(ship, causes) if not one.axis), None)
     if ratio is None or thrust is None:
@@ -206,7 +232,8 @@ def ratio_alone(ratio: CommonRatio | None, ship: ShipModel, causes: dict[str, Ca
 
 def _too_slow(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
     """What to say where rows are too far apart for the ship's answers."""
-    step, most = float(np.diff(repaired["time"].values[:2])[0]), RESOLVED * froude_time(ship.parts["hull"].length)
+    step = float(np.diff(repaired["time"].values[:2])[0])
+    most = RESOLVED * froude_time(ship.parts["hull"].length)
     said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
     return (said,) if step > most else ()
 
@@ -215,7 +242,9 @@ def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, 
     """What to say of thrusters that a log lacks."""
     found = []
     for name in ship.thrusters:
-        lacking = [f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired]
+        lacking = [
+            f"{name}_{kind}" for kind in ship.drives(name) if f"{name}_{kind}" not in repaired
+        ]
         if lacking:
             found.append(
                 f"No {' and '.join(lacking)} in the log: what '{name}' does to the ship is not known, and no cause is"
@@ -252,7 +281,9 @@ def _drives(name: str, log: xarray.Dataset) -> list[str]:
 
 def ratio_finding(ratio: CommonRatio, causes: dict[str, Cause]) -> tuple[Finding, ...]:
     """The finding of a common ratio, by the cause that says so; none without one in the catalogue."""
-    cause = next((one for one in causes.values() if one.sought_in == "comparison" and not one.axis), None)
+    cause = next(
+        (one for one in causes.values() if one.sought_in == "comparison" and not one.axis), None
+    )
     if cause is None:
         return ()
     number = CrudeNumber(cause.cause, next(iter(cause.parameters)), "", (), ratio.ratio, ratio.std)

@@ -10,7 +10,12 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.crude_model import CrudeModel, CrudeNumber, HeldOutErrors, crude_numbers
+from shipcosim.diagnose.comparison.crude_model import (
+    CrudeModel,
+    CrudeNumber,
+    HeldOutErrors,
+    crude_numbers,
+)
 from shipcosim.diagnose.comparison.errors import starts_of
 from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
 from shipcosim.diagnose.comparison.label_hypotheses import ahead_of
@@ -113,17 +118,24 @@ class _Predictions:
         values = {}
         for one, factor in zip(self.numbers, np.exp(logs).T, strict=True):
             values |= one.values(self.model, factor[:, None])
-        model, rows = self.model.with_values(values), self.rows
+        model = self.model.with_values(values)
+        rows = self.rows
         start = true_motion(Motion(*(value[rows] for value in self.seen)), self.original)
         start = Motion(*(value + np.zeros((len(logs), 1)) for value in start))
         found = readings(predicted(start, rows, self.record, model, self.counts), model)
         ends = (rows + np.array(self.counts)[:, None])[:, None]
-        off = found.x - self.seen.x[ends], found.y - self.seen.y[ends], found.psi - self.seen.psi[ends]
+        off = (
+            found.x - self.seen.x[ends],
+            found.y - self.seen.y[ends],
+            found.psi - self.seen.psi[ends],
+        )
         return np.moveaxis(np.stack([*off[:2], np.angle(np.exp(1j * off[2]))]), 2, 0)
 
     def of_numbers(self, which: np.ndarray) -> _Predictions:
         """Those with some of the numbers."""
-        return replace(self, numbers=[one for one, is_in in zip(self.numbers, which, strict=True) if is_in])
+        return replace(
+            self, numbers=[one for one, is_in in zip(self.numbers, which, strict=True) if is_in]
+        )
 
     @property
     def share(self) -> float:
@@ -138,7 +150,11 @@ class _Predictions:
 
 
 def crude_model(
-    record: Record, felt: Felt, model: ShipModel, causes: Mapping[str, Cause], horizons: Sequence[float]
+    record: Record,
+    felt: Felt,
+    model: ShipModel,
+    causes: Mapping[str, Cause],
+    horizons: Sequence[float],
 ) -> CrudeModel | None:
     """The crude model of a log: what differs from the given one for sure, and how well it predicts blocks held out.
 
@@ -159,7 +175,8 @@ def crude_model(
         None where the forces felt do not tell thrust over inertia, so that nobody knows what balances the damping;
         where nothing differs for sure; or where the log is too short. Whether it predicts better its errors say.
     """
-    ratio, numbers = _ratio_on(record, felt, model), crude_numbers(model, causes)
+    ratio = _ratio_on(record, felt, model)
+    numbers = crude_numbers(model, causes)
     if ratio is None or not numbers:
         return None
     every = _predictions(record, felt, model, numbers, horizons)
@@ -173,18 +190,29 @@ def crude_model(
     if not free.any():
         return None
     train, touched = _folds(every)
-    task = _task(every, train, [_ratio_on(record, felt, model, ~rows) for rows in touched]).of_numbers(free)
-    others, _ = _fitted(every.of_numbers(free), task, np.repeat(logs[None], len(train), axis=0), CRUDE_ROUNDS // 2)
-    current = replace(every, numbers=[_Current(f"water.current_{way}") for way in ("north", "east")])
-    drifting, _ = _fitted(current, _task(current, train, [None] * len(train)), rounds=CRUDE_ROUNDS // 2)
+    task = _task(
+        every, train, [_ratio_on(record, felt, model, ~rows) for rows in touched]
+    ).of_numbers(free)
+    others, _ = _fitted(
+        every.of_numbers(free), task, np.repeat(logs[None], len(train), axis=0), CRUDE_ROUNDS // 2
+    )
+    current = replace(
+        every, numbers=[_Current(f"water.current_{way}") for way in ("north", "east")]
+    )
+    drifting, _ = _fitted(
+        current, _task(current, train, [None] * len(train)), rounds=CRUDE_ROUNDS // 2
+    )
     errors = _held_out(every.of_numbers(free), others, current, drifting)
     found = [one for one, is_free in zip(numbers, free, strict=True) if is_free]
     return CrudeModel(tuple(map(_sized, found, logs, std)), errors)
 
 
-def _differing(every: _Predictions, ratio: CommonRatio) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _differing(
+    every: _Predictions, ratio: CommonRatio
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Which numbers differ from the given model for sure; logarithms and standard deviations of these."""
-    free, logs = np.ones(len(every.numbers), bool), None
+    free = np.ones(len(every.numbers), bool)
+    logs = None
     task = _task(every, np.ones((1, every.rows.size), bool), [ratio])
     while True:
         logs, std = _fitted(every.of_numbers(free), task.of_numbers(free), logs)
@@ -197,7 +225,8 @@ def _differing(every: _Predictions, ratio: CommonRatio) -> tuple[np.ndarray, np.
 
 def _sized(number: CrudeNumber, log: float, std: float) -> CrudeNumber:
     """A number with its size."""
-    size, spread = float(np.exp(log)), DAMPING_SPREAD if number.axis else COMMON_SPREAD
+    size = float(np.exp(log))
+    spread = DAMPING_SPREAD if number.axis else COMMON_SPREAD
     return replace(number, estimate=size, std=float(size * np.hypot(std, spread)))
 
 
@@ -208,7 +237,9 @@ def _predictions(record, felt, model, numbers, horizons):
     rows = rows[:: max(1, -(-rows.size // CRUDE_STARTS))]
     seen = Motion(*(felt.kernel.smooth(value) for value in felt.motion))
     logged, neutral = replayable(record, model, seen)
-    found = _Predictions(logged, neutral, model, seen, rows, counts, numbers, np.ones((3, len(counts), 1)))
+    found = _Predictions(
+        logged, neutral, model, seen, rows, counts, numbers, np.ones((3, len(counts), 1))
+    )
     squares = (found.missed(np.zeros((1, len(numbers))))[0] ** 2).mean(-1, keepdims=True)
     squares[:2] = squares[:2].mean(0)
     return replace(found, weights=1.0 / np.sqrt(squares + 1e-18))
@@ -221,7 +252,9 @@ def _ratio_on(record, felt, model, rows=None):
         return None
     felt = replace(felt, usable=usable)
     commanded = commanded_by(record, felt, model)
-    return common_ratio(gains_of(axes_of(felt, commanded, model), commanded, ahead_of(record.units)))
+    return common_ratio(
+        gains_of(axes_of(felt, commanded, model), commanded, ahead_of(record.units))
+    )
 
 
 def _task(predictions, used, ratios):
@@ -236,7 +269,10 @@ def _task(predictions, used, ratios):
 
 
 def _fitted(
-    predictions: _Predictions, task: _Task, start: np.ndarray | None = None, rounds: int = CRUDE_ROUNDS
+    predictions: _Predictions,
+    task: _Task,
+    start: np.ndarray | None = None,
+    rounds: int = CRUDE_ROUNDS,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Logarithms of the factors that predict best, and their standard deviations, (f, p) arrays.
 
@@ -247,15 +283,24 @@ def _fitted(
     for _ in range(rounds):
         off, normal, each = _linearised(predictions, task, logs)
         diagonal = normal * np.eye(logs.shape[1])
-        steps = np.stack([np.linalg.solve(normal + by * diagonal, each.sum(2)[..., None])[..., 0] for by in _DAMPED])
+        steps = np.stack(
+            [
+                np.linalg.solve(normal + by * diagonal, each.sum(2)[..., None])[..., 0]
+                for by in _DAMPED
+            ]
+        )
         tries = np.clip(logs - np.clip(steps, -LARGEST_STEP, LARGEST_STEP), -_BOUND, _BOUND)
         costs = np.stack(
-            [_cost(predictions, task, *one) for one in zip(_missed(predictions, tries), tries, strict=True)]
+            [
+                _cost(predictions, task, *one)
+                for one in zip(_missed(predictions, tries), tries, strict=True)
+            ]
         )
         best = costs.argmin(0)
         better = costs[best, every] < _cost(predictions, task, off, logs)
         new = np.where(better[:, None], tries[best, every], logs)
-        moved, logs = np.abs(new - logs).max(), new
+        moved = np.abs(new - logs).max()
+        logs = new
         if moved < CRUDE_SETTLED:
             break
     return logs, _deviations(predictions, task, logs)
@@ -271,26 +316,39 @@ def _deviations(predictions, task, logs):
     """Standard deviations: the larger of those by what is left and of those by what blocks of the log say apart."""
     off, normal, each = _linearised(predictions, task, logs)
     inverse = np.linalg.inv(normal)
-    left = (_loss(off * predictions.weights) * task.used[:, None, None]).mean((1, 2, 3)) / task.used.mean(1)
+    left = (_loss(off * predictions.weights) * task.used[:, None, None]).mean(
+        (1, 2, 3)
+    ) / task.used.mean(1)
     number = np.unique(predictions.block, return_inverse=True)[1]
     blocks = int(number.max()) + 1
     sums = each[..., :-1] @ np.eye(blocks)[number]
     spread = sums @ sums.swapaxes(1, 2) * blocks / max(blocks - logs.shape[1], 1)
     by_blocks = inverse @ (spread + task.std[:, None] ** -2.0 * np.eye(logs.shape[1])) @ inverse
     squares = [
-        np.diagonal(one, axis1=1, axis2=2) for one in (inverse * np.minimum(left, 1.0)[:, None, None], by_blocks)
+        np.diagonal(one, axis1=1, axis2=2)
+        for one in (inverse * np.minimum(left, 1.0)[:, None, None], by_blocks)
     ]
     return np.sqrt(np.maximum(*squares))
 
 
 def _linearised(predictions, task, logs):
     """Errors, the normal matrices, and the gradients by start with the prior's last, (f, p, s + 1) array."""
-    found = _missed(predictions, np.concatenate([logs[None], logs + _STEP * np.eye(logs.shape[1])[:, None]]))
-    off, slope = found[0], (found[1:] - found[0]) / _STEP
+    found = _missed(
+        predictions, np.concatenate([logs[None], logs + _STEP * np.eye(logs.shape[1])[:, None]])
+    )
+    off = found[0]
+    slope = (found[1:] - found[0]) / _STEP
     size = np.maximum(np.abs(off * predictions.weights), 1e-12)
-    heavy = np.minimum(1.0, HUBER / size) * predictions.weights**2 * predictions.share * task.used[:, None, None]
+    heavy = (
+        np.minimum(1.0, HUBER / size)
+        * predictions.weights**2
+        * predictions.share
+        * task.used[:, None, None]
+    )
     prior = task.std**-2.0
-    normal = np.einsum("ifabc,jfabc,fabc->fij", slope, slope, heavy) + prior[:, None] * np.eye(logs.shape[1])
+    normal = np.einsum("ifabc,jfabc,fabc->fij", slope, slope, heavy) + prior[:, None] * np.eye(
+        logs.shape[1]
+    )
     each = np.einsum("ifabc,fabc->fic", slope, off * heavy)
     return off, normal, np.concatenate([each, ((logs - task.mean) * prior)[..., None]], axis=2)
 
@@ -303,13 +361,16 @@ def _loss(off):
 
 def _cost(predictions, task, off, logs):
     """What is minimised, (f,) array."""
-    of_log = (_loss(off * predictions.weights) * task.used[:, None, None]).sum((1, 2, 3)) * predictions.share
+    of_log = (_loss(off * predictions.weights) * task.used[:, None, None]).sum(
+        (1, 2, 3)
+    ) * predictions.share
     return of_log + (((logs - task.mean) / task.std) ** 2).sum(1)
 
 
 def _folds(predictions: _Predictions) -> tuple[np.ndarray, np.ndarray]:
     """Parts to hold out: predictions that touch no row of those held out, (f, s) array; rows that these do, (f, n)."""
-    reach, rows = predictions.counts[-1], predictions.rows
+    reach = predictions.counts[-1]
+    rows = predictions.rows
     fold = np.unique(predictions.block, return_inverse=True)[1] % CRUDE_FOLDS
     touched = np.zeros((CRUDE_FOLDS, predictions.seen.x.size), bool)
     for number, row in zip(fold, rows, strict=True):
@@ -318,10 +379,15 @@ def _folds(predictions: _Predictions) -> tuple[np.ndarray, np.ndarray]:
     return sums[:, rows + reach + 1] == sums[:, rows], touched
 
 
-def _held_out(predictions: _Predictions, logs: np.ndarray, rival: _Predictions, others: np.ndarray) -> HeldOutErrors:
+def _held_out(
+    predictions: _Predictions, logs: np.ndarray, rival: _Predictions, others: np.ndarray
+) -> HeldOutErrors:
     """Errors of each part of the log, by what was fitted without it, (f, p) arrays, of the crude model and a rival."""
     given = predictions.missed(np.zeros((1, logs.shape[1])))[0]
-    squares = [_squares(one) for one in (given, _each_by_its_fold(predictions, logs), _each_by_its_fold(rival, others))]
+    squares = [
+        _squares(one)
+        for one in (given, _each_by_its_fold(predictions, logs), _each_by_its_fold(rival, others))
+    ]
     number = np.unique(predictions.block, return_inverse=True)[1]
     blocks = number.max() + 1
     sums = np.stack([np.bincount(number, one, blocks) for one in squares])
@@ -329,13 +395,17 @@ def _held_out(predictions: _Predictions, logs: np.ndarray, rival: _Predictions, 
     first, crude, instead = np.sqrt(np.maximum(sums @ draws.T, 1e-30))
     before, after = (float(np.sqrt(one.mean())) for one in squares[:2])
     horizon = predictions.counts[-1] * predictions.record.step
-    return HeldOutErrors(horizon, before, after, _interval(crude / first), _interval(crude / instead))
+    return HeldOutErrors(
+        horizon, before, after, _interval(crude / first), _interval(crude / instead)
+    )
 
 
 def _each_by_its_fold(predictions, logs):
     """Errors of each prediction by what was fitted without it, (3, h, s) array."""
     fold = np.unique(predictions.block, return_inverse=True)[1] % CRUDE_FOLDS
-    return np.moveaxis(predictions.missed(logs), -1, 1)[fold, np.arange(fold.size)].transpose(1, 2, 0)
+    return np.moveaxis(predictions.missed(logs), -1, 1)[fold, np.arange(fold.size)].transpose(
+        1, 2, 0
+    )
 
 
 def _squares(off):

@@ -58,8 +58,14 @@ class CrudeNumber:
         """The ship with this number, known as well as its standard deviation says."""
         if not self.axis:
             return with_thrust(model, self.estimate, self.std)
-        known = {p: float(np.hypot(model.tolerances.get(p, 0.0), self.std * abs(model.get(p)))) for p in self.paths}
-        return replace(model.with_values(self.values(model, self.estimate)), tolerances=model.tolerances | known)
+        known = {
+            p: float(np.hypot(model.tolerances.get(p, 0.0), self.std * abs(model.get(p))))
+            for p in self.paths
+        }
+        return replace(
+            model.with_values(self.values(model, self.estimate)),
+            tolerances=model.tolerances | known,
+        )
 
 
 @dataclass(frozen=True)
@@ -91,9 +97,18 @@ class HeldOutErrors:
 
     def as_gain(self) -> dict[str, Any]:
         """The entry ``gain`` of diagnosis.json; what is only known beside a fit of fine causes is None."""
-        unknown = dict.fromkeys(("bias_observer_m", "noise_floor_m", "share_of_explainable", "ci95"))
-        known = {"horizon_s": float(f"{self.horizon:.4g}"), "before_m": self.before, "after_m": self.after}
-        of_errors = {"error_ratio": self.after / self.before, "error_ratio_ci95": list(self.over_before)}
+        unknown = dict.fromkeys(
+            ("bias_observer_m", "noise_floor_m", "share_of_explainable", "ci95")
+        )
+        known = {
+            "horizon_s": float(f"{self.horizon:.4g}"),
+            "before_m": self.before,
+            "after_m": self.after,
+        }
+        of_errors = {
+            "error_ratio": self.after / self.before,
+            "error_ratio_ci95": list(self.over_before),
+        }
         return known | unknown | of_errors
 
 
@@ -158,10 +173,16 @@ def crude_numbers(model: ShipModel, causes: Mapping[str, Cause]) -> list[CrudeNu
         All 1; the thrust first. Without those that the ship has no number for.
     """
     found = []
-    for cause in sorted((one for one in causes.values() if one.sought_in == "comparison"), key=lambda one: one.axis):
+    for cause in sorted(
+        (one for one in causes.values() if one.sought_in == "comparison"), key=lambda one: one.axis
+    ):
         for name, parameter in cause.parameters.items():
             paths = [path for pattern in parameter.of for path in _paths(pattern, model)]
-            paths = [path for path in paths if model.has(path) and (not cause.axis or model.get(path) != 0.0)]
+            paths = [
+                path
+                for path in paths
+                if model.has(path) and (not cause.axis or model.get(path) != 0.0)
+            ]
             if paths:
                 found.append(CrudeNumber(cause.cause, name, cause.axis, tuple(paths)))
     return found
@@ -185,5 +206,7 @@ def spoken_for(cause: Cause, said: set[str], causes: Mapping[str, Cause]) -> boo
     """
     own = {number for one in cause.parameters.values() for number in one.of}
     known = [causes[name] for name in said if name in causes and causes[name].axis]
-    numbers = {number for one in known for parameter in one.parameters.values() for number in parameter.of}
+    numbers = {
+        number for one in known for parameter in one.parameters.values() for number in parameter.of
+    }
     return own <= numbers.union(*(one.replaces for one in known))

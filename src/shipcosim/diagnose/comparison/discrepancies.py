@@ -30,7 +30,10 @@ _DAMPING = "damping in"
 
 
 def discrepancies_of(
-    labels: Labels, gains: Sequence[AxisGain], ratio: CommonRatio | None, missing: Sequence[MissingLoad]
+    labels: Labels,
+    gains: Sequence[AxisGain],
+    ratio: CommonRatio | None,
+    missing: Sequence[MissingLoad],
 ) -> list[Discrepancy]:
     """What differs between commanded and felt force: signs, then sizes, largest first, then what is left.
 
@@ -50,24 +53,42 @@ def discrepancies_of(
     -------
     list of Discrepancy
     """
-    signs, found = sorted(_wrong_signs(labels, gains), key=lambda one: -one.share), []
+    signs = sorted(_wrong_signs(labels, gains), key=lambda one: -one.share)
+    found = []
     off = [one for one in gains if one.is_off and one.is_known]
     if ratio is not None and ratio.differs(MENTIONED):
         share = max((_explained_by_gain(one) for one in off), default=0.0)
         text = f"thrust over inertia {ratio.ratio:.2f} of the model's"
         found.append(Discrepancy(text, None, None, ratio.ratio, ratio.std, "1", share))
     else:
-        found += [one for gain in gains if gain.is_told and (gain.is_off or gain.differs_by_way) for one in _weak(gain)]
+        found += [
+            one
+            for gain in gains
+            if gain.is_told and (gain.is_off or gain.differs_by_way)
+            for one in _weak(gain)
+        ]
     if all(one.is_common for one in off):  # else what one thruster lacks passes for damping
         found += [one for gain in off for one in _damping(gain)]
     if labels.used.is_late:
         text = f"thrust acts {labels.used.lag:.2g} s after its command"
-        found.append(Discrepancy(text, None, None, labels.used.lag, 0.25 * labels.used.lag, "s", _of_lag(labels)))
+        found.append(
+            Discrepancy(
+                text, None, None, labels.used.lag, 0.25 * labels.used.lag, "s", _of_lag(labels)
+            )
+        )
     found = [*signs, *sorted(found, key=lambda one: -one.share)]
-    explained = {one.axis for one in found} | set(ratio.axes if ratio and ratio.differs(MENTIONED) else ())
+    explained = {one.axis for one in found} | set(
+        ratio.axes if ratio and ratio.differs(MENTIONED) else ()
+    )
     large = [one for one in missing if one.is_large and one.axis not in explained]
-    rest = [gain for gain in gains if gain.is_off and gain.axis.name not in {one.axis for one in large}]
-    return [*found, *(one.discrepancy for one in large), *(one for gain in rest if found for one in _rest(gain))]
+    rest = [
+        gain for gain in gains if gain.is_off and gain.axis.name not in {one.axis for one in large}
+    ]
+    return [
+        *found,
+        *(one.discrepancy for one in large),
+        *(one for gain in rest if found for one in _rest(gain)),
+    ]
 
 
 def is_of_damping(one: Discrepancy) -> bool:
@@ -84,19 +105,36 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         axis = one.axis
         before = axis.total(labels.logged.commanded)
         fit = axis.compared(before[None])
-        gain, std = float(fit.gains[0]), float(fit.std[0])
+        gain = float(fit.gains[0])
+        std = float(fit.std[0])
         if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT or fit.share < TOLD:
             continue
-        because = bool(why) and bool(np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size)
-        if one.is_balanced and not because:  # a way that is weaker makes the sum of both look reversed
+        because = bool(why) and bool(
+            np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size
+        )
+        if (
+            one.is_balanced and not because
+        ):  # a way that is weaker makes the sum of both look reversed
             continue
         told |= because
         text = f"{FORCES[axis.name]}: wrong sign" + (f", as with {why}" if because else "")
-        share = float(np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0))
+        share = float(
+            np.clip(1.0 - fit.squares / axis.unexplained(np.zeros(before.size)), 0.0, 1.0)
+        )
         yield Discrepancy(text, None, axis.name, gain, std, "1", share)
     if why and not told:
-        gained = float(np.clip(1.0 - labels.logged.support / max(labels.best.support, 1e-9), 0.0, 1.0))
-        yield Discrepancy(f"thrust does not go with its command, but with {why}", None, None, -1.0, 0.0, "1", gained)
+        gained = float(
+            np.clip(1.0 - labels.logged.support / max(labels.best.support, 1e-9), 0.0, 1.0)
+        )
+        yield Discrepancy(
+            f"thrust does not go with its command, but with {why}",
+            None,
+            None,
+            -1.0,
+            0.0,
+            "1",
+            gained,
+        )
 
 
 def in_words(change: LabelError) -> str:
@@ -125,7 +163,8 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
     apart = {
         n: v
         for n, v in apart.items()
-        if v > SURE_OF_GAIN * one.each_std[n] and abs(v - 1.0) > SURE_OF_GAIN * one.each_std[n] + MENTIONED - 1.0
+        if v > SURE_OF_GAIN * one.each_std[n]
+        and abs(v - 1.0) > SURE_OF_GAIN * one.each_std[n] + MENTIONED - 1.0
     }
     for name, value in apart.items():
         text = f"{FORCES[one.axis.name]} of {name} over inertia {value:.2f} of the model's"
@@ -137,11 +176,15 @@ def _weak(one: AxisGain) -> Iterator[Discrepancy]:
 
 def _damping(one: AxisGain) -> Iterator[Discrepancy]:
     """What the water resists, where the log tells it."""
-    axis, fit = one.axis, one.fit
+    axis = one.axis
+    fit = one.fit
     if fit.gains[0] <= 0.0 or not np.any(axis.hull):
         return
-    scale = max(one.gain, float(fit.gains[0])) / float(fit.gains[0])  # what makes the gain look small does it to both
-    damping, std = fit.damping * scale, fit.damping_std * scale + fit.damping * scale * one.std / one.gain
+    scale = max(one.gain, float(fit.gains[0])) / float(
+        fit.gains[0]
+    )  # what makes the gain look small does it to both
+    damping = fit.damping * scale
+    std = fit.damping_std * scale + fit.damping * scale * one.std / one.gain
     left = regressed(
         axis.felt - axis.hull,
         np.concatenate([one.total[:, None], axis.rest[:, 3:]], axis=1),
@@ -149,15 +192,25 @@ def _damping(one: AxisGain) -> Iterator[Discrepancy]:
         axis.block,
     )
     support = 0.5 * left.independent * np.log(left.squares / fit.squares)
-    far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(MENTIONED)
+    far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(
+        MENTIONED
+    )
     if support > LEAST_SUPPORT and far and damping > max(SURE_OF_GAIN * std, LEAST_DAMPING):
         text = f"{_DAMPING} {axis.name} over inertia {damping:.2f} of the model's"
-        yield Discrepancy(text, None, axis.name, damping, std, "1", float(1.0 - fit.squares / left.squares))
+        yield Discrepancy(
+            text, None, axis.name, damping, std, "1", float(1.0 - fit.squares / left.squares)
+        )
 
 
 def _of_lag(labels: Labels) -> float:
     """Share of the support that only a lag gives."""
-    return float(np.clip(0.0 if not labels.used.support else labels.used.gained_by_lag / labels.used.support, 0.0, 1.0))
+    return float(
+        np.clip(
+            0.0 if not labels.used.support else labels.used.gained_by_lag / labels.used.support,
+            0.0,
+            1.0,
+        )
+    )
 
 
 def _rest(one: AxisGain) -> Iterator[Discrepancy]:

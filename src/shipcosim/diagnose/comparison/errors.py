@@ -47,7 +47,9 @@ def horizons_of(model: ShipModel, motion: Motion, span: float, step: float) -> t
         Rounded, increasing. [s]
     """
     unit = froude_time(model.parts["hull"].length)
-    answer = np.clip(ANSWER * response_times(model, motion).middle, SHORTEST_ANSWER * unit, LONGEST_ANSWER * unit)
+    answer = np.clip(
+        ANSWER * response_times(model, motion).middle, SHORTEST_ANSWER * unit, LONGEST_ANSWER * unit
+    )
     longest = max(min(float(answer), MOST_OF_LOG * span), 6.0 * step)
     power = 10.0 ** np.floor(np.log10(longest))
     rounded = float(power * _LADDER[np.abs(np.log(_LADDER * power / longest)).argmin()])
@@ -89,7 +91,9 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     }
 
 
-def errors_over_none(record: Record, felt: Felt, errors: dict[str, list[float]]) -> dict[str, float]:
+def errors_over_none(
+    record: Record, felt: Felt, errors: dict[str, list[float]]
+) -> dict[str, float]:
     """Errors of the simulation over those of no model at all, which keeps surge, sway and yaw rate as they are.
 
     Parameters
@@ -104,12 +108,27 @@ def errors_over_none(record: Record, felt: Felt, errors: dict[str, list[float]])
     dict of str to float
         ``position`` and ``heading``: the larger of the two of the longer horizons.
     """
-    rows, motion = starts_of(record, felt, errors["horizon_s"][-1]), felt.motion
+    rows = starts_of(record, felt, errors["horizon_s"][-1])
+    motion = felt.motion
     seen = Motion(*(felt.kernel.smooth(value) for value in motion))
-    counts = np.array([max(1, round(horizon / record.step)) for horizon in errors["horizon_s"]])[1:, None]
-    time, (x, y, psi, u, v, r) = counts * record.step, (value[rows] for value in seen)
-    turned = np.exp(1j * psi) * (u + 1j * v) * time * np.exp(0.5j * r * time) * np.sinc(0.5 * r * time / np.pi)
-    kept = Motion(x + turned.real, y + turned.imag, psi + r * time, *(value + 0.0 * time for value in (u, v, r)))
+    counts = np.array([max(1, round(horizon / record.step)) for horizon in errors["horizon_s"]])[
+        1:, None
+    ]
+    time = counts * record.step
+    (x, y, psi, u, v, r) = (value[rows] for value in seen)
+    turned = (
+        np.exp(1j * psi)
+        * (u + 1j * v)
+        * time
+        * np.exp(0.5j * r * time)
+        * np.sinc(0.5 * r * time / np.pi)
+    )
+    kept = Motion(
+        x + turned.real,
+        y + turned.imag,
+        psi + r * time,
+        *(value + 0.0 * time for value in (u, v, r)),
+    )
     off = missing(kept, seen, rows + counts)
     ratios = {}
     for channel, name in (("position", "position_error_m"), ("heading", "heading_error_deg")):

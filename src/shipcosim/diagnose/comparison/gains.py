@@ -84,7 +84,11 @@ class AxisGain:
     @property
     def is_known(self) -> bool:
         """Whether the log tells the gain."""
-        return self.is_told and self.fit.support > LEAST_SUPPORT and self.gain > SURE_OF_GAIN * self.std
+        return (
+            self.is_told
+            and self.fit.support > LEAST_SUPPORT
+            and self.gain > SURE_OF_GAIN * self.std
+        )
 
     @property
     def has_thrusters_apart(self) -> bool:
@@ -97,7 +101,8 @@ class AxisGain:
         common = float(self.fit.gains[0])
         near = THRUSTER_SPREAD * abs(common)
         return not self.differs_by_way and all(
-            abs(v - common) <= SURE_OF_GAIN * self.each_std[name] + near for name, v in self.each.items()
+            abs(v - common) <= SURE_OF_GAIN * self.each_std[name] + near
+            for name, v in self.each.items()
         )
 
     @property
@@ -111,16 +116,23 @@ class AxisGain:
         if self.ways is None or self.support_of_ways < self.fit.support + LEAST_SUPPORT:
             return False
         (ahead, std), (astern, other) = self.ways
-        known = max(ahead / max(std, 1e-9), astern / max(other, 1e-9)) > SURE_OF_GAIN and min(ahead, astern) > 0.0
+        known = (
+            max(ahead / max(std, 1e-9), astern / max(other, 1e-9)) > SURE_OF_GAIN
+            and min(ahead, astern) > 0.0
+        )
         near = THRUSTER_SPREAD * max(ahead, astern)
         return known and abs(ahead - astern) > SURE_OF_GAIN * float(np.hypot(std, other)) + near
 
     def differs(self, least: float) -> bool:
         """Whether the gain differs from 1 by a factor of more than `least` for sure."""
-        return self.gain <= 0.0 or abs(np.log(self.gain)) - SURE_OF_GAIN * self.std / self.gain > np.log(least)
+        return self.gain <= 0.0 or abs(
+            np.log(self.gain)
+        ) - SURE_OF_GAIN * self.std / self.gain > np.log(least)
 
 
-def gains_of(axes: Sequence[Axis], commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> list[AxisGain]:
+def gains_of(
+    axes: Sequence[Axis], commanded: Commanded, ahead: Mapping[str, np.ndarray]
+) -> list[AxisGain]:
     """The gain on each axis that the thrusters drive.
 
     Parameters
@@ -142,12 +154,15 @@ def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> 
     names = [name for name, load in commanded.thrusters.items() if np.any(load[axis.number])]
     fit = axis.compared(total[None])
     apart = axis.compared(np.stack([axis.smoothed(commanded.thrusters[name]) for name in names]))
-    gain, std = float(fit.gains[0]), float(fit.std[0])
+    gain = float(fit.gains[0])
+    std = float(fit.std[0])
     if gain > 0.0:
         most, most_std = axis.most_gain(total)
         if np.isfinite(most):
             middle = float(np.sqrt(gain * max(most, gain)))
-            half = 0.5 * np.log(max(most / gain, 1.0)) / np.sqrt(3.0)  # evenly likely between the two
+            half = (
+                0.5 * np.log(max(most / gain, 1.0)) / np.sqrt(3.0)
+            )  # evenly likely between the two
             std = float(middle * np.sqrt(half**2 + (std / gain) ** 2 + (most_std / most) ** 2))
             gain = middle
     other = axis.felt - axis.hull - axis.wind
@@ -161,10 +176,17 @@ def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> 
     return AxisGain(axis, total, fit, gain, std, each, each_std, *shares, ways, support, error)
 
 
-def _by_way(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> tuple[tuple | None, float]:
+def _by_way(
+    axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]
+) -> tuple[tuple | None, float]:
     """Gains of thrust ahead and astern, and what they support that are not negative; None where the log lacks a way."""
     loads = commanded.thrusters.items()
-    ways = np.stack([sum((axis.smoothed(load * (ahead[n] == way)) for n, load in loads), 0.0) for way in (True, False)])
+    ways = np.stack(
+        [
+            sum((axis.smoothed(load * (ahead[n] == way)) for n, load in loads), 0.0)
+            for way in (True, False)
+        ]
+    )
     sizes = np.sqrt((ways**2).mean(1))
     if sizes.min() < LEAST_WAY * sizes.max():
         return None, 0.0
@@ -216,4 +238,6 @@ def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:
         return None
     spread = float(np.sqrt(weights @ (logs - mean) ** 2 / weights.sum()))
     std = max(1.0 / np.sqrt(weights.sum()), spread)
-    return CommonRatio(float(np.exp(mean)), float(np.exp(mean) * std), tuple(one.axis.name for one in known))
+    return CommonRatio(
+        float(np.exp(mean)), float(np.exp(mean) * std), tuple(one.axis.name for one in known)
+    )

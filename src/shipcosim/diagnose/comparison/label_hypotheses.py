@@ -45,11 +45,14 @@ class LabelError:
     thrusters: tuple[str, ...]
     turns: bool = False
 
-    def undo(self, units: dict[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def undo(
+        self, units: dict[str, tuple[np.ndarray, np.ndarray]]
+    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         """What drives the thrusters, put right; the direction of one that does not turn stays."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
-            (first, ahead), (second, beside) = units[one], units[other]
+            (first, ahead) = units[one]
+            (second, beside) = units[other]
             ahead, beside = (beside, ahead) if self.turns else (ahead, beside)
             return units | {one: (second, ahead), other: (first, beside)}
         (name,) = self.thrusters
@@ -119,9 +122,15 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
         Exchanges before signs, one change before several.
     """
     names = [name for name in model.thrusters if np.any(record.units[name][0])]
-    pairs = [pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])]
-    singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [LabelError((name,)) for name in names]
-    return [several for count in range(1, MOST_CHANGES + 1) for several in combinations(singles, count)]
+    pairs = [
+        pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])
+    ]
+    singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [
+        LabelError((name,)) for name in names
+    ]
+    return [
+        several for count in range(1, MOST_CHANGES + 1) for several in combinations(singles, count)
+    ]
 
 
 def _make(model: ShipModel, name: str) -> object:
@@ -131,7 +140,11 @@ def _make(model: ShipModel, name: str) -> object:
 
 
 def reading(
-    changes: tuple[LabelError, ...], record: Record, felt: Felt, axes: Sequence[Axis], model: ShipModel
+    changes: tuple[LabelError, ...],
+    record: Record,
+    felt: Felt,
+    axes: Sequence[Axis],
+    model: ShipModel,
 ) -> LabelHypothesis:
     """One reading of the channels, with the lag that suits it best.
 
@@ -161,7 +174,11 @@ def reading(
         support = support_of(moved, ahead, axes)
         gained = support - tries[0].support if tries else 0.0
         cost = LAG_COST + lag / scale if lag else 0.0
-        tries.append(LabelHypothesis(changes, support, float(lag), gained, cost, record.step, moved, ahead, units))
+        tries.append(
+            LabelHypothesis(
+                changes, support, float(lag), gained, cost, record.step, moved, ahead, units
+            )
+        )
     return max(tries, key=lambda one: one.score)
 
 
@@ -188,7 +205,9 @@ def driven(
     tuple of Record, Felt, ShipModel
     """
     record = replace(record, units=units)
-    if any("rpm" in one.drives for one in model.third_party.values()):  # one that is told its thrust is linear
+    if any(
+        "rpm" in one.drives for one in model.third_party.values()
+    ):  # one that is told its thrust is linear
         model = with_surrogates(model, record, felt.motion)
     return record, felt, model
 
@@ -199,7 +218,13 @@ def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequenc
     for axis in axes:
         if axis.is_driven(commanded):
             ways = [
-                sum((axis.smoothed(load * (ahead[name] == way)) for name, load in commanded.thrusters.items()), 0.0)
+                sum(
+                    (
+                        axis.smoothed(load * (ahead[name] == way))
+                        for name, load in commanded.thrusters.items()
+                    ),
+                    0.0,
+                )
                 for way in (True, False)
             ]
             total += axis.both_ways(*map(np.asarray, ways)).support

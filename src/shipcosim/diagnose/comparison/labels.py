@@ -16,7 +16,13 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.causality import causal_support
 from shipcosim.diagnose.comparison.commanded import commanded_by, late
-from shipcosim.diagnose.comparison.label_hypotheses import LabelError, LabelHypothesis, changes_of, driven, reading
+from shipcosim.diagnose.comparison.label_hypotheses import (
+    LabelError,
+    LabelHypothesis,
+    changes_of,
+    driven,
+    reading,
+)
 from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
@@ -104,7 +110,11 @@ class _Weighed:
     def beats(self, other: _Weighed, least: float) -> bool:
         """Whether two measures prefer it by `least`, the third does not speak against it, nor all three together."""
         worst, middle, _ = over = self.over(other)
-        return bool(middle > least and worst > -CONTRADICTED and np.minimum(over, CONTRADICTED).sum() > 2.0 * least)
+        return bool(
+            middle > least
+            and worst > -CONTRADICTED
+            and np.minimum(over, CONTRADICTED).sum() > 2.0 * least
+        )
 
     def is_as(self, other: _Weighed) -> bool:
         """Whether they do the same but for the number of changes."""
@@ -135,11 +145,15 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     logged = reading((), record, felt, axes, model)
     if not logged.lag and all(_does_as_told(axis, logged.commanded) for axis in axes):
         return Labels(logged, logged)
-    found = [logged, *(reading(one, record, felt, axes, model) for one in changes_of(record, model))]
+    found = [
+        logged,
+        *(reading(one, record, felt, axes, model) for one in changes_of(record, model)),
+    ]
     credible = [one for one in found[1:] if one.score > logged.score - CONTRADICTED]
     credible = sorted(credible, key=lambda one: -one.score)[:MOST_WEIGHED]
     weighed = _weighed([logged, *credible], record, felt, model)
-    labels, agreed = _by_fit(weighed, axes), _by_agreement(weighed)
+    labels = _by_fit(weighed, axes)
+    agreed = _by_agreement(weighed)
     if labels.is_sure and agreed and agreed.is_sure and agreed.best is not labels.best:
         return Labels(logged, labels.best, (agreed.best,), is_judged=False)
     if agreed and (agreed.is_sure or not labels.is_wrong):
@@ -147,9 +161,12 @@ def read_labels(record: Record, felt: Felt, axes: Sequence[Axis], model: ShipMod
     return labels
 
 
-def _weighed(found: Sequence[LabelHypothesis], record: Record, felt: Felt, model: ShipModel) -> list[_Weighed]:
+def _weighed(
+    found: Sequence[LabelHypothesis], record: Record, felt: Felt, model: ShipModel
+) -> list[_Weighed]:
     """Readings with what the three measures say, the logged one first."""
-    unit, smooth = froude_time(model.parts["hull"].length), smoothed(felt)
+    unit = froude_time(model.parts["hull"].length)
+    smooth = smoothed(felt)
     log = blocks_of(felt, commanded_by(*driven(found[0].units, record, smooth, model)), model)
     foresight = causal_support(felt, [one.commanded for one in found], unit)
     weighed = []
@@ -161,7 +178,9 @@ def _weighed(found: Sequence[LabelHypothesis], record: Record, felt: Felt, model
     return weighed
 
 
-def _likelihoods(log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: float) -> Iterator[float]:
+def _likelihoods(
+    log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: float
+) -> Iterator[float]:
     """Of a reading with several lags, less what those cost."""
     for lag in LIKELIHOOD_LAGS:
         moved = late(commanded, lag * unit / one.step) if lag else commanded
@@ -171,15 +190,25 @@ def _likelihoods(log: Blocks, commanded: Commanded, one: LabelHypothesis, unit: 
 def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     """The reading that fits best, and whether it does beyond doubt and nothing else speaks against it."""
     first, ranked = weighed[0], sorted(weighed, key=lambda one: -one.fit)
-    best, logged = ranked[0], first.reading
+    best = ranked[0]
+    logged = first.reading
     rivals = tuple(one.reading for one in ranked[1:] if one.fit > best.fit - RIVAL)
     gained = best.fit - first.fit
     plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
-    least = SURELY_CAUSED if _explained(best.reading, logged, axes) <= TOLD else 0.0 if plain else RIVAL
+    least = (
+        SURELY_CAUSED if _explained(best.reading, logged, axes) <= TOLD else 0.0 if plain else RIVAL
+    )
     changes = CHANGE_COST * len(best.reading.changes)
-    is_wrong = gained > SURELY_WRONG and logged not in rivals and best.foresight - first.foresight + changes > least
+    is_wrong = (
+        gained > SURELY_WRONG
+        and logged not in rivals
+        and best.foresight - first.foresight + changes > least
+    )
     likeliest = max(one.likelihood for one in weighed)
-    is_wrong &= best.likelihood + changes > first.likelihood - UNLIKELIER and best.likelihood > likeliest - UNLIKELIER
+    is_wrong &= (
+        best.likelihood + changes > first.likelihood - UNLIKELIER
+        and best.likelihood > likeliest - UNLIKELIER
+    )
     is_judged = is_wrong or all(first.beats(one, RIVAL) or one.is_as(first) for one in weighed[1:])
     return Labels(logged, best.reading, rivals, is_wrong, is_judged, gained)
 
@@ -193,8 +222,12 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
         rest = [other for other in others if other not in twins]
         if one.beats(first, AGREED) and all(one.beats(other, RIVAL) for other in rest):
             fewest = min(len(other.reading.changes) for other in (one, *twins))
-            alike = [other.reading for other in (one, *twins) if len(other.reading.changes) == fewest]
-            return Labels(first.reading, alike[0], tuple(alike[1:]), True, True, float(one.over(first)[1]))
+            alike = [
+                other.reading for other in (one, *twins) if len(other.reading.changes) == fewest
+            ]
+            return Labels(
+                first.reading, alike[0], tuple(alike[1:]), True, True, float(one.over(first)[1])
+            )
     return None
 
 
@@ -202,9 +235,16 @@ def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Seque
     """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
     for axis in axes:
         total = axis.total(logged.commanded)
-        if axis.is_driven(logged.commanded) and np.abs(axis.total(best.commanded) - total).max() > 0.1 * axis.size:
+        if (
+            axis.is_driven(logged.commanded)
+            and np.abs(axis.total(best.commanded) - total).max() > 0.1 * axis.size
+        ):
             fit = axis.compared(total[None])
-            if fit.gains[0] < -OPPOSITE * fit.std[0] and fit.support > LEAST_SUPPORT and fit.share > TOLD:
+            if (
+                fit.gains[0] < -OPPOSITE * fit.std[0]
+                and fit.support > LEAST_SUPPORT
+                and fit.share > TOLD
+            ):
                 return True
     return False
 
@@ -213,7 +253,10 @@ def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Ax
     """Largest share of the felt force that a reading explains on an axis where it differs from the logged one."""
     shares = [0.0]
     for axis in axes:
-        differs = np.abs(axis.total(best.commanded) - axis.total(logged.commanded)).max() > 0.1 * axis.size
+        differs = (
+            np.abs(axis.total(best.commanded) - axis.total(logged.commanded)).max()
+            > 0.1 * axis.size
+        )
         if differs and axis.is_driven(best.commanded):
             shares.append(axis.explained(_each(axis, best.commanded)).share)
     return max(shares)
@@ -224,11 +267,14 @@ def _does_as_told(axis: Axis, commanded: Commanded) -> bool:
     if not axis.is_driven(commanded):
         return True
     each = _each(axis, commanded)
-    together, apart = axis.compared(each.sum(0)[None]), axis.compared(each)
+    together = axis.compared(each.sum(0)[None])
+    apart = axis.compared(each)
     opposite = bool(np.any(apart.gains < -OPPOSITE * np.maximum(apart.std, 1e-9)))
     return not opposite and together.gains[0] > max(OPPOSITE * together.std[0], LEAST_GAIN)
 
 
 def _each(axis: Axis, commanded: Commanded) -> np.ndarray:
     """What each thruster that acts on an axis is commanded, (k, n) array."""
-    return np.stack([axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])])
+    return np.stack(
+        [axis.smoothed(load) for load in commanded.thrusters.values() if np.any(load[axis.number])]
+    )

@@ -91,7 +91,9 @@ class Blocks:
 def smoothed(felt: Felt) -> Felt:
     """The same with a smoothed motion, so that noise of the velocities does not go with the loads that they make."""
     motion = felt.motion
-    return replace(felt, motion=type(motion)(*(felt.kernel.smooth(np.asarray(one, float)) for one in motion)))
+    return replace(
+        felt, motion=type(motion)(*(felt.kernel.smooth(np.asarray(one, float)) for one in motion))
+    )
 
 
 def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
@@ -108,7 +110,8 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     -------
     Blocks
     """
-    length, motion = model.parts["hull"].length, smoothed(felt).motion
+    length = model.parts["hull"].length
+    motion = smoothed(felt).motion
     count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
     speeds = blocks(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), count)
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
@@ -116,7 +119,8 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
     force = inertia(model) @ rates + _between(blocks(moving_mass(motion, model), count))
     listed = rest_of(motion, commanded)
-    sizes, axes = _sizes(commanded, length), {}
+    sizes = _sizes(commanded, length)
+    axes = {}
     for i in sizes:
         columns, positive = listed[i]
         rest = np.stack([_between(blocks(one, count)) for one in columns], axis=1)
@@ -128,8 +132,14 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
 
 def _sizes(commanded: Commanded, length: float) -> dict[int, float]:
     """What the thrusters do at most, root mean square, on axes where that is no small part of their force."""
-    most = sum((np.abs(load) for load in commanded.thrusters.values()), np.zeros_like(commanded.hull))
-    least = LEAST_OF_ALL * np.array([1.0, 1.0, LEAST_LEVER * length]) * np.sqrt(((most[0] + most[1]) ** 2).mean())
+    most = sum(
+        (np.abs(load) for load in commanded.thrusters.values()), np.zeros_like(commanded.hull)
+    )
+    least = (
+        LEAST_OF_ALL
+        * np.array([1.0, 1.0, LEAST_LEVER * length])
+        * np.sqrt(((most[0] + most[1]) ** 2).mean())
+    )
     found = np.sqrt((most**2).mean(1))
     return {i: float(found[i]) for i in range(3) if found[i] > max(least[i], 1e-9)}
 
@@ -179,25 +189,41 @@ def likelihood_of(log: Blocks, commanded: Commanded, ahead: dict[str, np.ndarray
 def _columns(log, i, commanded, ahead):
     """The sum of the thrusters' loads, and by what they may differ from it, each with its standard deviation."""
     loads = {name: load[i] for name, load in commanded.thrusters.items() if np.any(load[i])}
-    ways = sum((load * (ahead[name] - 0.5) for name, load in loads.items()), np.zeros(commanded.hull.shape[1]))
+    ways = sum(
+        (load * (ahead[name] - 0.5) for name, load in loads.items()),
+        np.zeros(commanded.hull.shape[1]),
+    )
     columns = [log.between(one) for one in (*loads.values(), ways)]
     total = sum(columns[:-1], np.zeros_like(columns[-1]))
     return total, np.stack(columns, 1), np.r_[np.full(len(loads), THRUSTER_WIDTH), WAY_WIDTH]
 
 
-def _fitted(log: Blocks, i: int, total: np.ndarray | None, apart: np.ndarray, widths: np.ndarray | None = None) -> _Fit:
+def _fitted(
+    log: Blocks,
+    i: int,
+    total: np.ndarray | None,
+    apart: np.ndarray,
+    widths: np.ndarray | None = None,
+) -> _Fit:
     """The felt force on an axis explained, with errors that are autoregressive."""
-    axis, rows, order = log.axes[i], log.rows, CAUSAL_ORDER
+    axis = log.axes[i]
+    rows = log.rows
+    order = CAUSAL_ORDER
     prior = STEADY_SHARE * log.sizes[i] / np.sqrt((axis.rest**2).mean(0) + 1e-30)
-    prior, positive, columns = np.where(axis.positive, np.inf, prior), axis.positive, axis.rest
+    prior = np.where(axis.positive, np.inf, prior)
+    positive = axis.positive
+    columns = axis.rest
     starts = [np.zeros(order)]
     if total is not None and widths is not None:
         columns = np.concatenate([total[:, None], axis.rest, apart], axis=1)
-        prior, positive = np.r_[np.inf, prior, widths], np.r_[False, positive, np.zeros(widths.size, bool)]
+        prior = np.r_[np.inf, prior, widths]
+        positive = np.r_[False, positive, np.zeros(widths.size, bool)]
         starts.append(log.alone[i].filter)
     felt = np.stack([axis.felt[rows - k] for k in range(order + 1)])
     late = np.stack([columns[rows - k] for k in range(order + 1)])
-    best = max((_refined(felt, late, positive, prior, start) for start in starts), key=lambda one: one[0])
+    best = max(
+        (_refined(felt, late, positive, prior, start) for start in starts), key=lambda one: one[0]
+    )
     likelihood, found, filter_, spread = best
     if total is None:
         return _Fit(likelihood, 0.0, 0.0, filter_)
@@ -210,21 +236,30 @@ def _fitted(log: Blocks, i: int, total: np.ndarray | None, apart: np.ndarray, wi
 
 def _refined(felt, late, positive, prior, filter_):
     """Coefficients and autoregression in turn; the best (log-likelihood, coefficients, autoregression, spread)."""
-    best, spread = (-np.inf, np.zeros(positive.size), filter_, 1.0), float(np.std(np.r_[1.0, -filter_] @ felt))
+    best = (-np.inf, np.zeros(positive.size), filter_, 1.0)
+    spread = float(np.std(np.r_[1.0, -filter_] @ felt))
     for _ in range(_ROUNDS):
         ahead = np.r_[1.0, -filter_]
-        series, white = ahead @ felt, np.tensordot(ahead, late, 1)
+        series = ahead @ felt
+        white = np.tensordot(ahead, late, 1)
         scale = np.sqrt((white**2).sum(0)) + 1e-300
-        unit, pull = white / scale, spread / (prior * scale)
+        unit = white / scale
+        pull = spread / (prior * scale)
         found = bounded(unit.T @ unit + np.diag(pull**2), unit.T @ series, positive) / scale
         errors = felt - late @ found
         past = errors[1:].T
         products = past.T @ past
         filter_ = np.linalg.solve(
-            products + 1e-6 * np.trace(products) / len(products) * np.eye(len(products)) + 1e-300, past.T @ errors[0]
+            products + 1e-6 * np.trace(products) / len(products) * np.eye(len(products)) + 1e-300,
+            past.T @ errors[0],
         )
         left = errors[0] - past @ filter_
-        spread = float(np.sqrt(np.minimum(left**2, (HUBER * 1.4826 * np.median(np.abs(left))) ** 2).mean())) + 1e-300
+        spread = (
+            float(
+                np.sqrt(np.minimum(left**2, (HUBER * 1.4826 * np.median(np.abs(left))) ** 2).mean())
+            )
+            + 1e-300
+        )
         likelihood = float(-left.size * np.log(spread) - 0.5 * ((found / prior) ** 2).sum())
         if likelihood > best[0]:
             best = likelihood, found, filter_, spread

@@ -61,9 +61,13 @@ def felt_by(record: Record, length: float) -> Felt:
     motion = type(motion)(*(averaged(series) for series in motion))  # as what drives her is
     rates = kernel.rate(np.stack([motion.u, motion.v, motion.r]))
     if not is_measured(record, 3) or not is_measured(record, 4):
-        psi, r = kernel.smooth(motion.psi), kernel.smooth(motion.r)
+        psi = kernel.smooth(motion.psi)
+        r = kernel.smooth(motion.r)
         along, across = to_body(psi, *(kernel.rate(series, 2) for series in (motion.x, motion.y)))
-        rates[0], rates[1] = along + r * kernel.smooth(motion.v), across - r * kernel.smooth(motion.u)
+        rates[0], rates[1] = (
+            along + r * kernel.smooth(motion.v),
+            across - r * kernel.smooth(motion.u),
+        )
     if not is_measured(record, 5):
         rates[2] = kernel.rate(motion.psi, 2)
     return Felt(motion, rates, kernel.clear_of(bad | ~record.known), kernel)

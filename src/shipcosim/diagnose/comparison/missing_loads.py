@@ -10,7 +10,14 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import AXES
 from shipcosim.diagnose.comparison.commanded import inertia
-from shipcosim.diagnose.comparison.thresholds import ABOVE_NOISE, GOES_WITH, LARGE, MENTIONED, OFF, STEADY
+from shipcosim.diagnose.comparison.thresholds import (
+    ABOVE_NOISE,
+    GOES_WITH,
+    LARGE,
+    MENTIONED,
+    OFF,
+    STEADY,
+)
 from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
@@ -22,7 +29,11 @@ if TYPE_CHECKING:
 __all__ = ["FORCES", "MissingLoad", "missing_loads"]
 
 FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
-_SENSES = {"surge": ("ahead", "astern"), "sway": ("to starboard", "to port"), "yaw": ("to starboard", "to port")}
+_SENSES = {
+    "surge": ("ahead", "astern"),
+    "sway": ("to starboard", "to port"),
+    "yaw": ("to starboard", "to port"),
+}
 _UNITS = {"surge": "N", "sway": "N", "yaw": "N.m"}
 
 
@@ -73,7 +84,11 @@ class MissingLoad:
 
         A load that nobody predicts may be that of waves, which moves the ship to and fro and is no error of the model.
         """
-        beside = self.share > LARGE and self.missing > OFF * self.parts and self.missing > ABOVE_NOISE * self.noise
+        beside = (
+            self.share > LARGE
+            and self.missing > OFF * self.parts
+            and self.missing > ABOVE_NOISE * self.noise
+        )
         return beside and (self.is_steady or self.predicted > LARGE)
 
     @property
@@ -106,13 +121,19 @@ class MissingLoad:
 
     def _shown(self, *loads: float) -> str:
         """Loads one against the other, to two digits, with their unit."""
-        unit, factor = (f"k{_UNITS[self.axis]}", 1e-3) if max(loads) >= 1000.0 else (_UNITS[self.axis], 1.0)
+        unit, factor = (
+            (f"k{_UNITS[self.axis]}", 1e-3) if max(loads) >= 1000.0 else (_UNITS[self.axis], 1.0)
+        )
         texts = [f"{float(f'{factor * load:.2g}'):g}" for load in loads]
         return f"{' against '.join(texts)} {unit}"
 
 
 def missing_loads(
-    axes: Sequence[Axis], commanded: Commanded, felt: Felt, model: ShipModel, predicted: Mapping[str, float]
+    axes: Sequence[Axis],
+    commanded: Commanded,
+    felt: Felt,
+    model: ShipModel,
+    predicted: Mapping[str, float],
 ) -> list[MissingLoad]:
     """What the model lacks on each axis, the largest beside what is needed first.
 
@@ -163,7 +184,9 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
 def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     """What white noise of the velocities makes of the needed load, (3,) array: by their third differences."""
     kernel = felt.kernel
-    third = np.asarray(np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1), float)
+    third = np.asarray(
+        np.diff(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), 3, axis=1), float
+    )
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
     rows = kernel.width / kernel.step
     rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)

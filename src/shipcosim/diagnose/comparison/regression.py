@@ -47,7 +47,11 @@ class Regression:
 
 
 def regressed(
-    series: np.ndarray, columns: np.ndarray, positive: np.ndarray, block: int, prior: np.ndarray | None = None
+    series: np.ndarray,
+    columns: np.ndarray,
+    positive: np.ndarray,
+    block: int,
+    prior: np.ndarray | None = None,
 ) -> Regression:
     """Regress a series on columns.
 
@@ -68,19 +72,27 @@ def regressed(
     """
     scale = np.sqrt((columns**2).mean(0))
     scale = np.where(scale > 0.0, scale, 1.0)
-    unit, weights, pull = columns / scale, np.ones(series.size), np.zeros(scale.size)
+    unit = columns / scale
+    weights = np.ones(series.size)
+    pull = np.zeros(scale.size)
     for _ in range(ROBUST_ROUNDS):
         heavy = unit * (weights**2)[:, None]
         found = bounded(unit.T @ heavy + np.diag(pull**2), heavy.T @ series, positive)
         left = series - unit @ found
         size = np.sort(np.abs(left))[: int(SOUND * left.size)]
-        spread = np.sqrt((size**2).mean()) + 1e-300  # not the median: a craft that lies idle would hide what she does
+        spread = (
+            np.sqrt((size**2).mean()) + 1e-300
+        )  # not the median: a craft that lies idle would hide what she does
         weights = np.sqrt(np.minimum(1.0, HUBER * spread / np.maximum(np.abs(left), 1e-300)))
         if prior is not None:
             pull = np.sqrt(np.mean((weights * left) ** 2) * _apart(left, block)) / (prior * scale)
-    covariance = _by_blocks(unit, left * weights**2, weights, pull, (found != 0.0) | ~positive, block)
+    covariance = _by_blocks(
+        unit, left * weights**2, weights, pull, (found != 0.0) | ~positive, block
+    )
     squares = float((weights**2 * left**2 * (2.0 - weights**2)).mean())
-    return Regression(found / scale, covariance / np.outer(scale, scale), left, squares, _apart(left, block))
+    return Regression(
+        found / scale, covariance / np.outer(scale, scale), left, squares, _apart(left, block)
+    )
 
 
 def bounded(products: np.ndarray, with_series: np.ndarray, positive: np.ndarray) -> np.ndarray:

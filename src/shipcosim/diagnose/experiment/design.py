@@ -58,7 +58,10 @@ class ExperimentDesign:
 
 
 def design_experiment(
-    problem: IdentificationProblem, fit: Fit, rivals: Sequence[Fit], manoeuvres: Sequence[Manoeuvre] | None = None
+    problem: IdentificationProblem,
+    fit: Fit,
+    rivals: Sequence[Fit],
+    manoeuvres: Sequence[Manoeuvre] | None = None,
 ) -> ExperimentDesign | None:
     """A manoeuvre that is expected to tell a fit and its rivals apart.
 
@@ -83,12 +86,17 @@ def design_experiment(
         where none separates any.
     """
     fits = [fit, *rivals][:_MOST]
-    manoeuvres = list(manoeuvres or library(problem.model, cannot_turn(problem.record, problem.model)))
+    manoeuvres = list(
+        manoeuvres or library(problem.model, cannot_turn(problem.record, problem.model))
+    )
     with threadpool_limits(1):
         apart = separations(problem, fits, manoeuvres)
     pairs = list(combinations(range(len(fits)), 2))
-    told = np.array([[apart[min(a, b), max(a, b)][i] for a, b in pairs] for i in range(len(manoeuvres))])
-    count, least = (told >= CLEAR).sum(1), np.nan_to_num(told, nan=-np.inf).min(1, initial=np.inf)
+    told = np.array(
+        [[apart[min(a, b), max(a, b)][i] for a, b in pairs] for i in range(len(manoeuvres))]
+    )
+    count = (told >= CLEAR).sum(1)
+    least = np.nan_to_num(told, nan=-np.inf).min(1, initial=np.inf)
     if not count.max(initial=0):
         return None
     minutes = np.array([one.minutes for one in manoeuvres])
@@ -103,11 +111,15 @@ def design_experiment(
 def _differing(one: Fit, other: Fit) -> tuple[str, str]:
     """What two sets of causes do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
-    only_a, only_b = (" + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a)))
+    only_a, only_b = (
+        " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))
+    )
     return only_a or "nothing more", only_b or "nothing more"
 
 
-def manoeuvre_of(design: ExperimentDesign | None, problem: IdentificationProblem) -> Manoeuvre | None:
+def manoeuvre_of(
+    design: ExperimentDesign | None, problem: IdentificationProblem
+) -> Manoeuvre | None:
     """The manoeuvre of the library that a design prescribes, step by step."""
     if design is None:
         return None
@@ -184,7 +196,9 @@ def _shared_columns(fits):
 
 
 def _own(fit):
-    turned = {path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths}
+    turned = {
+        path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths
+    }
     turned |= {path for s in fit.hypotheses for path in s.definition.companions}
     return [column for column in fit.columns if column.gives_way(turned)]
 
@@ -209,7 +223,8 @@ def _missed(white, covariance):
     """Log-evidence that a fit loses on expected innovations, after its columns have explained what they can. [nats]"""
     products = _products(white)
     L = np.linalg.cholesky(covariance + 1e-12 * np.eye(len(covariance)))
-    G, g = L.T @ products[1:, 1:] @ L, L.T @ products[1:, 0]
+    G = L.T @ products[1:, 1:] @ L
+    g = L.T @ products[1:, 0]
     return 0.5 * float(products[0, 0] - g @ np.linalg.solve(np.eye(len(G)) + G, g))
 
 
@@ -223,15 +238,27 @@ def _simulated(problem, models, manoeuvres):
     x, y, psi = (float(value[-1]) for value in problem.motion[:3])
     start = float(problem.record.time[-1]), x, y, psi
     wind = true_wind(problem.record, problem.motion, problem.model)
-    dp = DpController(_in_true_wind(problem.model), step_for(problem.model), cannot_turn(problem.record, problem.model))
+    dp = DpController(
+        _in_true_wind(problem.model),
+        step_for(problem.model),
+        cannot_turn(problem.record, problem.model),
+    )
     track, record, held = planned(manoeuvres, dp, start, wind)
-    motions, records, through = [], [], []
-    many, ships = len(manoeuvres), _side_by_side(models, start[0], len(manoeuvres))
+    motions = []
+    records = []
+    through = []
+    many = len(manoeuvres)
+    ships = _side_by_side(models, start[0], len(manoeuvres))
     times = (len(models), 1)
     side_by_side = replace(
         record,
-        units={name: tuple(np.tile(series, times) for series in pair) for name, pair in record.units.items()},
-        wind=None if record.wind is None else tuple(np.tile(series, times) for series in record.wind),
+        units={
+            name: tuple(np.tile(series, times) for series in pair)
+            for name, pair in record.units.items()
+        },
+        wind=None
+        if record.wind is None
+        else tuple(np.tile(series, times) for series in record.wind),
     )
     held = {name: np.tile(where, times) for name, where in held.items()}
     tracks = Motion(*(np.tile(value, times) for value in track))
@@ -260,7 +287,8 @@ def _side_by_side(models, time, many):
 
 def _keeps_track(motion, track, manoeuvres, dp):
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
-    length, found = dp.model.parts["hull"].length, []
+    length = dp.model.parts["hull"].length
+    found = []
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
     for i, one in enumerate(manoeuvres):
@@ -301,17 +329,24 @@ def testability(
     motion, units = kept_on_track(model, len(manoeuvres), track, record, dp, held=held)
     record = replace(record, units=units, measured=_readings(motion, model))
     known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
-    groups = [(hypothesis, group) for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
+    groups = [
+        (hypothesis, group)
+        for hypothesis in hypotheses
+        for group in screening_regressors(hypothesis)
+    ]
     columns = known + [column for _, group in groups for column in group]
     with threadpool_limits(1):
         white = innovations(linearise(motion, record, model, columns), noise, record).white
     found = {hypothesis.label: np.full(len(manoeuvres), np.inf) for hypothesis in hypotheses}
     through = _keeps_track(motion, track, manoeuvres, dp)
     for i, one in enumerate(manoeuvres):
-        products, place = _products(white[: rows_of(one, record.step), i]), len(known)
+        products = _products(white[: rows_of(one, record.step), i])
+        place = len(known)
         for hypothesis, group in groups:
             seen = _shows(products, columns, range(place, place + len(group)), len(known))
-            found[hypothesis.label][i] = np.minimum(found[hypothesis.label][i], seen if through[i] else np.nan)
+            found[hypothesis.label][i] = np.minimum(
+                found[hypothesis.label][i], seen if through[i] else np.nan
+            )
             place += len(group)
     return found
 

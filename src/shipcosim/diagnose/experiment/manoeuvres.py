@@ -26,7 +26,9 @@ LONGEST = 15.0
 """No manoeuvre takes longer. [min]"""
 _LENGTH = 33.9  # m, of the ship that the figures of the library are for
 _PUSH = 0.012  # m/s2, of the ship by one thruster's push
-_OPPOSED = 0.004  # m/s2: azimuth thrusters push against each other that much, so that each has a direction
+_OPPOSED = (
+    0.004  # m/s2: azimuth thrusters push against each other that much, so that each has a direction
+)
 _STRAIGHT = 0.01  # rad
 _STEP = 2.0  # s
 _STEADY = 2.0  # steps: thrusters follow the plan that smoothly
@@ -94,13 +96,18 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
     list of Manoeuvre
     """
     share = model.parts["hull"].length / _LENGTH
-    T, side, mass = 60.0 * np.sqrt(share), 30.0 * share, model.parts["hull"].mass
+    T = 60.0 * np.sqrt(share)
+    side = 30.0 * share
+    mass = model.parts["hull"].mass
     turn = 0.5 * np.pi
     corners = [(1.5, side, 0.0), (1.5, side, side), (1.5, 0.0, side), (1.5, 0.0, 0.0)]
     found = [
-        Manoeuvre("turn by 90 deg and hold", _legs(T, (0.5, 0, 0, 0), (1.5, 0, 0, turn), (2, 0, 0, turn))),
         Manoeuvre(
-            "full circle of headings on the spot", _legs(T, (0.5, 0, 0, 0), (6, 0, 0, 4 * turn), (0.5, 0, 0, 4 * turn))
+            "turn by 90 deg and hold", _legs(T, (0.5, 0, 0, 0), (1.5, 0, 0, turn), (2, 0, 0, turn))
+        ),
+        Manoeuvre(
+            "full circle of headings on the spot",
+            _legs(T, (0.5, 0, 0, 0), (6, 0, 0, 4 * turn), (0.5, 0, 0, 4 * turn)),
         ),
         Manoeuvre(
             f"box of {side:.0f} m at one heading",
@@ -108,16 +115,32 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
         ),
         _steps("surge", T, (side, 2.5 * side), 0),
         _steps("sway", T, (0.3 * side, 0.75 * side), 1),
-        Manoeuvre("free drift with idle thrusters", _legs(T, (0.5, 0, 0, 0), (3, 0, 0, 0)), free=((0.5 * T, 4.0 * T),)),
-        _pulses("pulses of one thruster after the other", T, {name: mass * _PUSH for name in model.thrusters}),
+        Manoeuvre(
+            "free drift with idle thrusters",
+            _legs(T, (0.5, 0, 0, 0), (3, 0, 0, 0)),
+            free=((0.5 * T, 4.0 * T),),
+        ),
+        _pulses(
+            "pulses of one thruster after the other",
+            T,
+            {name: mass * _PUSH for name in model.thrusters},
+        ),
     ]
     if model.azimuths:
-        found.append(_pulses("reversal of each azimuth thruster", T, {name: -mass * _PUSH for name in model.azimuths}))
+        found.append(
+            _pulses(
+                "reversal of each azimuth thruster",
+                T,
+                {name: -mass * _PUSH for name in model.azimuths},
+            )
+        )
     sweeps = _sweeps(model, T, [name for name in model.azimuths if name not in fixed], mass * _PUSH)
     return [one for one in (*found, *sweeps) if one.minutes <= LONGEST]
 
 
-def _legs(T: float, *legs: tuple[float, float, float, float]) -> tuple[tuple[float, float, float, float], ...]:
+def _legs(
+    T: float, *legs: tuple[float, float, float, float]
+) -> tuple[tuple[float, float, float, float], ...]:
     return tuple((T * duration, float(x), float(y), float(psi)) for duration, x, y, psi in legs)
 
 
@@ -126,14 +149,21 @@ def _steps(axis, T, lengths, along):
     legs = []
     for length in lengths:
         there = (length, 0.0) if along == 0 else (0.0, length)
-        legs += [(1.25, *there, 0.0), (0.25, *there, 0.0), (1.25, 0.0, 0.0, 0.0), (0.25, 0.0, 0.0, 0.0)]
+        legs += [
+            (1.25, *there, 0.0),
+            (0.25, *there, 0.0),
+            (1.25, 0.0, 0.0, 0.0),
+            (0.25, 0.0, 0.0, 0.0),
+        ]
     return Manoeuvre(f"steps in {axis} at two speeds", _legs(T, *legs))
 
 
 def _pulses(name, T, forces):
     """Each thruster alone does something for a minute; the others hold the ship against it."""
     starts = [T * (0.5 + 1.5 * i) for i in range(len(forces))]
-    pushes = tuple(Push(unit, a, a + T, force) for a, (unit, force) in zip(starts, forces.items(), strict=True))
+    pushes = tuple(
+        Push(unit, a, a + T, force) for a, (unit, force) in zip(starts, forces.items(), strict=True)
+    )
     return Manoeuvre(name, _legs(T, (0.5 + 1.5 * len(forces), 0, 0, 0)), pushes)
 
 
@@ -142,21 +172,31 @@ def _sweeps(model, T, azimuths, force):
 
     A neighbour that held the ship against it would have its own slipstream in the first: equal losses, no net load.
     """
-    pushes, start = [], 0.5 * T
+    pushes = []
+    start = 0.5 * T
     for name in azimuths:
         here = model.parts[name]
-        near = next((o for o in azimuths if _is_at(model.parts[o], here.neighbour_x, here.neighbour_y)), None)
+        near = next(
+            (o for o in azimuths if _is_at(model.parts[o], here.neighbour_x, here.neighbour_y)),
+            None,
+        )
         if near not in (None, name):
-            at = np.arctan2(here.y - here.neighbour_y, here.x - here.neighbour_x)  # away from the neighbour
-            ahead = 0.0 if len(pushes) % 4 == 0 else np.pi  # and astern the next time: the ship comes to rest
+            at = np.arctan2(
+                here.y - here.neighbour_y, here.x - here.neighbour_x
+            )  # away from the neighbour
+            ahead = (
+                0.0 if len(pushes) % 4 == 0 else np.pi
+            )  # and astern the next time: the ship comes to rest
             span = np.pi / 3.0 if ahead == 0.0 else -np.pi / 3.0
             pushes.append(Push(name, start, start + 0.8 * T, force, (at - span, at + span)))
             pushes.append(Push(near, start, start + 0.8 * T, force, (ahead, ahead)))
             start += T
     legs = _legs(T, (start / T + 0.75, 0, 0, 0))
-    return [Manoeuvre("sweep of each azimuth thruster's slipstream across its neighbour", legs, tuple(pushes))][
-        : len(pushes)
-    ]
+    return [
+        Manoeuvre(
+            "sweep of each azimuth thruster's slipstream across its neighbour", legs, tuple(pushes)
+        )
+    ][: len(pushes)]
 
 
 def _is_at(unit, x, y):
@@ -193,14 +233,19 @@ def planned(
     """
     rows = max(rows_of(one, dp.h) for one in manoeuvres)
     time = dp.h * np.arange(rows)
-    track = Motion(*(np.stack(s) for s in zip(*(_track(one, time, start) for one in manoeuvres), strict=True)))
+    track = Motion(
+        *(np.stack(s) for s in zip(*(_track(one, time, start) for one in manoeuvres), strict=True))
+    )
     shape = len(manoeuvres), rows
     series = None if wind is None else (np.full(shape, wind[0]), np.full(shape, wind[1]))
     plans = [
         _thrusters(one, time, Motion(*(value[i] for value in track)), start, wind, dp)
         for i, one in enumerate(manoeuvres)
     ]
-    units = {name: (np.stack([p[name][0] for p in plans]), np.stack([p[name][1] for p in plans])) for name in plans[0]}
+    units = {
+        name: (np.stack([p[name][0] for p in plans]), np.stack([p[name][1] for p in plans]))
+        for name in plans[0]
+    }
     blank = np.full((len(manoeuvres), rows, 6), np.nan)
     record = Record(start[0] + time, blank, units, series, np.ones(rows, bool))
     held = {name: np.stack([_held(one, name, time) for one in manoeuvres]) for name in units}
@@ -208,7 +253,9 @@ def planned(
 
 
 def _held(manoeuvre, name, time):
-    return _inside((*manoeuvre.free, *((p.start, p.end) for p in manoeuvre.pushes if p.thruster == name)), time)
+    return _inside(
+        (*manoeuvre.free, *((p.start, p.end) for p in manoeuvre.pushes if p.thruster == name)), time
+    )
 
 
 def rows_of(manoeuvre: Manoeuvre, step: float) -> int:
@@ -218,25 +265,44 @@ def rows_of(manoeuvre: Manoeuvre, step: float) -> int:
 
 def _track(manoeuvre, time, start):
     """The track by smooth legs: at rest at both ends, without a step in acceleration."""
-    at, place, found = 0.0, np.zeros(3), np.zeros((3, time.size))
+    at = 0.0
+    place = np.zeros(3)
+    found = np.zeros((3, time.size))
     for duration, *where in manoeuvre.legs:
         share = np.clip((time - at) / duration, 0.0, 1.0)
-        found += (np.array(where) - place)[:, None] * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-        at, place = at + duration, np.array(where)
+        found += (
+            (np.array(where) - place)[:, None] * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+        )
+        at = at + duration
+        place = np.array(where)
     _, north, east, heading = start
-    c, s = np.cos(heading), np.sin(heading)
-    x, y, psi = north + c * found[0] - s * found[1], east + s * found[0] + c * found[1], heading + found[2]
+    c = np.cos(heading)
+    s = np.sin(heading)
+    x = north + c * found[0] - s * found[1]
+    y = east + s * found[0] + c * found[1]
+    psi = heading + found[2]
     x_dot, y_dot, r = (np.gradient(value, time) for value in (x, y, psi))
-    return Motion(x, y, psi, np.cos(psi) * x_dot + np.sin(psi) * y_dot, np.cos(psi) * y_dot - np.sin(psi) * x_dot, r)
+    return Motion(
+        x,
+        y,
+        psi,
+        np.cos(psi) * x_dot + np.sin(psi) * y_dot,
+        np.cos(psi) * y_dot - np.sin(psi) * x_dot,
+        r,
+    )
 
 
 def _inside(spans, time):
-    return np.any([np.zeros(time.size, bool), *((time >= a) & (time < b) for a, b in spans)], axis=0)
+    return np.any(
+        [np.zeros(time.size, bool), *((time >= a) & (time < b) for a, b in spans)], axis=0
+    )
 
 
 def _thrusters(manoeuvre, time, track, start, wind, dp):
     """Speed and direction of each thruster by the plan. [rev/s, rad]"""
-    model, free, alone = dp.model, _inside(manoeuvre.free, time), {}
+    model = dp.model
+    free = _inside(manoeuvre.free, time)
+    alone = {}
     for push in manoeuvre.pushes:
         inside = _inside(((push.start, push.end),), time)
         share = np.clip((time - push.start) / (push.end - push.start), 0.0, 1.0)
@@ -252,13 +318,20 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
             rest = rest - _load_of(name, force, azimuth[rows], model)
         axes_here = {name: np.zeros(rows.size) for name in model.thrusters}
         for name, forces in dp.shared(rest, axes_here, dict.fromkeys(left, True)).items():
-            wishes[name][:, rows] = np.where(free[rows], 0.0, forces + (0.0 if left else opposed[name][:, None]))
-    return {name: _setting(name, wishes[name], alone.get(name, ()), time, dp) for name in model.thrusters}
+            wishes[name][:, rows] = np.where(
+                free[rows], 0.0, forces + (0.0 if left else opposed[name][:, None])
+            )
+    return {
+        name: _setting(name, wishes[name], alone.get(name, ()), time, dp)
+        for name in model.thrusters
+    }
 
 
 def _stretches(alone, rows):
     """Consecutive rows in which the same thrusters are pushed, and which these are."""
-    pushed = [tuple(n for n, pushes in alone.items() if any(p[0][k] for p in pushes)) for k in range(rows)]
+    pushed = [
+        tuple(n for n, pushes in alone.items() if any(p[0][k] for p in pushes)) for k in range(rows)
+    ]
     edges = [0, *(k for k in range(1, rows) if pushed[k] != pushed[k - 1]), rows]
     return [(np.arange(a, b), pushed[a]) for a, b in zip(edges[:-1], edges[1:], strict=True)]
 
@@ -276,13 +349,15 @@ def _load_of(name, force, azimuth, model):
     unit = model.parts[name]
     if name not in model.azimuths:
         azimuth = np.full_like(azimuth, dp_thruster_of(model, name).axis)
-    X, Y = force * np.cos(azimuth), force * np.sin(azimuth)
+    X = force * np.cos(azimuth)
+    Y = force * np.sin(azimuth)
     return np.stack([X, Y, unit.x * Y - getattr(unit, "y", 0.0) * X])
 
 
 def _opposed_forces(dp):
     """Forces of the azimuth thrusters against each other, slipstreams outwards, that leave no load on the ship."""
-    model, found = dp.model, {name: np.zeros(2) for name in dp.model.thrusters}
+    model = dp.model
+    found = {name: np.zeros(2) for name in dp.model.thrusters}
     able = [name for name in model.azimuths if name not in dp.fixed]
     if len(able) < 2:
         return found
@@ -292,19 +367,27 @@ def _opposed_forces(dp):
     B = np.hstack([[[1.0, 0.0], [0.0, 1.0], [-y, x]] for x, y in places])
     wish = inwards.ravel() - np.linalg.pinv(B) @ (B @ inwards.ravel())
     size = _OPPOSED * model.parts["hull"].mass
-    return found | {name: size * force for name, force in zip(able, wish.reshape(-1, 2), strict=True)}
+    return found | {
+        name: size * force for name, force in zip(able, wish.reshape(-1, 2), strict=True)
+    }
 
 
 def _setting(name, wish, pushes, time, dp):
     """Speed and direction for forces along x and y of the ship, and for pushes; as smooth as thrusters are."""
     turns = name in dp.model.azimuths and name not in dp.fixed
-    force, azimuth = wish[0], np.full(time.size, dp.model.fixed.get(name, 0.0))
+    force = wish[0]
+    azimuth = np.full(time.size, dp.model.fixed.get(name, 0.0))
     if turns:
-        force, azimuth = np.hypot(*wish), np.arctan2(wish[1], wish[0])
+        force = np.hypot(*wish)
+        azimuth = np.arctan2(wish[1], wish[0])
     for inside, push, direction in pushes:
         force = np.where(inside, push, force)
         azimuth = np.where(inside, direction, azimuth) if turns else azimuth
-    azimuth = np.interp(time, time[force != 0.0], np.unwrap(azimuth[force != 0.0])) if np.any(force) else azimuth
+    azimuth = (
+        np.interp(time, time[force != 0.0], np.unwrap(azimuth[force != 0.0]))
+        if np.any(force)
+        else azimuth
+    )
     most = 0.8 * dp.model.parts[name].rpm_max / 60.0
     speed = np.clip(dp.speed(name, force), -most, most)
     return tuple(gaussian_filter(series, _STEADY, ends="held") for series in (speed, azimuth))
@@ -313,7 +396,9 @@ def _setting(name, wish, pushes, time, dp):
 def cannot_turn(record: Record, model: ShipModel) -> tuple[str, ...]:
     """Azimuth thrusters without a rate of turning, or that point straight ahead or astern throughout a log."""
     across = {name: np.abs(np.sin(record.units[name][1])).max() for name in model.azimuths}
-    return tuple(n for n in model.azimuths if model.parts[n].azimuth_rate == 0.0 or across[n] < _STRAIGHT)
+    return tuple(
+        n for n in model.azimuths if model.parts[n].azimuth_rate == 0.0 or across[n] < _STRAIGHT
+    )
 
 
 def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, float] | None:
@@ -322,12 +407,17 @@ def true_wind(record: Record, motion: Motion, model: ShipModel) -> tuple[float, 
         return None
     speed, direction = record.wind
     if model.wind_is_true:
-        north, east = -speed * np.cos(direction), -speed * np.sin(direction)
+        north = -speed * np.cos(direction)
+        east = -speed * np.sin(direction)
     else:
-        u, v = motion.u - speed * np.cos(direction), motion.v - speed * np.sin(direction)
-        c, s = np.cos(motion.psi), np.sin(motion.psi)
-        north, east = c * u - s * v, s * u + c * v
-    north, east = float(np.mean(north)), float(np.mean(east))
+        u = motion.u - speed * np.cos(direction)
+        v = motion.v - speed * np.sin(direction)
+        c = np.cos(motion.psi)
+        s = np.sin(motion.psi)
+        north = c * u - s * v
+        east = s * u + c * v
+    north = float(np.mean(north))
+    east = float(np.mean(east))
     return float(np.hypot(north, east)), float(np.arctan2(-east, -north))
 
 

@@ -34,7 +34,8 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
 
     All causes where something keeps the log from telling any.
     """
-    problem, found = log.problem, log.explained.identification
+    problem = log.problem
+    found = log.explained.identification
     of_log = (*(() if is_testable(problem) else ("clock",)), *_labels(found.comparison))
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
     if found.comparison is not None and found.comparison.obstacles:
@@ -69,9 +70,13 @@ def _as_known(column: Regressor, model: ShipModel) -> Regressor:
     return replace(column, prior=model.tolerances.get(path, 0.0) / model.uncertainties[path])
 
 
-def _of_typical_size(log: JudgedLog) -> tuple[np.ndarray, list[Regressor], list[tuple[Hypothesis, list[int]]]]:
+def _of_typical_size(
+    log: JudgedLog,
+) -> tuple[np.ndarray, list[Regressor], list[tuple[Hypothesis, list[int]]]]:
     """Inner products of a log, its known numbers and every cause of typical size, as `not_testable` takes them."""
-    problem, columns, groups = log.problem, list(without_causes(log.fits).columns), []
+    problem = log.problem
+    columns = list(without_causes(log.fits).columns)
+    groups = []
     for hypothesis in problem.hypotheses:
         for group in screening_regressors(hypothesis):
             groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
@@ -126,7 +131,8 @@ def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:
     Root mean squares of speed, surge and sway [m/s], of the acceleration in surge [m/s2] and of the rate of turn
     [deg/s]; the largest share of the log in which an azimuth thruster ran astern [1]; the mean wind speed [m/s].
     """
-    record, motion = problem.record, problem.motion
+    record = problem.record
+    motion = problem.motion
     astern = [float(np.mean(record.units[name][0] < 0.0)) for name in problem.model.azimuths]
     return {
         "astern_share": max(astern, default=0.0),

@@ -7,7 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.explanation.search import ExplainedLog, at_first_sight, explain, without_causes
+from shipcosim.diagnose.explanation.search import (
+    ExplainedLog,
+    at_first_sight,
+    explain,
+    without_causes,
+)
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
 from shipcosim.diagnose.inference.innovations import inner_products
@@ -34,10 +39,13 @@ def with_change_point(explained: ExplainedLog) -> ExplainedLog:
     time = None if explained.is_healthy else change_point_of(found.problem, explained.fits)
     if time is None:
         return explained
-    row, whole = int(np.searchsorted(found.repaired["time"].values, time)), explained.fits[0].score
-    earlier, later = found.repaired.isel(time=slice(0, row)), found.repaired.isel(time=slice(row, None))
+    row = int(np.searchsorted(found.repaired["time"].values, time))
+    whole = explained.fits[0].score
+    earlier = found.repaired.isel(time=slice(0, row))
+    later = found.repaired.isel(time=slice(row, None))
     before, after = (
-        identification_problem(part, found.ship, found.causes, found.problem.noise) for part in (earlier, later)
+        identification_problem(part, found.ship, found.causes, found.problem.noise)
+        for part in (earlier, later)
     )
     healthy = fitted(before)
     if healthy.score + at_first_sight(after) < whole:
@@ -46,7 +54,10 @@ def with_change_point(explained: ExplainedLog) -> ExplainedLog:
     if healthy.score + fits[0].score < whole + 2.0 * CHANGE_POINT_GAIN:
         return explained
     return replace(
-        explained, identification=replace(found, repaired=later, problem=after), fits=fits, change_point=time
+        explained,
+        identification=replace(found, repaired=later, problem=after),
+        fits=fits,
+        change_point=time,
     )
 
 
@@ -65,13 +76,19 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
         Time [s]; None where nothing is gained by a change point.
     """
     nothing = without_causes(fits)
-    hypotheses = [hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"]
+    hypotheses = [
+        hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"
+    ]
     groups = [group for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
-    linear = beside(nothing.linear, problem.base_of([column for group in groups for column in group]))
+    linear = beside(
+        nothing.linear, problem.base_of([column for group in groups for column in group])
+    )
     span = problem.record.time.size * problem.record.step
     parts = int(np.clip(span / CHANGE_POINT_BLOCK, 8, MOST_CHANGE_POINT_BLOCKS))
     blocks = inner_products(linear, problem.noise, problem.record, parts).blocks
-    known, place, gains = len(nothing.columns), len(nothing.columns), []
+    known = len(nothing.columns)
+    place = len(nothing.columns)
+    gains = []
     priors = []
     for group in groups:
         prior = np.zeros(linear.columns)
@@ -80,10 +97,14 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
         priors.append(prior)
     none = np.where(np.arange(prior.size) < known, 1.0, 0.0)
     for first in range(CHANGE_POINT_MARGIN, parts - CHANGE_POINT_SKIPPED - CHANGE_POINT_MARGIN):
-        before, after = blocks[:first].sum(0), blocks[first + CHANGE_POINT_SKIPPED :].sum(0)
-        healthy, throughout = evidence(before, none)[0], before + after
+        before = blocks[:first].sum(0)
+        after = blocks[first + CHANGE_POINT_SKIPPED :].sum(0)
+        healthy = evidence(before, none)[0]
+        throughout = before + after
         later = max(evidence(after, prior)[0] for prior in priors)
-        gains.append(healthy + later - max(evidence(throughout, prior)[0] for prior in (none, *priors)))
+        gains.append(
+            healthy + later - max(evidence(throughout, prior)[0] for prior in (none, *priors))
+        )
     if not gains:  # too short to be parted
         return None
     best = int(np.argmax(gains))

@@ -34,7 +34,9 @@ __all__ = ["learnt", "of_scale", "scores_by_scale", "with_learnt_form", "with_se
 def with_learnt_form(found: Identification) -> Identification:
     """An identified log whose ship may differ from the model's form as far as the log says."""
     problem = learnt(found.problem)
-    return replace(found, ship=replace(found.ship, form_scale=problem.model.form_scale), problem=problem)
+    return replace(
+        found, ship=replace(found.ship, form_scale=problem.model.form_scale), problem=problem
+    )
 
 
 def learnt(problem: IdentificationProblem) -> IdentificationProblem:
@@ -68,7 +70,8 @@ def with_settled_form(explained: ExplainedLog) -> ExplainedLog:
 
     At first sight a cause that is not linear, or the second of two, can look like another form.
     """
-    found, best = explained.identification, explained.fits[0]
+    found = explained.identification
+    best = explained.fits[0]
     if not found.problem.model.form_scale:
         return explained
     plain = of_scale(found.problem, 0.0, best.hypotheses, best.values)
@@ -97,19 +100,31 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
         Of scale 0 and `FORM_SCALES`. [nats, up to a constant of the log]
     """
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
-    sizes = {path: size for path, size in problem.model.form_sizes.items() if path not in fit.values}
-    added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
+    sizes = {
+        path: size for path, size in problem.model.form_sizes.items() if path not in fit.values
+    }
+    added = [
+        column
+        for hypothesis in wanted
+        for group in screening_regressors(hypothesis)
+        for column in group
+    ]
     of_form = [Regressor({path: size}) for path, size in sizes.items()]
     form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
     linear = beside(beside(fit.linear, form), problem.base_of(added))
     products = inner_products(linear, problem.noise, problem.record).products
     found = {}
     for scale in (0.0, *FORM_SCALES):
-        columns = [*fit.columns, *(Regressor({path: size}, prior=scale) for path, size in sizes.items())]
+        columns = [
+            *fit.columns,
+            *(Regressor({path: size}, prior=scale) for path, size in sizes.items()),
+        ]
         centre = np.concatenate([fit.centre, np.zeros(len(sizes))])
         prior = np.zeros(len(products) - 1)
         prior[: len(columns)] = [column.prior for column in columns]
-        alone = evidence(products, prior, np.concatenate([centre, np.zeros(prior.size - centre.size)]))[0]
+        alone = evidence(
+            products, prior, np.concatenate([centre, np.zeros(prior.size - centre.size)])
+        )[0]
         more = gains(products, columns, centre, wanted, fit.model.get)
         found[scale] = alone + max(more[0][0] if more else 0.0, 0.0)
     return found

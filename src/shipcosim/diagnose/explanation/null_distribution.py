@@ -61,10 +61,14 @@ def null_gains(
     dict of str to (m,) array
         By the hypothesis's label. [nats] Ships that lose the track say nothing and are left out.
     """
-    columns, products = healthy_products(problem, motion, wanted, count=count, seed=seed, batch=batch)
+    columns, products = healthy_products(
+        problem, motion, wanted, count=count, seed=seed, batch=batch
+    )
     found = {hypothesis.label: [] for hypothesis in wanted}
     for one in products[on_track(products)]:
-        for gain, hypothesis, _ in gains(one, columns, np.zeros(len(columns)), wanted, problem.model.get):
+        for gain, hypothesis, _ in gains(
+            one, columns, np.zeros(len(columns)), wanted, problem.model.get
+        ):
             found[hypothesis.label].append(gain)
     return {label: np.array(values) for label, values in found.items()}
 
@@ -90,7 +94,9 @@ def healthy_products(
 
     def products_of(first):
         record = _some(records, slice(first, first + batch))
-        here = prepared(replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1)
+        here = prepared(
+            replace(problem, record=record, motion=first_motion(record, problem.model)), rounds=1
+        )
         return inner_products(here.linear, problem.noise, record).products
 
     return problem.known(()), np.concatenate(each(products_of, range(0, count, batch)))
@@ -108,7 +114,9 @@ def _some(records, which):
     return replace(records, measured=records.measured[which], units=units)
 
 
-def healthy_records(problem: IdentificationProblem, motion: Motion, count: int, rng: np.random.Generator) -> Record:
+def healthy_records(
+    problem: IdentificationProblem, motion: Motion, count: int, rng: np.random.Generator
+) -> Record:
     """Logs of healthy ships that keep to a track in the log's weather.
 
     Parameters
@@ -125,16 +133,26 @@ def healthy_records(problem: IdentificationProblem, motion: Motion, count: int, 
     Record
         With the ships on the first axis.
     """
-    model, record, noise = _drawn(problem.model, count, rng), problem.record, problem.noise
-    jolts = rng.standard_normal((record.time.size, 3, count)) * (np.asarray(noise.jolt) * np.sqrt(record.step))[:, None]
-    ships, units = kept_on_track(model, count, motion, record, DpController(problem.model, record.step), jolts=jolts)
+    model = _drawn(problem.model, count, rng)
+    record = problem.record
+    noise = problem.noise
+    jolts = (
+        rng.standard_normal((record.time.size, 3, count))
+        * (np.asarray(noise.jolt) * np.sqrt(record.step))[:, None]
+    )
+    ships, units = kept_on_track(
+        model, count, motion, record, DpController(problem.model, record.step), jolts=jolts
+    )
     return _logged(ships, units, model, problem, rng)
 
 
 def _drawn(model, count, rng):
     """Ships within what is known of a ship model."""
     own = {path: size for path, size in model.uncertainties.items() if path not in model.referenced}
-    directions = [*model.directions, *({path: size} for path, size in own.items() if not model.is_of_day(path))]
+    directions = [
+        *model.directions,
+        *({path: size} for path, size in own.items() if not model.is_of_day(path)),
+    ]
     values = {}
     for direction in directions:
         share = rng.standard_normal(count)
@@ -145,8 +163,11 @@ def _drawn(model, count, rng):
 
 def _logged(motion, units, model, problem, rng):
     """The log of the ships' motion, with the noise of the log: white, of waves, and slow in position and heading."""
-    record, (count, n) = problem.record, motion.x.shape
-    measured = np.stack([value.T for value in readings(motion, problem.model)], axis=-1)  # (n, m, 6)
+    record = problem.record
+    (count, n) = motion.x.shape
+    measured = np.stack(
+        [value.T for value in readings(motion, problem.model)], axis=-1
+    )  # (n, m, 6)
     measured += rng.standard_normal(measured.shape) * np.asarray(problem.noise.white)
     measured += _shown_waves(waves_of(problem.noise, record.step, (n, count), rng), motion.psi.T)
     keep = np.exp(-record.step / SLOW_TIME)
@@ -155,10 +176,14 @@ def _logged(motion, units, model, problem, rng):
         measured[k, :, :3] += slow
         slow = keep * slow + np.sqrt(1.0 - keep**2) * SLOW_STD * rng.standard_normal((count, 3))
     measured = np.where(np.isfinite(record.measured)[:, None, :], measured, np.nan)
-    return Record(record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known, rate=record.rate)
+    return Record(
+        record.time, np.moveaxis(measured, 1, 0), units, record.wind, record.known, rate=record.rate
+    )
 
 
 def _shown_waves(waves, psi):
     """Waves' place and velocity in the ship's axes as the channels show them, all (n, m, 6)."""
     x, y, *others = np.moveaxis(waves, -1, 0)
-    return np.stack([np.cos(psi) * x - np.sin(psi) * y, np.sin(psi) * x + np.cos(psi) * y, *others], axis=-1)
+    return np.stack(
+        [np.cos(psi) * x - np.sin(psi) * y, np.sin(psi) * x + np.cos(psi) * y, *others], axis=-1
+    )

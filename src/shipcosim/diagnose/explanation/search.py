@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 __all__ = ["at_first_sight", "explain", "names", "with_causes", "without_causes"]
 
-STRAIN = 2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
+STRAIN = (
+    2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
+)
 
 
 @dataclass(frozen=True)
@@ -87,14 +89,18 @@ def explain(
         All sets that were fitted, best first; the one without a cause among them.
     """
     nothing = fitted(problem)
-    fits, front = {frozenset(): nothing}, [nothing]
+    fits = {frozenset(): nothing}
+    front = [nothing]
     for stage in range(most):
         best = max(fit.score for fit in fits.values())
         wanted = {}
         for fit, gains in zip(front, each(lambda fit: screened(problem, fit), front), strict=True):
             most_gain = gains[0][0]
-            least = max(most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0)
-            first, strained = likely if stage == 0 else likely // 2, _strained(fit)
+            least = max(
+                most_gain - max(near, 0.85 * most_gain), -2.0 if stage == 0 else enough - 2.0
+            )
+            first = likely if stage == 0 else likely // 2
+            strained = _strained(fit)
             for place, (gain, hypothesis, values) in enumerate(gains):
                 if (place >= first or gain < least) and not any(
                     strained & set(parameter.paths) for parameter in hypothesis.parameters
@@ -104,10 +110,14 @@ def explain(
                 key = names(hypotheses)
                 if key not in fits and key not in wanted:
                     wanted[key] = hypotheses, fit.values | values
-        tried = dict(zip(wanted, each(lambda one: fitted(problem, *one), wanted.values()), strict=True))
+        tried = dict(
+            zip(wanted, each(lambda one: fitted(problem, *one), wanted.values()), strict=True)
+        )
         fits |= tried
         ranked = sorted(tried.values(), key=lambda fit: -fit.score)
-        front = [fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)]
+        front = [
+            fit for fit in ranked[:2] if fit.score > max(ranked[0].score - near, best + enough)
+        ]
         if not front:
             break
     _simplify(problem, fits, fitted)
@@ -116,7 +126,8 @@ def explain(
 
 def _strained(fit: Fit) -> set[str]:
     """Numbers that a fit has far from what is known of them: what they do may be bent there, as a lag's."""
-    off, known = defaultdict(float), defaultdict(float)
+    off = defaultdict(float)
+    known = defaultdict(float)
     for column, theta in zip(fit.columns, fit.theta, strict=True):
         for path, size in column.changes.items():
             off[path] += theta * size
@@ -140,11 +151,14 @@ def names(hypotheses: Iterable[Hypothesis]) -> frozenset[str]:
     return frozenset(hypothesis.label for hypothesis in hypotheses)
 
 
-def _simplify(problem: Any, fits: dict[frozenset[str], Fit], fitted: Callable[..., Fit] = fitted) -> None:
+def _simplify(
+    problem: Any, fits: dict[frozenset[str], Fit], fitted: Callable[..., Fit] = fitted
+) -> None:
     """Fit the best set again without each of its causes, and with simpler ones instead, from the values that it has."""
     while True:
         best = max(fits.values(), key=lambda fit: fit.score)
-        new, sets = False, _simpler(problem, best.hypotheses)
+        new = False
+        sets = _simpler(problem, best.hypotheses)
         tried = each(lambda some, start=best: fitted(problem, some, _values(some, start)), sets)
         for hypotheses, again in zip(sets, tried, strict=True):
             known = fits.get(names(hypotheses))
@@ -156,9 +170,13 @@ def _simplify(problem: Any, fits: dict[frozenset[str], Fit], fitted: Callable[..
 
 def _values(hypotheses, fit):
     """What a fit says of the numbers of some hypotheses."""
-    parameters = [(parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters]
+    parameters = [
+        (parameter, hypothesis) for hypothesis in hypotheses for parameter in hypothesis.parameters
+    ]
     return {
-        path: _value(parameter, hypothesis, fit) for parameter, hypothesis in parameters for path in parameter.paths
+        path: _value(parameter, hypothesis, fit)
+        for parameter, hypothesis in parameters
+        for path in parameter.paths
     }
 
 
@@ -168,7 +186,9 @@ def _simpler(problem, hypotheses):
     for left in hypotheses:
         rest = tuple(hypothesis for hypothesis in hypotheses if hypothesis is not left)
         special = [
-            s for s in problem.hypotheses if s.cause == left.definition.special and s.component == left.component
+            s
+            for s in problem.hypotheses
+            if s.cause == left.definition.special and s.component == left.component
         ]
         found += [rest] if rest else []
         found += [(*rest, one) for one in special if one not in rest]
@@ -181,4 +201,11 @@ def _value(parameter, hypothesis, fit):
         return fit.values[parameter.paths[0]]
     general = next(s for s in fit.hypotheses if s.definition.special == hypothesis.cause)
     place = hypothesis.parameters.index(parameter)
-    return float(np.mean([fit.values[k.paths[0]] for k in general.parameters[place :: len(hypothesis.parameters)]]))
+    return float(
+        np.mean(
+            [
+                fit.values[k.paths[0]]
+                for k in general.parameters[place :: len(hypothesis.parameters)]
+            ]
+        )
+    )

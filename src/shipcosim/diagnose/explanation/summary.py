@@ -17,7 +17,16 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LAGS", "CauseGain", "Evidence", "SetEvidence", "SizeEstimate", "evidence_of", "load_form", "whiteness"]
+__all__ = [
+    "LAGS",
+    "CauseGain",
+    "Evidence",
+    "SetEvidence",
+    "SizeEstimate",
+    "evidence_of",
+    "load_form",
+    "whiteness",
+]
 
 MOVED = 2.0
 """Standard deviations, before and after the log, by which a number of the form has moved. [1]"""
@@ -135,13 +144,19 @@ class Evidence:
 
 def evidence_of(log: JudgedLog) -> Evidence:
     """The evidence behind a verdict."""
-    problem, fit, nothing = log.problem, log.fit, without_causes(log.fits)
+    problem = log.problem
+    fit = log.fit
+    nothing = without_causes(log.fits)
     white = {"before": whiteness(problem, nothing, as_it_is=True)}
     if fit.hypotheses:
         white["after"] = whiteness(problem, fit)
     return Evidence(
         tuple(
-            SetEvidence(tuple((s.cause, s.component) for s in one.hypotheses), one.score - nothing.score, one is fit)
+            SetEvidence(
+                tuple((s.cause, s.component) for s in one.hypotheses),
+                one.score - nothing.score,
+                one is fit,
+            )
             for one in log.fits
             if one.hypotheses
         ),
@@ -190,7 +205,9 @@ def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) 
         if np.isfinite(values).sum() > 10 * LAGS:
             values = values - np.nanmean(values)
             power = np.nanmean(values**2)
-            found[:, channel] = [np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)]
+            found[:, channel] = [
+                np.nanmean(values[k:] * values[:-k]) / power for k in range(1, LAGS + 1)
+            ]
     return found
 
 
@@ -199,27 +216,44 @@ def load_form(log: JudgedLog) -> LoadForm | None:
 
     None where it is the model's, or where a reference says what is known of it.
     """
-    model, fit = log.problem.model, log.fit
+    model = log.problem.model
+    fit = log.fit
     if not model.form_scale or model.directions:
         return None
-    sizes, theta, std = model.form_sizes, fit.theta, np.sqrt(np.diag(fit.covariance))
-    found, squares = [], {}
+    sizes = model.form_sizes
+    theta = fit.theta
+    std = np.sqrt(np.diag(fit.covariance))
+    found = []
+    squares = {}
     for column, share, deviation in zip(fit.columns, theta, std, strict=True):
         path, size = next(iter(column.changes.items()))
-        if len(column.changes) > 1 or path not in sizes or column.prior != 1.0 or path in fit.values:
+        if (
+            len(column.changes) > 1
+            or path not in sizes
+            or column.prior != 1.0
+            or path in fit.values
+        ):
             continue
         squares[path] = size**2 * (share**2 + deviation**2)
         if abs(share) > max(1.0, MOVED * deviation):
             found.append(
-                (abs(share) / deviation, _form_number(log.problem.model, path, size * share, size * deviation))
+                (
+                    abs(share) / deviation,
+                    _form_number(log.problem.model, path, size * share, size * deviation),
+                )
             )
     differs = {
         name: float(np.sqrt(sum(share * squares.get(path, 0.0) for path, share in numbers.items())))
         for name, numbers in model.form_functions.items()
     }
-    return LoadForm(model.form_scale, differs, tuple(one for _, one in sorted(found, key=lambda pair: -pair[0])))
+    return LoadForm(
+        model.form_scale, differs, tuple(one for _, one in sorted(found, key=lambda pair: -pair[0]))
+    )
 
 
 def _form_number(model: ShipModel, path: str, off: float, std: float) -> FormNumber:
-    about, value = model.about(path), float(model.get(path))
-    return FormNumber(path, about["description"], value, float(value + off), float(std), about["unit"])
+    about = model.about(path)
+    value = float(model.get(path))
+    return FormNumber(
+        path, about["description"], value, float(value + off), float(std), about["unit"]
+    )

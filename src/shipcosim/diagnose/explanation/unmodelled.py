@@ -59,16 +59,25 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
     dict of str to float
         By kind. [nats]
     """
-    kinds = {kind: [basis.shape[-1] for basis in group] for kind, group in _bases(problem, fit, slice(0, 1)).items()}
+    kinds = {
+        kind: [basis.shape[-1] for basis in group]
+        for kind, group in _bases(problem, fit, slice(0, 1)).items()
+    }
     kinds |= {"in a channel": [_SHAPES] * 6}
     shown = np.stack(readings(fit.motion, fit.model), axis=-1)
-    linear = with_columns(fit.linear, sum(map(sum, kinds.values())), lambda rows: _columns(problem, fit, shown, rows))
+    linear = with_columns(
+        fit.linear, sum(map(sum, kinds.values())), lambda rows: _columns(problem, fit, shown, rows)
+    )
     products = inner_products(linear, problem.noise, problem.record).products
     base = len(fit.columns)
-    prior = np.concatenate([[column.prior for column in fit.columns], np.zeros(linear.columns - base)])
+    prior = np.concatenate(
+        [[column.prior for column in fit.columns], np.zeros(linear.columns - base)]
+    )
     centre = np.zeros(prior.size)
     centre[:base] = fit.theta - fit.left
-    nothing, found, place = evidence(products, prior, centre)[0], {}, base
+    nothing = evidence(products, prior, centre)[0]
+    found = {}
+    place = base
     for kind, group in kinds.items():
         scores = []
         for size in group:
@@ -76,13 +85,18 @@ def unmodelled_gains(problem: IdentificationProblem, fit: Fit) -> dict[str, floa
             here[place : place + size] = 1.0
             place += size
             scores.append(evidence(products, here, centre)[0] - nothing)
-        found[kind] = float(max(scores) - np.log(len(scores)) - problem.model.ordinary_errors.get(kind, 0.0))
+        found[kind] = float(
+            max(scores) - np.log(len(scores)) - problem.model.ordinary_errors.get(kind, 0.0)
+        )
     return found | errors_of_the_fit(fit)
 
 
 def errors_of_the_fit(fit: Fit) -> dict[str, float]:
     """Those of the unmodelled errors that show in a fit by itself, by kind. [nats]"""
-    return {"from part to part": _differs_by_part(fit), "beyond tolerances": _beyond_tolerances(fit)}
+    return {
+        "from part to part": _differs_by_part(fit),
+        "beyond tolerances": _beyond_tolerances(fit),
+    }
 
 
 def _differs_by_part(fit):
@@ -90,7 +104,9 @@ def _differs_by_part(fit):
 
     Each part pulls at the estimate; what it would pull by chance is known, and the least likely pull counts.
     """
-    blocks, place, unlikely = fit.products.blocks, len(fit.columns), []
+    blocks = fit.products.blocks
+    place = len(fit.columns)
+    unlikely = []
     for hypothesis in reversed(fit.hypotheses):
         place -= len(hypothesis.parameters)
         own = range(place, place + len(hypothesis.parameters))
@@ -111,8 +127,13 @@ def _beyond_tolerances(fit):
     """
     known = len(fit.columns) - sum(len(hypothesis.parameters) for hypothesis in fit.hypotheses)
     prior = np.array([column.prior for column in fit.columns[:known]])
-    told = np.clip(1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known] / prior[:, None] / prior), 1e-9, None)
-    mean, half_variance = told.sum(), (told**2).sum()
+    told = np.clip(
+        1.0 - np.linalg.eigvalsh(fit.covariance[:known, :known] / prior[:, None] / prior),
+        1e-9,
+        None,
+    )
+    mean = told.sum()
+    half_variance = (told**2).sum()
     squares = ((fit.theta[:known] / prior) ** 2).sum()
     return _most_evidence(log_survival(squares * mean / half_variance, mean**2 / half_variance))
 
@@ -126,12 +147,17 @@ def _most_evidence(log_p):
 def _bases(problem, fit, rows):
     """Accelerations in the body frame over some rows: by kind a list of (k, 3, p) arrays."""
     every = problem.record.time
-    time, psi = every[rows], fit.motion.psi[rows]
+    time = every[rows]
+    psi = fit.motion.psi[rows]
     slow = piecewise_linear_basis(np.linspace(0.0, 1.0, every.size)[rows], BASIS_FUNCTIONS).T
-    c, s = np.cos(psi), np.sin(psi)
+    c = np.cos(psi)
+    s = np.sin(psi)
     heading = np.stack([c, s, np.cos(2 * psi), np.sin(2 * psi), c**3, s**3], axis=-1)
     periods = np.geomspace(SHORTEST_PERIOD, every[-1] - every[0], PERIODS)
-    waves = [np.stack([np.sin(2 * np.pi * time / p), np.cos(2 * np.pi * time / p)], axis=-1) for p in periods]
+    waves = [
+        np.stack([np.sin(2 * np.pi * time / p), np.cos(2 * np.pi * time / p)], axis=-1)
+        for p in periods
+    ]
     return {
         "slow": [_each_axis(slow)],
         "with the heading": [_each_axis(heading)],
@@ -162,17 +188,24 @@ def _channels(problem, shown, rows):
         if i > 2:
             shapes = [np.ones_like(share), share - 0.5, 0.1 * moved / size]
         found[:, i, i] = size * np.stack(shapes, axis=-1)
-    return found.reshape(share.size, 6, 6 * _SHAPES) * np.isfinite(problem.record.measured[rows])[..., None]
+    return (
+        found.reshape(share.size, 6, 6 * _SHAPES)
+        * np.isfinite(problem.record.measured[rows])[..., None]
+    )
 
 
 def _columns(problem, fit, shown, rows):
     """A column for each acceleration and for each error of a channel, `driven` and `seen` of some rows."""
-    h, n = problem.record.step, problem.record.time.size
-    size = FORCE_SIZE * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
+    h = problem.record.step
+    n = problem.record.time.size
+    size = FORCE_SIZE * np.array(
+        [1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length]
+    )
     groups = _bases(problem, fit, slice(rows.start, min(rows.stop + 1, n))).values()
     accelerations = np.concatenate([basis for group in groups for basis in group], axis=-1)
     channels = _channels(problem, shown, rows)
-    steps, forces = len(accelerations) - 1, accelerations.shape[-1]
+    steps = len(accelerations) - 1
+    forces = accelerations.shape[-1]
     driven = np.zeros((steps, 6, forces + channels.shape[-1]))
     driven[:, 3:6, :forces] = -h * size[:, None] * 0.5 * (accelerations[:-1] + accelerations[1:])
     return driven, np.concatenate([np.zeros((len(channels), 6, forces)), channels], axis=-1)

@@ -32,10 +32,22 @@ from shipcosim.diagnose.inference.thresholds import (
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
 
-__all__ = ["Judgement", "admissible", "gained", "judge", "judged", "labels", "usual_gain", "with_crude_model"]
+__all__ = [
+    "Judgement",
+    "admissible",
+    "gained",
+    "judge",
+    "judged",
+    "labels",
+    "usual_gain",
+    "with_crude_model",
+]
 
 _BY_PART = "from part to part"
-_AS_THEY_ARE = (_BY_PART, "beyond tolerances")  # unmodelled errors whose evidence does not grow with the causes' gain
+_AS_THEY_ARE = (
+    _BY_PART,
+    "beyond tolerances",
+)  # unmodelled errors whose evidence does not grow with the causes' gain
 
 
 @dataclass(frozen=True)
@@ -98,22 +110,34 @@ class JudgedLog:
 
 def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
-    problem, fits, comparison = explained.identification.problem, explained.fits, explained.identification.comparison
+    problem = explained.identification.problem
+    fits = explained.fits
+    comparison = explained.identification.comparison
     if comparison is not None and comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
-    unmodelled, without_wind = {}, problem.record.wind is None
+    unmodelled = {}
+    without_wind = problem.record.wind is None
 
     def unmodelled_beside(fit):
         if fit not in unmodelled:
             unmodelled[fit] = unmodelled_gains(problem, fit)
         # where nobody knows the wind, a force that nobody explains is no surprise
-        return {kind: gain for kind, gain in unmodelled[fit].items() if kind not in FORCES or not without_wind}
+        return {
+            kind: gain
+            for kind, gain in unmodelled[fit].items()
+            if kind not in FORCES or not without_wind
+        }
 
     usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
     null = {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {}
     judgement = judge(fits, unmodelled_beside, null)
-    if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
-        return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)  # whatever healthy logs gain
+    if (
+        judgement.verdict == "unknown"
+        and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
+    ):
+        return JudgedLog(
+            explained, judgement, unmodelled[judgement.fit], null
+        )  # whatever healthy logs gain
     simulated = _largest_null_gains(problem, judgement.fit, fits)
     if simulated:
         null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
@@ -151,13 +175,17 @@ def _largest_null_gains(problem, fit, fits):
         return {}
     found = null_gains(problem, fit.motion, fit.hypotheses)
     return {
-        label: float(max(values.mean() + 3.0 * values.std(), values.max())) if values.size else NULL_GAIN_UNKNOWN
+        label: float(max(values.mean() + 3.0 * values.std(), values.max()))
+        if values.size
+        else NULL_GAIN_UNKNOWN
         for label, values in found.items()
     }
 
 
 def judge(
-    fits: Sequence[Fit], unmodelled: Callable[[Fit], dict[str, float]], null: dict[str, float] | None = None
+    fits: Sequence[Fit],
+    unmodelled: Callable[[Fit], dict[str, float]],
+    null: dict[str, float] | None = None,
 ) -> Judgement:
     """The verdict on the sets of causes that were fitted to a log.
 
@@ -186,9 +214,15 @@ def judge(
         return Judgement("unknown", best, (), _beside_unknown(candidates), ())
     if not best.hypotheses:
         return Judgement("consistent", best, (), candidates, ())
-    rivals = [fit for fit in fair if fit.hypotheses and fit is not best and fit.score > best.score - APART]
+    rivals = [
+        fit for fit in fair if fit.hypotheses and fit is not best and fit.score > best.score - APART
+    ]
     rivals = [fit for fit in rivals if not set(labels(best)) < set(labels(fit))]
-    findings = tuple(sorted((_finding(s, best, candidates) for s in best.hypotheses), key=lambda f: -f.probability))
+    findings = tuple(
+        sorted(
+            (_finding(s, best, candidates) for s in best.hypotheses), key=lambda f: -f.probability
+        )
+    )
     if rivals:
         named = {label for fit in (best, *rivals) for label in labels(fit)}
         same = tuple(c for c in candidates if c.label in named)
@@ -200,20 +234,27 @@ def judge(
 
 def _beside_unknown(candidates):
     """Candidates beside an error that no cause explains: what they gain may be its, or what made room for it."""
-    return tuple(replace(one, probability=round(BESIDE_UNKNOWN * one.probability, 4)) for one in candidates)
+    return tuple(
+        replace(one, probability=round(BESIDE_UNKNOWN * one.probability, 4)) for one in candidates
+    )
 
 
 def _stands_out(gains, of_causes):
     """Whether unmodelled errors gain more than the gain of the causes lets one expect."""
     most = max(UNMODELLED, UNMODELLED_SHARE * of_causes)
-    return any(gain > (UNMODELLED if kind in _AS_THEY_ARE else most) for kind, gain in gains.items())
+    return any(
+        gain > (UNMODELLED if kind in _AS_THEY_ARE else most) for kind, gain in gains.items()
+    )
 
 
 def _best_steady(ranked, unmodelled):
     """The best set, or one a little below it where the size of its causes differs from part to part of the log."""
     best = ranked[0]
     for other in ranked[1:]:
-        if unmodelled(best).get(_BY_PART, 0.0) <= UNMODELLED or best.score - other.score > STEADY_SET_LOSS:
+        if (
+            unmodelled(best).get(_BY_PART, 0.0) <= UNMODELLED
+            or best.score - other.score > STEADY_SET_LOSS
+        ):
             break
         best = other
     return best
@@ -237,9 +278,15 @@ def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
 
 def _is_sized(hypothesis, fit):
     """Whether a cause is large enough to matter, clearly off neutral, and not at a bound."""
-    parameters, size = hypothesis.parameters, _size(hypothesis, fit)
-    std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(len(parameters))
-    at_bound = any(fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral for k in parameters)
+    parameters = hypothesis.parameters
+    size = _size(hypothesis, fit)
+    std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(
+        len(parameters)
+    )
+    at_bound = any(
+        fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral
+        for k in parameters
+    )
     return not (size < hypothesis.definition.least or size < DEVIATIONS * std or at_bound)
 
 
@@ -265,13 +312,19 @@ def _is_special(one, general):
 def _in_shape(hypothesis, fit):
     """Whether what tells a cause's shape lies within its tolerances, taken together."""
     shape = set(hypothesis.definition.shape)
-    squares = sum(t**2 for t, column in zip(fit.theta, fit.columns, strict=True) if set(column.changes) & shape)
+    squares = sum(
+        t**2
+        for t, column in zip(fit.theta, fit.columns, strict=True)
+        if set(column.changes) & shape
+    )
     return not shape or survival(squares, len(shape)) > SHAPE_CHANCE
 
 
 def _size(hypothesis, fit):
     """Of a cause in a fit, in units of its typical size."""
-    return np.hypot.reduce([(fit.values[k.paths[0]] - k.neutral) / k.typical for k in hypothesis.parameters])
+    return np.hypot.reduce(
+        [(fit.values[k.paths[0]] - k.neutral) / k.typical for k in hypothesis.parameters]
+    )
 
 
 def _with_a_small_cause(best, fits):
@@ -286,7 +339,11 @@ def _with_a_small_cause(best, fits):
             continue
         if not left and _size(more[0], fit) < more[0].definition.least:
             return [fit]
-        if len(left) == 1 and _is_special(left[0], more[0]) and not _exceeds_special(more[0], fit, fits):
+        if (
+            len(left) == 1
+            and _is_special(left[0], more[0])
+            and not _exceeds_special(more[0], fit, fits)
+        ):
             return [fit]
     return []
 
@@ -312,14 +369,18 @@ def _candidates(chances):
             key = hypothesis.cause, hypothesis.component
             found[key] = found.get(key, 0.0) + float(chance)
     ranked = sorted(found.items(), key=lambda entry: -entry[1])
-    return tuple(Candidate(cause, of, min(chance, 0.99)) for (cause, of), chance in ranked if chance > 1e-3)
+    return tuple(
+        Candidate(cause, of, min(chance, 0.99)) for (cause, of), chance in ranked if chance > 1e-3
+    )
 
 
 def _finding(hypothesis, fit, candidates):
     parameters = {
         # of the log, and of a model that knows no number better than within its tolerance
         k.name: ParameterEstimate(
-            fit.values[k.paths[0]] * k.factor, float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)), k.unit
+            fit.values[k.paths[0]] * k.factor,
+            float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)),
+            k.unit,
         )
         for k in hypothesis.parameters
     }

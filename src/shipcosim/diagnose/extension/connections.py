@@ -15,7 +15,11 @@ __all__ = ["connect_neighbours", "put_on_connections", "rewire"]
 
 
 def put_on_connections(
-    draft: ExtensionDraft, finding: Finding, component: str, estimate: ParameterEstimate, rule: OnConnections
+    draft: ExtensionDraft,
+    finding: Finding,
+    component: str,
+    estimate: ParameterEstimate,
+    rule: OnConnections,
 ) -> None:
     """Put a factor on the loads of a component, or an offset on what drives it, since its FMU has no such parameter.
 
@@ -31,21 +35,25 @@ def put_on_connections(
     system = draft.structure.checked()
     if rule.of == "loads":
         kept = 1.0 + rule.sign * converted(estimate, "1").value
-        wanted = [c for c in system.connections if c.source[0] == component and c.target[0] == draft.ship]
+        wanted = [
+            c for c in system.connections if c.source[0] == component and c.target[0] == draft.ship
+        ]
         new = [(c, kept * c.factor, kept * c.offset) for c in wanted]
         told = f"factor {kept:.3f} on the connections of its loads"
     else:
-        off, one = (
-            rule.sign * converted(estimate, DRIVES[rule.of]).value,
-            third_party_fmu_of(system, component, draft.ship),
-        )
+        off = rule.sign * converted(estimate, DRIVES[rule.of]).value
+        one = third_party_fmu_of(system, component, draft.ship)
         links = {link.variable: link for link in one.links if link.quantity == rule.of}
-        wanted = [c for c in system.connections if c.target[0] == component and c.target[1] in links]
+        wanted = [
+            c for c in system.connections if c.target[0] == component and c.target[1] in links
+        ]
         new = [(c, c.factor, c.offset + links[c.target[1]].factor * off) for c in wanted]
         told = f"offset of {off:.4g} {DRIVES[rule.of]} on the connection of its {rule.of}"
     pairs = set(draft.structure.connections)
     if not new or any(_ends(c) not in pairs for c, *_ in new):
-        draft.remark(finding, f"the connections of '{component}' are not in one system, so it is not carried")
+        draft.remark(
+            finding, f"the connections of '{component}' are not in one system, so it is not carried"
+        )
         return
     for one in new:
         _rejoin(draft.structure, system, *one)
@@ -55,12 +63,15 @@ def put_on_connections(
 def _ends(connection: Connection) -> tuple[str, str]:
     """Names of what a connection joins."""
     first, second = (
-        name if owner is None else f"{owner}.{name}" for owner, name in (connection.source, connection.target)
+        name if owner is None else f"{owner}.{name}"
+        for owner, name in (connection.source, connection.target)
     )
     return first, second
 
 
-def _rejoin(structure: SystemStructure, system: System, connection: Connection, factor: float, offset: float) -> None:
+def _rejoin(
+    structure: SystemStructure, system: System, connection: Connection, factor: float, offset: float
+) -> None:
     """Connect the same ends with another factor and offset, conversion of units included."""
     source, target = _ends(connection)
     per, zero = conversion(_unit(system, connection.source), _unit(system, connection.target))
@@ -70,7 +81,11 @@ def _rejoin(structure: SystemStructure, system: System, connection: Connection, 
 
 def _unit(system: System, end: tuple[str | None, str]) -> str | None:
     owner, name = end
-    return system.inputs[name].unit if owner is None else system.components[owner].fmu.variables[name].unit
+    return (
+        system.inputs[name].unit
+        if owner is None
+        else system.components[owner].fmu.variables[name].unit
+    )
 
 
 def _number(value: Any) -> float:
@@ -80,7 +95,9 @@ def _number(value: Any) -> float:
     return value
 
 
-def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, units: Iterable[str]) -> None:
+def connect_neighbours(
+    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, units: Iterable[str]
+) -> None:
     """Tell each thruster where its neighbour is, and how that runs: the one that is wired to it, else the nearest.
 
     Parameters
@@ -93,7 +110,8 @@ def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionR
     units : iterable of str
         The thrusters.
     """
-    values, wired = draft.structure.parameters, set(draft.structure.connections)
+    values = draft.structure.parameters
+    wired = set(draft.structure.connections)
     feeds = {target for _, target in wired}
     units = list(units)
     place = {unit: (_number(values[f"{unit}.x"]), _number(values[f"{unit}.y"])) for unit in units}
@@ -101,7 +119,9 @@ def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionR
         here = place[unit]
         inputs = {f"{unit}.{name}" for name in rule.neighbour_inputs}
         fed = {source.rpartition(".")[0] for source, target in wired if target in inputs}
-        others = sorted((o for o in units if o != unit), key=lambda o: (o not in fed, _distance(place[o], here)))
+        others = sorted(
+            (o for o in units if o != unit), key=lambda o: (o not in fed, _distance(place[o], here))
+        )
         if not others:
             draft.remark(finding, f"'{unit}' has no neighbour")
             continue
@@ -110,7 +130,9 @@ def connect_neighbours(draft: ExtensionDraft, finding: Finding, rule: ExtensionR
                 draft.structure.connect(f"{others[0]}.{output}", f"{unit}.{into}")
         for name, there in zip(rule.neighbour_place or (), place[others[0]], strict=False):
             if values[f"{unit}.{name}"] != there:
-                draft.put(finding, f"{unit}.{name}", Estimated(there), "m", note=f"where {others[0]} is")
+                draft.put(
+                    finding, f"{unit}.{name}", Estimated(there), "m", note=f"where {others[0]} is"
+                )
 
 
 def _distance(a: tuple[float, float], b: tuple[float, float]) -> float:
@@ -119,13 +141,20 @@ def _distance(a: tuple[float, float], b: tuple[float, float]) -> float:
 
 def rewire(draft: ExtensionDraft, name: str) -> None:
     """Connect a thruster's loads to the ship, and its inputs to the system's, as their names say."""
-    structure, loads = draft.structure, {f"{name}.tau_{axis}" for axis in AXES}
-    wrong = [pair for pair in structure.connections if pair[0] in loads and pair[1].startswith(f"{draft.ship}.tau_")]
+    structure = draft.structure
+    loads = {f"{name}.tau_{axis}" for axis in AXES}
+    wrong = [
+        pair
+        for pair in structure.connections
+        if pair[0] in loads and pair[1].startswith(f"{draft.ship}.tau_")
+    ]
     slots = [target.rpartition("_")[2] for _, target in wrong]
     for pair in wrong:
         structure.disconnect(*pair)
     for axis in AXES if wrong else ():
-        structure.connect(f"{name}.tau_{axis}", f"{draft.ship}.tau_{axis}_{max(slots, key=slots.count)}")
+        structure.connect(
+            f"{name}.tau_{axis}", f"{draft.ship}.tau_{axis}_{max(slots, key=slots.count)}"
+        )
     for source, target in structure.connections:
         kind = target.removeprefix(f"{name}.").removesuffix("_in")
         if target == f"{name}.{kind}_in" and source.endswith(f"_{kind}") and "." not in source:

@@ -80,23 +80,37 @@ class ExtensionDraft:
 
     def thrusters(self, variable: str = "rpm_in") -> list[str]:
         """Components that load the ship and have a variable."""
-        sources = [source for source, target in self.structure.connections if target.startswith(f"{self.ship}.tau_")]
+        sources = [
+            source
+            for source, target in self.structure.connections
+            if target.startswith(f"{self.ship}.tau_")
+        ]
         names = dict.fromkeys(source.rpartition(".")[0] for source in sources)
         parts = self.structure.components
         return [name for name in names if name in parts and variable in parts[name].fmu.variables]
 
-    def put(self, finding: Finding, signal: str, given: Estimated, unit: str | None, *, note: str = "") -> None:
+    def put(
+        self, finding: Finding, signal: str, given: Estimated, unit: str | None, *, note: str = ""
+    ) -> None:
         """Give a signal a value in the set."""
         text = "; ".join(filter(None, (note, _origin(finding, self.log))))
         unit = None if unit in (None, "", "1") else unit
-        self.values[signal] = parameter(signal, float(given.value), unit, text, tolerance=given.std or None)
+        self.values[signal] = parameter(
+            signal, float(given.value), unit, text, tolerance=given.std or None
+        )
 
-    def put_parameter(self, finding: Finding, place: str, name: str, estimate: ParameterEstimate) -> None:
+    def put_parameter(
+        self, finding: Finding, place: str, name: str, estimate: ParameterEstimate
+    ) -> None:
         """Give a parameter of a component its estimate, in the FMU's unit; a remark where there is none such."""
         parts = self.structure.components
         variable = parts[place].fmu.variables.get(name) if place in parts else None
         if variable is None:
-            what = f"'{place}' has no parameter '{name}'" if place in parts else f"there is no component '{place}'"
+            what = (
+                f"'{place}' has no parameter '{name}'"
+                if place in parts
+                else f"there is no component '{place}'"
+            )
             self.remark(finding, f"{what}, so it is not carried")
             return
         given = converted(estimate, variable.unit or "1")
@@ -104,8 +118,11 @@ class ExtensionDraft:
 
     def insert(self, fmu: str, name: str) -> str:
         """Add a component of one of our FMUs beside the ship; its full name."""
-        path, taken = self._fmu(fmu), set(self.structure.elements)
-        names = (f"{self.around}{name}{number}" for number in ("", *(f"_{k}" for k in range(2, 100))))
+        path = self._fmu(fmu)
+        taken = set(self.structure.elements)
+        names = (
+            f"{self.around}{name}{number}" for number in ("", *(f"_{k}" for k in range(2, 100)))
+        )
         full = next(one for one in names if one not in taken)
         self.structure.add_component(full, path)
         self.inserted.append(full)
@@ -114,7 +131,10 @@ class ExtensionDraft:
     def _fmu(self, name: str) -> Path:
         """File of one of our FMUs: beside those of the system, else built."""
         beside = [part.fmu.path.parent for part in self.structure.components.values()]
-        found = next((folder / f"{name}.fmu" for folder in beside if (folder / f"{name}.fmu").is_file()), None)
+        found = next(
+            (folder / f"{name}.fmu" for folder in beside if (folder / f"{name}.fmu").is_file()),
+            None,
+        )
         return found or library.find("fmu", name)
 
     def load(self, component: str) -> bool:
@@ -146,7 +166,9 @@ class ExtensionDraft:
 
 def _origin(finding: Finding, log: Mapping[str, Any]) -> str:
     """Where a value comes from, for the set."""
-    sizes = ", ".join(f"{name} {e.estimate:.4g} ± {e.std:.2g} {e.unit}" for name, e in finding.parameters.items())
+    sizes = ", ".join(
+        f"{name} {e.estimate:.4g} ± {e.std:.2g} {e.unit}" for name, e in finding.parameters.items()
+    )
     source = Path(str(log["source"])).name if log.get("source") else "a log"
     digest = f", SHA-256 {log['sha256']}" if log.get("sha256") else ""
     return f"{finding.label}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"

@@ -94,7 +94,8 @@ def extend(
     with structure.changes():
         for finding in findings:
             _carry(draft, finding, catalogue)
-    ssp, ssv = Path(folder) / "extended.ssp", Path(folder) / "extended.ssv"
+    ssp = Path(folder) / "extended.ssp"
+    ssv = Path(folder) / "extended.ssv"
     write_ssv(ssv, "extended", draft.values.values())
     structure.bind(ssv)
     structure.write(ssp)
@@ -113,9 +114,15 @@ def extend(
 def _ship(structure: SystemStructure) -> str:
     """Name of the component that all forces act on."""
     needed = {"tau_X_1", "tau_Y_1", "tau_N_1", "psi", "current_north", "current_east"}
-    ships = [name for name, part in structure.checked().components.items() if needed <= set(part.fmu.variables)]
+    ships = [
+        name
+        for name, part in structure.checked().components.items()
+        if needed <= set(part.fmu.variables)
+    ]
     if len(ships) != 1:
-        found = f"{len(ships)} components that loads can act on" + (f": {', '.join(ships)}." if ships else ".")
+        found = f"{len(ships)} components that loads can act on" + (
+            f": {', '.join(ships)}." if ships else "."
+        )
         remedy = "To extend it, a system needs one vessel, with inputs tau_X_1, tau_Y_1, tau_N_1, current_north, ..."
         raise ShipcosimError(Problem(structure.name, found, remedy))
     return ships[0]
@@ -134,17 +141,25 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
     numbers = _numbers(draft, finding, cause)
     with_onset = False
     for rule in _rules(cause, numbers):
-        own = {parameter: numbers.pop(number) for number, parameter in rule.parameters.items() if number in numbers}
+        own = {
+            parameter: numbers.pop(number)
+            for number, parameter in rule.parameters.items()
+            if number in numbers
+        }
         with_onset |= _insert(draft, finding, rule, own)
         if rule.neighbour_inputs:
-            connect_neighbours(draft, finding, rule, dict.fromkeys(_place(number) for number in numbers))
+            connect_neighbours(
+                draft, finding, rule, dict.fromkeys(_place(number) for number in numbers)
+            )
         if rule.by == "log":
             draft.remark(finding, "it is one of the log, not of the ship: shift the channels")
             numbers.clear()
     for number, estimate in numbers.items():
         _put_parameter(draft, finding, number, estimate, cause)
     if finding.onset is not None and not with_onset:
-        draft.remark(finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start")
+        draft.remark(
+            finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start"
+        )
 
 
 def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str, ParameterEstimate]:
@@ -157,15 +172,21 @@ def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str,
         for pattern in parameter.of if parameter is not None else ():
             paths = _paths(draft, pattern, finding)
             is_factor = parameter is not None and parameter.factor
-            found |= _multiplied(draft, paths, estimate) if is_factor else dict.fromkeys(paths, estimate)
+            found |= (
+                _multiplied(draft, paths, estimate) if is_factor else dict.fromkeys(paths, estimate)
+            )
     return found
 
 
-def _multiplied(draft: ExtensionDraft, paths: Iterable[str], factor: ParameterEstimate) -> dict[str, ParameterEstimate]:
+def _multiplied(
+    draft: ExtensionDraft, paths: Iterable[str], factor: ParameterEstimate
+) -> dict[str, ParameterEstimate]:
     """Numbers of the system times a factor; those that are 0, or that the system does not have, are left out."""
-    parts, found = draft.structure.checked().components, {}
+    parts = draft.structure.checked().components
+    found = {}
     for path in paths:
-        place, name = _place(path), path.rpartition(".")[2]
+        place = _place(path)
+        name = path.rpartition(".")[2]
         variable = parts[place].fmu.variables.get(name) if place in parts else None
         value = parts[place].start_value(name) if variable is not None else None
         if variable is not None and isinstance(value, int | float) and value != 0.0:
@@ -182,7 +203,12 @@ def _rules(cause: Cause, numbers: Mapping[str, ParameterEstimate]) -> list[Exten
     return [rule for rule in ours if set(rule.parameters) & set(numbers)]
 
 
-def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: Mapping[str, ParameterEstimate]) -> bool:
+def _insert(
+    draft: ExtensionDraft,
+    finding: Finding,
+    rule: ExtensionRule,
+    own: Mapping[str, ParameterEstimate],
+) -> bool:
     """Put what a rule inserts into the system; whether the onset of the cause went along."""
     if not own or rule.by in ("parameters", "log"):
         return False
@@ -193,15 +219,26 @@ def _insert(draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, own: M
         add_force(draft, finding, rule, own)
     elif rule.by == "steady current":
         steady = _vector(own, "north", "east")
-        add_current(draft, finding, *((None, steady) if finding.onset is not None else (steady, None)))
+        add_current(
+            draft, finding, *((None, steady) if finding.onset is not None else (steady, None))
+        )
     else:
-        add_current(draft, finding, *(_vector(own, f"north_{end}", f"east_{end}") for end in ("start", "end")))
+        add_current(
+            draft,
+            finding,
+            *(_vector(own, f"north_{end}", f"east_{end}") for end in ("start", "end")),
+        )
     return True
 
 
-def _vector(estimates: Mapping[str, ParameterEstimate], north: str, east: str) -> tuple[Estimated, Estimated]:
+def _vector(
+    estimates: Mapping[str, ParameterEstimate], north: str, east: str
+) -> tuple[Estimated, Estimated]:
     """North and east of a velocity; one that is not given is none. [m/s]"""
-    pair = [converted(estimates[name], "m/s") if name in estimates else Estimated(0.0, 0.0) for name in (north, east)]
+    pair = [
+        converted(estimates[name], "m/s") if name in estimates else Estimated(0.0, 0.0)
+        for name in (north, east)
+    ]
     return pair[0], pair[1]
 
 
@@ -209,7 +246,8 @@ def _put_parameter(
     draft: ExtensionDraft, finding: Finding, number: str, estimate: ParameterEstimate, cause: Cause
 ) -> None:
     """Put a number into the component that has it: as a parameter, else on its connections."""
-    place, name = _place(number), number.rpartition(".")[2]
+    place = _place(number)
+    name = number.rpartition(".")[2]
     parts = draft.structure.checked().components
     rule = _on_connections(cause).get(name)
     if rule is not None and place in parts and name not in parts[place].fmu.variables:
@@ -220,8 +258,17 @@ def _put_parameter(
 
 def _on_connections(cause: Cause) -> dict[str, OnConnections]:
     """By number of a thruster: how connections carry it, as the cause's file says or one of ours."""
-    parameters = [parameter for one in (*read_catalogue().values(), cause) for parameter in one.parameters.values()]
-    return {of.rpartition(".")[2]: one.on_connections for one in parameters if one.on_connections for of in one.of}
+    parameters = [
+        parameter
+        for one in (*read_catalogue().values(), cause)
+        for parameter in one.parameters.values()
+    ]
+    return {
+        of.rpartition(".")[2]: one.on_connections
+        for one in parameters
+        if one.on_connections
+        for of in one.of
+    }
 
 
 def _place(number: str) -> str:
@@ -235,5 +282,8 @@ def _paths(draft: ExtensionDraft, pattern: str, finding: Finding) -> list[str]:
     if "{azimuths}" in pattern:
         return [pattern.replace("{azimuths}", name) for name in draft.thrusters("azimuth_in")]
     if "{thrusters}" in pattern:
-        return [pattern.replace("{thrusters}", name) for name in ship_model_of(draft.structure.checked()).thrusters]
+        return [
+            pattern.replace("{thrusters}", name)
+            for name in ship_model_of(draft.structure.checked()).thrusters
+        ]
     return [pattern.replace("{thruster}", finding.component or "")]

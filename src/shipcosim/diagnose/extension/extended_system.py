@@ -59,7 +59,10 @@ class ExtendedSystem:
 
 
 def with_findings(
-    given: ExtendedSystem, findings: Iterable[Finding], log: Identification, folder: str | os.PathLike
+    given: ExtendedSystem,
+    findings: Iterable[Finding],
+    log: Identification,
+    folder: str | os.PathLike,
 ) -> ExtendedSystem:
     """The system extended by findings of the physics; the given one where there are none.
 
@@ -78,9 +81,12 @@ def with_findings(
     ExtendedSystem
         With a remark where the system cannot be extended.
     """
-    time, source = log.repaired["time"].values, log.log.encoding.get("source", "")
+    time = log.repaired["time"].values
+    source = log.log.encoding.get("source", "")
     about = {"source": Path(source).name, "sha256": log.log.encoding.get("sha256", "")}
-    return extended_by(given, findings, about | {"span": (float(time[0]), float(time[-1]))}, log.causes, folder)
+    return extended_by(
+        given, findings, about | {"span": (float(time[0]), float(time[-1]))}, log.causes, folder
+    )
 
 
 def extended_by(
@@ -109,15 +115,25 @@ def extended_by(
         system = read_system(str(extension.ssp))
     except ShipcosimError as error:
         said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
-        return replace(given, remarks=tuple(f"The system was not extended: {text}" for text in said))
-    changes = (_change(name, value, given.given, system) for name, value in extension.values.items())
+        return replace(
+            given, remarks=tuple(f"The system was not extended: {text}" for text in said)
+        )
+    changes = (
+        _change(name, value, given.given, system) for name, value in extension.values.items()
+    )
     return replace(given, extension=extension, system=system, changes=tuple(changes))
 
 
 def _change(name, value, given, extended):
     component, _, variable = name.rpartition(".")
-    start = given.components[component].start_value(variable) if component in given.components else None
-    known = extended.components[component].fmu.variables if component in extended.components else extended.inputs
+    start = (
+        given.components[component].start_value(variable) if component in given.components else None
+    )
+    known = (
+        extended.components[component].fmu.variables
+        if component in extended.components
+        else extended.inputs
+    )
     unit = known[variable].unit if variable in known else ""
     before = float(start) if isinstance(start, int | float) else None
     return NumberChange(name, before, float(value), "" if unit in (None, "1") else unit)

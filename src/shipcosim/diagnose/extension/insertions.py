@@ -20,7 +20,10 @@ _Vector = tuple[Estimated, Estimated]
 
 
 def add_force(
-    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, ParameterEstimate]
+    draft: ExtensionDraft,
+    finding: Finding,
+    rule: ExtensionRule,
+    estimates: Mapping[str, ParameterEstimate],
 ) -> None:
     """Insert an FMU whose loads are added to those on the ship.
 
@@ -40,15 +43,22 @@ def add_force(
         return
     for into, output in rule.inputs.items():
         draft.structure.connect(f"{draft.ship}.{output}", f"{name}.{into}")
-    zeros = {parameter: ParameterEstimate(0.0, 0.0, _unit(draft, name, rule.zero[0])) for parameter in rule.zero}
+    zeros = {
+        parameter: ParameterEstimate(0.0, 0.0, _unit(draft, name, rule.zero[0]))
+        for parameter in rule.zero
+    }
     for parameter, estimate in (zeros | dict(estimates)).items():
         draft.put_parameter(finding, name, parameter, estimate)
     water = water_of(float(draft.structure.parameters[f"{draft.ship}.length"] or 0.0))
-    numbers = {parameter: number.rpartition(".")[2] for number, parameter in rule.parameters.items()}
+    numbers = {
+        parameter: number.rpartition(".")[2] for number, parameter in rule.parameters.items()
+    }
     for parameter, why in rule.assumed.items():
         if parameter not in estimates:
             given = Estimated(getattr(water, numbers[parameter]))
-            draft.put(finding, f"{name}.{parameter}", given, _unit(draft, name, parameter), note=why)
+            draft.put(
+                finding, f"{name}.{parameter}", given, _unit(draft, name, parameter), note=why
+            )
     if finding.onset is not None and rule.onset:
         start, growth = rule.onset
         draft.put(finding, f"{name}.{start}", Estimated(finding.onset), "s")
@@ -60,7 +70,10 @@ def _unit(draft: ExtensionDraft, component: str, parameter: str) -> str:
 
 
 def add_instruments(
-    draft: ExtensionDraft, finding: Finding, rule: ExtensionRule, estimates: Mapping[str, ParameterEstimate]
+    draft: ExtensionDraft,
+    finding: Finding,
+    rule: ExtensionRule,
+    estimates: Mapping[str, ParameterEstimate],
 ) -> None:
     """Put instruments with some errors between the ship and her log.
 
@@ -74,7 +87,8 @@ def add_instruments(
         By field of `InstrumentParameters`.
     """
     if not draft.suffix:
-        draft.shows, draft.suffix = draft.insert("instruments", "instruments"), "_meas"
+        draft.shows = draft.insert("instruments", "instruments")
+        draft.suffix = "_meas"
         for name in Motion._fields:
             draft.structure.connect(f"{draft.ship}.{name}", f"{draft.shows}.{name}")
     units = {item.name: item.metadata["unit"] for item in fields(InstrumentParameters)}
@@ -87,7 +101,9 @@ def add_instruments(
             draft.errors[name] = given.value
 
 
-def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector | None, end: _Vector | None = None) -> None:
+def add_current(
+    draft: ExtensionDraft, finding: Finding, start: _Vector | None, end: _Vector | None = None
+) -> None:
     """Make the water move.
 
     Parameters
@@ -118,13 +134,19 @@ def add_current(draft: ExtensionDraft, finding: Finding, start: _Vector | None, 
         span = finding.onset, finding.onset + RAMP
     if span is None:
         span = draft.structure.start_time, draft.structure.stop_time or 600.0
-        draft.remark(finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s")
+        draft.remark(
+            finding, f"the log's span is not known; it varies from {span[0]:g} to {span[1]:g} s"
+        )
     ends = {"end": end} if start is None else {"start": start, "end": end}
     _add_varying(draft, finding, source, ends, span)
 
 
 def _add_varying(
-    draft: ExtensionDraft, finding: Finding, source: str, ends: dict[str, _Vector], span: tuple[float, float]
+    draft: ExtensionDraft,
+    finding: Finding,
+    source: str,
+    ends: dict[str, _Vector],
+    span: tuple[float, float],
 ) -> None:
     """Insert a current that varies between its ends over a span of time."""
     name = draft.insert("varying_current", "varying_current")
@@ -140,7 +162,9 @@ def _add_varying(
 
 def _water(draft: ExtensionDraft) -> str | None:
     """Component that moves the ship's water and takes its speed and direction; None where there is none such."""
-    feeding = {connection.target: connection.source for connection in draft.structure.checked().connections}
+    feeding = {
+        connection.target: connection.source for connection in draft.structure.checked().connections
+    }
     source, _ = feeding.get((draft.ship, "current_north"), (None, ""))
     variables = draft.structure.components[source].fmu.variables if source else {}
     return source if {"current_speed", "current_to"} <= set(variables) else None
@@ -155,7 +179,9 @@ def _environment(draft: ExtensionDraft) -> str:
     return name
 
 
-def _steady(draft: ExtensionDraft, finding: Finding, source: str | None, north: Estimated, east: Estimated) -> None:
+def _steady(
+    draft: ExtensionDraft, finding: Finding, source: str | None, north: Estimated, east: Estimated
+) -> None:
     """Give the water one velocity, where the system takes it."""
     if source is None:
         for axis, given in (("north", north), ("east", east)):
@@ -165,14 +191,29 @@ def _steady(draft: ExtensionDraft, finding: Finding, source: str | None, north: 
     along = hypot(north.value * north.std, east.value * east.std) / (speed or 1.0)
     across = hypot(east.value * north.std, north.value * east.std) / (speed * speed or 1.0)
     _start(draft, finding, source, "current_speed", Estimated(speed, along), "m/s")
-    _start(draft, finding, source, "current_to", Estimated(atan2(east.value, north.value), across), "rad")
+    _start(
+        draft,
+        finding,
+        source,
+        "current_to",
+        Estimated(atan2(east.value, north.value), across),
+        "rad",
+    )
 
 
-def _start(draft: ExtensionDraft, finding: Finding, component: str, name: str, given: Estimated, unit: str) -> None:
+def _start(
+    draft: ExtensionDraft, finding: Finding, component: str, name: str, given: Estimated, unit: str
+) -> None:
     """Start value of an input: at the system's own input where that feeds it, else at the component."""
-    system, target = draft.structure.checked(), (component, name)
+    system = draft.structure.checked()
+    target = (component, name)
     feeding = next((c for c in system.connections if c.target == target), None)
-    if feeding is None or feeding.source[0] is not None or feeding.mapping is not None or feeding.factor == 0.0:
+    if (
+        feeding is None
+        or feeding.source[0] is not None
+        or feeding.mapping is not None
+        or feeding.factor == 0.0
+    ):
         draft.release(f"{component}.{name}")
         draft.put(finding, f"{component}.{name}", given, unit)
         return

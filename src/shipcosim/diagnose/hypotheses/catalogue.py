@@ -21,7 +21,14 @@ from shipcosim.series import conversion
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Hypothesis", "HypothesisParameter", "hypotheses_of", "read_catalogue", "read_cause", "read_faults"]
+__all__ = [
+    "Hypothesis",
+    "HypothesisParameter",
+    "hypotheses_of",
+    "read_catalogue",
+    "read_cause",
+    "read_faults",
+]
 
 
 @dataclass(frozen=True)
@@ -103,7 +110,8 @@ def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Ca
         With everything that is wrong in the files.
     """
     own = sorted(Path(folder).iterdir()) if folder else []
-    found, problems = dict(_shipped()), []
+    found = dict(_shipped())
+    problems = []
     for path in (path for path in own if path.name.endswith(".toml")):
         try:
             cause = read_cause(path)
@@ -130,7 +138,9 @@ def read_cause(path: Path) -> Cause:
         problems = []
         for detail in error.errors():
             key = ".".join(map(str, detail["loc"]))
-            problems.append(Problem(f"{path}, {key}" if key else str(path), f"{detail['msg']}.", remedy))
+            problems.append(
+                Problem(f"{path}, {key}" if key else str(path), f"{detail['msg']}.", remedy)
+            )
         raise ShipcosimError(problems) from None
     except (OSError, ValueError, RecursionError) as error:
         raise ShipcosimError(Problem(str(path), f"It cannot be read: {error}.", remedy)) from None
@@ -159,7 +169,9 @@ def _contents(folder: str) -> Iterator[dict]:
 
 
 def hypotheses_of(
-    catalogue: Mapping[str, Cause], model: ShipModel, sought_in: Literal["every log", "sea trials"] = "every log"
+    catalogue: Mapping[str, Cause],
+    model: ShipModel,
+    sought_in: Literal["every log", "sea trials"] = "every log",
 ) -> list[Hypothesis]:
     """Every cause at every place of a ship where it can be.
 
@@ -196,7 +208,11 @@ def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | N
 
 def _paths(pattern: str, component: str | None, model: ShipModel) -> list[str]:
     """Numbers of the ship that a pattern of a cause's file means."""
-    pattern = pattern.replace("vessel.", f"{model.vessel}.", 1) if pattern.startswith("vessel.") else pattern
+    pattern = (
+        pattern.replace("vessel.", f"{model.vessel}.", 1)
+        if pattern.startswith("vessel.")
+        else pattern
+    )
     if "{azimuths}" in pattern:
         found = (pattern.replace("{azimuths}", name) for name in model.thrusters)
         return [path for path in found if model.has(path)]
@@ -204,7 +220,11 @@ def _paths(pattern: str, component: str | None, model: ShipModel) -> list[str]:
 
 
 def _parameter(
-    name: str, parameter: CauseParameter, paths: tuple[str, ...], component: str | None, model: ShipModel
+    name: str,
+    parameter: CauseParameter,
+    paths: tuple[str, ...],
+    component: str | None,
+    model: ShipModel,
 ) -> HypothesisParameter:
     """A parameter of a cause in the unit of the ship's numbers."""
     per_model, _ = conversion(parameter.unit, model.about(paths[0])["unit"])
@@ -212,7 +232,8 @@ def _parameter(
     if parameter.relative_to:
         size *= model.get(_paths(parameter.relative_to, component, model)[0])
     tolerance = model.tolerances.get(paths[0], parameter.tolerance * abs(size))
-    low, high = parameter.bounds[0] * size, parameter.bounds[1] * size
+    low = parameter.bounds[0] * size
+    high = parameter.bounds[1] * size
     if paths[0] in model.referenced:
         tolerance = 0.0  # what is uncertain of it is part of every fit
     return HypothesisParameter(

@@ -8,7 +8,15 @@ from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, model_validator
 
-__all__ = ["FACTS", "Cause", "CauseParameter", "ExtensionRule", "Fault", "OnConnections", "placeholders"]
+__all__ = [
+    "FACTS",
+    "Cause",
+    "CauseParameter",
+    "ExtensionRule",
+    "Fault",
+    "OnConnections",
+    "placeholders",
+]
 
 FACTS = ("astern_share", "speed", "surge", "surge_acceleration", "sway", "wind_speed", "yaw_rate")
 """What `why_not_testable` can say of a log: root mean squares of the motion, the mean wind, the share astern."""
@@ -99,7 +107,9 @@ class ExtensionRule(_Strict):
         Parameters of a thruster that say where its neighbour is, forward and to starboard.
     """
 
-    by: Literal["parameters", "force", "steady current", "varying current", "instruments", "log"] = "parameters"
+    by: Literal[
+        "parameters", "force", "steady current", "varying current", "instruments", "log"
+    ] = "parameters"
     parameters: dict[str, str] = {}
     insert: str = ""
     inputs: dict[str, str] = {}
@@ -186,9 +196,13 @@ class Cause(_Strict):
             "why_not_testable": set(FACTS),
         }
         for key, known in fills.items():
-            wanted = {name for field in placeholders(getattr(self, key)) for name in field.split("+")}
+            wanted = {
+                name for field in placeholders(getattr(self, key)) for name in field.split("+")
+            }
             if wanted - known:
-                raise ValueError(f"{key}: there is no {sorted(wanted - known)} to fill in, but {sorted(known)}")
+                raise ValueError(
+                    f"{key}: there is no {sorted(wanted - known)} to fill in, but {sorted(known)}"
+                )
         if self.law == "turning" and (len(self.sought_by), len(self.parameters)) != (4, 4):
             raise ValueError("law 'turning' takes four parameters, and four numbers in sought_by")
         if self.law == "vector" and len(self.parameters) != 2:

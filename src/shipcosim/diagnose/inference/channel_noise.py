@@ -43,7 +43,9 @@ def most_white(record: Record) -> np.ndarray:
             *to_body(kernel.smooth(motion.psi), kernel.rate(motion.x), kernel.rate(motion.y)),
             kernel.rate(motion.psi),
         )
-        for axis, (speed, other) in enumerate(zip((motion.u, motion.v, motion.r), by_place, strict=True)):
+        for axis, (speed, other) in enumerate(
+            zip((motion.u, motion.v, motion.r), by_place, strict=True)
+        ):
             if not is_measured(record, 3 + axis):
                 continue
             apart = np.sort(np.abs(kernel.smooth(speed) - other)[use])[: int(SOUND * use.sum())]

@@ -38,7 +38,8 @@ def evidence(
         Log-evidence, mean and covariance of θ.
     """
     on = np.flatnonzero(prior > 0.0)
-    G, g = products[1:, 1:], products[1:, 0]
+    G = products[1:, 1:]
+    g = products[1:, 0]
     shift = 0.0
     if centre is not None and np.any(centre):
         shift = centre @ g + 0.5 * centre @ G @ centre  # y + G centre instead of y
@@ -48,7 +49,8 @@ def evidence(
     L = np.linalg.cholesky(inner)
     half = np.linalg.solve(L, scale * g[on])
     Li = np.linalg.inv(L) * scale
-    mean, covariance = np.zeros(prior.size), np.zeros((prior.size, prior.size))
+    mean = np.zeros(prior.size)
+    covariance = np.zeros((prior.size, prior.size))
     mean[on] = Li.T @ half
     covariance[np.ix_(on, on)] = Li.T @ Li
     return float(0.5 * half @ half - np.log(np.diag(L)).sum() - shift), mean, covariance

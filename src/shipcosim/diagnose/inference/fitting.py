@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 
 ROUNDS = 5
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about
-_RUNS_AWAY = 5.0  # times the velocity of a motion, beyond which one that is smoothed about it has run away
+_RUNS_AWAY = (
+    5.0  # times the velocity of a motion, beyond which one that is smoothed about it has run away
+)
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,9 @@ class IdentificationProblem:
     motion: Motion
     base: InParts | None = None
     known_of: tuple[Hypothesis, ...] = ()
-    fits: dict[tuple[Any, ...], Fit] = field(default_factory=dict, init=False, repr=False, compare=False)
+    fits: dict[tuple[Any, ...], Fit] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def basis(self) -> list[Regressor]:
@@ -78,7 +82,12 @@ class IdentificationProblem:
 
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
-        taken = {path for hypothesis in hypotheses for parameter in hypothesis.parameters for path in parameter.paths}
+        taken = {
+            path
+            for hypothesis in hypotheses
+            for parameter in hypothesis.parameters
+            for path in parameter.paths
+        }
         taken |= {path for hypothesis in hypotheses for path in hypothesis.definition.replaces}
         everyone = self.known_of or self.hypotheses
         taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
@@ -159,7 +168,9 @@ def prepared(problem: IdentificationProblem, rounds: int = 3) -> IdentificationP
     return replace(problem, motion=motion, base=base)
 
 
-def _smoothed(linear: InParts, squares: np.ndarray, problem: IdentificationProblem, motion: Motion) -> Motion:
+def _smoothed(
+    linear: InParts, squares: np.ndarray, problem: IdentificationProblem, motion: Motion
+) -> Motion:
     """The motion to linearise about next: that of the ship as the problem has her, as far as she can follow the log.
 
     `squares` is the sum of the innovations' squares. Where she cannot, the measurements rule: jolts are as much larger
@@ -177,7 +188,10 @@ def _follows(found: Motion, motion: Motion) -> bool:
     """Whether a smoothed motion is a number throughout, and no velocity of it far beyond that of the one before."""
     fastest = [np.abs(velocity).max() for velocity in found[3:]]
     before = [np.abs(velocity).max() for velocity in motion[3:]]
-    return bool(np.isfinite(np.stack(found)).all() and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1)))
+    return bool(
+        np.isfinite(np.stack(found)).all()
+        and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1))
+    )
 
 
 def _key(column: Regressor) -> tuple[tuple[str, float], ...]:
@@ -214,8 +228,13 @@ def fitted(
 
 def _fitted(problem, hypotheses, values, rounds):
     """A fit, made anew."""
-    finite = {path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()}
-    values, about, motion, last = bounded(hypotheses, finite), {}, problem.motion, None
+    finite = {
+        path: v if np.isfinite(v) else problem.model.get(path) for path, v in (values or {}).items()
+    }
+    values = bounded(hypotheses, finite)
+    about = {}
+    motion = problem.motion
+    last = None
     columns = problem.known(hypotheses) + own_columns(problem, hypotheses)
     for _ in range(rounds):
         about_it = linearised(problem, columns, values | about, motion)
@@ -227,7 +246,9 @@ def _fitted(problem, hypotheses, values, rounds):
         if not (np.isfinite(score) and np.isfinite(theta).all()):
             return last or _impossible(problem, hypotheses, values, columns, about_it)
         fit = about_it.with_posterior(problem, hypotheses, values, score, theta, covariance)
-        motion, values, about = fit.motion, next_values(fit), tolerated(fit)
+        motion = fit.motion
+        values = next_values(fit)
+        about = tolerated(fit)
         if _moved(fit, values) < 0.02 and last and abs(fit.score - last.score) < 1.0:
             break
         last = fit
@@ -246,19 +267,28 @@ def _impossible(problem, hypotheses, values, columns, about_it) -> Fit:
 def _moved(fit: Fit, values: Mapping[str, float]) -> float:
     """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
     parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
-    return max((abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for k in parameters), default=0.0)
+    return max(
+        (abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for k in parameters),
+        default=0.0,
+    )
 
 
-def own_columns(problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
+def own_columns(
+    problem: IdentificationProblem, hypotheses: Sequence[Hypothesis]
+) -> list[Regressor]:
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
-    return found + [_regressor(one, parameter) for one in hypotheses for parameter in one.parameters]
+    return found + [
+        _regressor(one, parameter) for one in hypotheses for parameter in one.parameters
+    ]
 
 
 def _regressor(hypothesis: Hypothesis, parameter: HypothesisParameter) -> Regressor:
     """The regressor of a parameter of a hypothesis."""
-    return Regressor(dict.fromkeys(parameter.paths, parameter.typical), vector=hypothesis.vector_of(parameter))
+    return Regressor(
+        dict.fromkeys(parameter.paths, parameter.typical), vector=hypothesis.vector_of(parameter)
+    )
 
 
 @dataclass(frozen=True)
@@ -300,16 +330,22 @@ class Linearised:
         motion = _smoothed(explained(self.linear, left), squares, problem, self.motion)
         about = self.centre, self.model, self.motion
         rest = (self.columns, self.products, theta, covariance, *about, motion, problem.record)
-        return Fit(tuple(hypotheses), dict(values), deviations(hypotheses, covariance), score, *rest)
+        return Fit(
+            tuple(hypotheses), dict(values), deviations(hypotheses, covariance), score, *rest
+        )
 
 
 def linearised(
-    problem: IdentificationProblem, columns: list[Regressor], values: Mapping[str, float], motion: Motion
+    problem: IdentificationProblem,
+    columns: list[Regressor],
+    values: Mapping[str, float],
+    motion: Motion,
 ) -> Linearised:
     """A problem about some values of the ship's numbers and a motion, with these columns."""
     model = problem.model.with_values(values)
     linear = linearised_by_parts(motion, problem.record, model, columns)
-    products, centre = inner_products(linear, problem.noise, problem.record), _centre(columns, model, problem.model)
+    products = inner_products(linear, problem.noise, problem.record)
+    centre = _centre(columns, model, problem.model)
     return Linearised(columns, linear, products, centre, model, motion)
 
 
@@ -317,15 +353,22 @@ def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict
     """Standard deviation of each parameter of some hypotheses, whose columns are the last."""
     parameters = [parameter for hypothesis in hypotheses for parameter in hypothesis.parameters]
     found = np.sqrt(np.diag(covariance))[len(covariance) - len(parameters) :]
-    return {one.paths[0]: float(deviation * one.typical) for one, deviation in zip(parameters, found, strict=True)}
+    return {
+        one.paths[0]: float(deviation * one.typical)
+        for one, deviation in zip(parameters, found, strict=True)
+    }
 
 
 def next_values(fit: Fit) -> dict[str, float]:
     """Values of the numbers at the posterior's mean, within their bounds."""
     parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
     found = dict(fit.values)
-    for parameter, theta in zip(parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True):
-        found.update(dict.fromkeys(parameter.paths, float(parameter.neutral + theta * parameter.typical)))
+    for parameter, theta in zip(
+        parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True
+    ):
+        found.update(
+            dict.fromkeys(parameter.paths, float(parameter.neutral + theta * parameter.typical))
+        )
     return bounded(fit.hypotheses, found)
 
 
@@ -337,12 +380,17 @@ def bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> di
         for parameter in hypothesis.parameters
         for path in parameter.paths
     }
-    return {path: float(np.clip(v, *bounds[path])) if path in bounds else v for path, v in values.items()}
+    return {
+        path: float(np.clip(v, *bounds[path])) if path in bounds else v
+        for path, v in values.items()
+    }
 
 
 def tolerated(fit: Fit) -> dict[str, float]:
     """What is only known within a tolerance, and does not act along a line through neutral, at the posterior's mean."""
-    wanted = NONLINEAR | {path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions}
+    wanted = NONLINEAR | {
+        path for hypothesis in fit.hypotheses for path in hypothesis.definition.companions
+    }
     found = {}
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.changes.items() if wanted & set(column.changes) else ():

@@ -117,10 +117,15 @@ def _by_parts(linear, noise, record):
     passing = _Filter(in_parts(linear), noise, record)
     for rows in passing.linear.slices():
         found = passing.over(rows)
-        yield rows.start, Innovations(*map(passing.by_log, (found.white, found.log_determinant, found.states)))
+        yield (
+            rows.start,
+            Innovations(*map(passing.by_log, (found.white, found.log_determinant, found.states))),
+        )
 
 
-def smoothed(linear: Linear | InParts, noise: Noise, record: Record, motion: Motion) -> tuple[Motion, np.ndarray]:
+def smoothed(
+    linear: Linear | InParts, noise: Noise, record: Record, motion: Motion
+) -> tuple[Motion, np.ndarray]:
     """Motion by all rows of a log, and what else is smoothed.
 
     Parameters
@@ -137,19 +142,25 @@ def smoothed(linear: Linear | InParts, noise: Noise, record: Record, motion: Mot
     tuple of Motion, (..., n, 12) array
         (..., n) arrays; unexplained acceleration, slow errors and waves.
     """
-    passing, begun = _Filter(in_parts(linear).chosen([]), noise, record), []
+    passing = _Filter(in_parts(linear).chosen([]), noise, record)
+    begun = []
     slices = list(passing.linear.slices())
     for rows in slices:
         begun.append(passing.state)
         if rows is not slices[-1]:
             passing.over(rows)
-    found, pull = [], None
+    found = []
+    pull = None
     for rows, state in zip(reversed(slices), reversed(begun), strict=True):
         passing.state = state
         one = passing.over(rows, keep=True)
         pull = np.zeros(one.states.shape[1:]) if pull is None else pull
         of_filter = one.gain, one.root, one.states, one.covariances, record.is_last[rows]
-        found.append(kalman.smoothed(one.A, passing.steady, one.H, one.white[..., 0].copy(), *of_filter, pull))
+        found.append(
+            kalman.smoothed(
+                one.A, passing.steady, one.H, one.white[..., 0].copy(), *of_filter, pull
+            )
+        )
     states = np.moveaxis(passing.by_log(np.concatenate(found[::-1])), 0, -2)
     return Motion(*(value + states[..., i] for i, value in enumerate(motion))), states[..., 6:]
 
@@ -182,20 +193,27 @@ class _Filter:
     """
 
     def __init__(self, linear: InParts, noise: Noise, record: Record):
-        self.linear, self.noise, self.record = linear, noise, record
+        self.linear = linear
+        self.noise = noise
+        self.record = record
         self.state = None
 
     def over(self, rows: slice, keep: bool = False) -> _Passed:
         """Go over a part of the rows, the covariances kept or not."""
-        linear, noise, record = self.linear.part(rows), self.noise, self.record
+        linear = self.linear.part(rows)
+        noise = self.noise
+        record = self.record
         begun = self._begun(linear) if self.state is None else self.state
         A, B, H, Z = (_by_log(values, self.lead, 2) for values in linear[:4])
         C, x = (value.copy() for value in begun)
         white = np.asarray(noise.white).reshape(1, -1, 6)
         R = np.where(_by_log(linear.whole, self.lead, 1), white**2, np.inf)
         R = np.require(np.broadcast_to(R, (len(R), len(C), 6)), requirements=["C", "W"])
-        known, is_last = np.asarray(record.known)[rows], record.is_last[rows]
-        weights = kalman.weights(A, self.steady, H, R, self.process, C, known, _lost(), is_last, self.uncertain, keep)
+        known = np.asarray(record.known)[rows]
+        is_last = record.is_last[rows]
+        weights = kalman.weights(
+            A, self.steady, H, R, self.process, C, known, _lost(), is_last, self.uncertain, keep
+        )
         gain, root, log_determinant, covariances = weights
         found = kalman.whitened(A, self.steady, B, H, Z, gain, root, is_last, x)
         self.state = C, x
@@ -203,10 +221,13 @@ class _Filter:
 
     def _begun(self, linear):
         """Shape of the logs, and the state before the first row."""
-        noise, step = self.noise, self.record.step
+        noise = self.noise
+        step = self.record.step
         self.lead = np.broadcast_shapes(linear.seen.shape[1:-2], np.shape(noise.white)[:-1])
         of_noise = _steady(noise, step), _process(noise, step), _uncertain(noise)
-        self.steady, self.process, self.uncertain = (_of_logs(values, self.lead) for values in of_noise)
+        self.steady, self.process, self.uncertain = (
+            _of_logs(values, self.lead) for values in of_noise
+        )
         return self.uncertain, np.zeros((len(self.uncertain), STATES, linear.seen.shape[-1]))
 
     def by_log(self, values: np.ndarray) -> np.ndarray:
@@ -233,7 +254,9 @@ def log_likelihoods(linear: Linear, noises: Noise, record: Record) -> np.ndarray
     R = np.ascontiguousarray(noises.white.T) ** 2
     b, z = (np.ascontiguousarray(values[..., 0]) for values in (linear.driven, linear.seen))
     rows = np.asarray(record.known), _lost(), record.is_last
-    return kalman.log_likelihoods(linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, *rows)
+    return kalman.log_likelihoods(
+        linear.transition, W, b, linear.output, z, linear.whole, R, Q, P, *rows
+    )
 
 
 def _by_log(values: np.ndarray, lead: tuple[int, ...], tail: int) -> np.ndarray:
@@ -253,7 +276,9 @@ def _of_logs(values: np.ndarray, lead: tuple[int, ...]) -> np.ndarray:
     return np.require(values, requirements=["C", "W"]).reshape(-1, STATES, STATES)
 
 
-def oscillation(noise: Noise, h: float) -> tuple[tuple[Any, Any, Any, Any], tuple[np.ndarray, np.ndarray, np.ndarray]]:
+def oscillation(
+    noise: Noise, h: float
+) -> tuple[tuple[Any, Any, Any, Any], tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """First-order waves over a step.
 
     Returns
@@ -264,7 +289,11 @@ def oscillation(noise: Noise, h: float) -> tuple[tuple[Any, Any, Any, Any], tupl
     """
     a, b, c, d = wave_transition(h, np.asarray(noise.wave_frequency)[..., None], WAVE_DAMPING)
     place, speed = _waves(noise)
-    added = place - a * a * place - b * b * speed, -a * c * place - b * d * speed, speed - c * c * place - d * d * speed
+    added = (
+        place - a * a * place - b * b * speed,
+        -a * c * place - b * d * speed,
+        speed - c * c * place - d * d * speed,
+    )
     return (a, b, c, d), added
 
 
@@ -280,14 +309,19 @@ def _steady(noise: Noise, h: float) -> np.ndarray:
 
 def _process(noise: Noise, h: float) -> np.ndarray:
     """Covariance of what happens over a step."""
-    jolt, walk = np.asarray(noise.jolt) ** 2 * h, np.asarray(noise.walk) ** 2 * h
+    jolt = np.asarray(noise.jolt) ** 2 * h
+    walk = np.asarray(noise.walk) ** 2 * h
     place = jolt * h * h / 3.0 + 1e-10
     slow = np.broadcast_to(SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / SLOW_TIME)), jolt.shape)
     still = np.zeros(jolt.shape)
     Q = np.concatenate([place, jolt, walk, slow, still, still], axis=-1)[..., None] * np.eye(STATES)
-    _, (Q[..., range(12, 15), range(12, 15)], both, Q[..., range(15, 18), range(15, 18)]) = oscillation(noise, h)
+    _, (Q[..., range(12, 15), range(12, 15)], both, Q[..., range(15, 18), range(15, 18)]) = (
+        oscillation(noise, h)
+    )
     Q[..., range(12, 15), range(15, 18)] = Q[..., range(15, 18), range(12, 15)] = both
-    Q[..., 2, 5] = Q[..., 5, 2] = 0.5 * h * jolt[..., 2]  # along surge and sway it would turn with the ship
+    Q[..., 2, 5] = Q[..., 5, 2] = (
+        0.5 * h * jolt[..., 2]
+    )  # along surge and sway it would turn with the ship
     return Q
 
 
@@ -302,7 +336,9 @@ def _uncertain(noise: Noise) -> np.ndarray:
     walk = np.asarray(noise.walk) ** 2 * 600.0
     white = np.broadcast_to(np.asarray(noise.white) ** 2, (*walk.shape[:-1], 6))
     waves = (np.broadcast_to(values, walk.shape) for values in _waves(noise))
-    first = np.concatenate([100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape), *waves], axis=-1)
+    first = np.concatenate(
+        [100.0 * white, walk, np.broadcast_to(SLOW_STD**2, walk.shape), *waves], axis=-1
+    )
     return first[..., None] * np.eye(STATES)
 
 
@@ -350,7 +386,8 @@ def gram(found: Iterable[tuple[int, Innovations]], rows: int, parts: int = 8) ->
     Gram
     """
     edges = np.linspace(0, rows, parts + 1).astype(int)
-    blocks, log_determinant = [np.zeros(())] * parts, np.zeros(())
+    blocks = [np.zeros(())] * parts
+    log_determinant = np.zeros(())
     for first, stretch in found:
         log_determinant = log_determinant + stretch.log_determinant.sum(0)
         places = np.clip(edges - first, 0, len(stretch.white))

@@ -95,10 +95,16 @@ class Linear(NamedTuple):
     whole: np.ndarray
 
 
-_FASTEST = {"u": 100.0, "v": 100.0, "r": 10.0}  # m/s, rad/s: what runs away under a wrong label stays a number
+_FASTEST = {
+    "u": 100.0,
+    "v": 100.0,
+    "r": 10.0,
+}  # m/s, rad/s: what runs away under a wrong label stays a number
 
 
-def advanced(motion: Motion, record: Record, model: ShipModel, steps: slice = slice(None)) -> Motion:
+def advanced(
+    motion: Motion, record: Record, model: ShipModel, steps: slice = slice(None)
+) -> Motion:
     """The motion one row later, from each row but the last, by a Runge-Kutta step or, for a small ship, several.
 
     Parameters
@@ -118,13 +124,19 @@ def advanced(motion: Motion, record: Record, model: ShipModel, steps: slice = sl
     for i in range(parts):
         inputs = [record.inputs(model, (i + share) / parts, steps) for share in (0.0, 0.5, 1.0)]
         motion = runge_kutta(motion, record.step / parts, inputs, model)
-        fast = {name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()}
+        fast = {
+            name: np.clip(getattr(motion, name), -most, most) for name, most in _FASTEST.items()
+        }
         motion = motion._replace(**fast)
     return motion
 
 
 def runge_kutta(
-    motion: Motion, h: float, inputs: Sequence[Inputs], model: ShipModel, load: Any = lambda psi: (0.0, 0.0, 0.0)
+    motion: Motion,
+    h: float,
+    inputs: Sequence[Inputs],
+    model: ShipModel,
+    load: Any = lambda psi: (0.0, 0.0, 0.0),
 ) -> Motion:
     """The motion a step of h later.
 
@@ -152,7 +164,11 @@ def runge_kutta(
 
 
 def linearise(
-    motion: Motion, record: Record, model: ShipModel, regressors: Sequence[Regressor], rows: slice | None = None
+    motion: Motion,
+    record: Record,
+    model: ShipModel,
+    regressors: Sequence[Regressor],
+    rows: slice | None = None,
 ) -> Linear:
     """The linear problem about a motion.
 
@@ -170,11 +186,15 @@ def linearise(
     -------
     Linear
     """
-    lead, p, last = record.measured.shape[:-2], len(regressors), record.time.size - 1
+    lead = record.measured.shape[:-2]
+    p = len(regressors)
+    last = record.time.size - 1
     rows = slice(0, last + 1) if rows is None else rows
     steps = slice(rows.start, min(rows.stop, last))
-    start, after = _at(motion, steps), _at(motion, slice(steps.start + 1, steps.stop + 1))
-    base, seen = advanced(start, record, model, steps), readings(_at(motion, rows), model)
+    start = _at(motion, steps)
+    after = _at(motion, slice(steps.start + 1, steps.stop + 1))
+    base = advanced(start, record, model, steps)
+    seen = readings(_at(motion, rows), model)
     driven = np.empty((steps.stop - steps.start, *lead, 6, 1 + p))
     out = np.zeros((rows.stop - rows.start, *lead, 6, 1 + p))
     driven[..., 0] = rows_first(base) - rows_first(after)
@@ -189,16 +209,22 @@ def linearise(
     slopes = np.zeros((p, 3, *lead, len(driven)))
     for j, changes in enumerate(regressor.changes for regressor in regressors):
         pair = [
-            model.with_values({path: model.get(path) + share * size for path, size in changes.items()})
+            model.with_values(
+                {path: model.get(path) + share * size for path, size in changes.items()}
+            )
             for share in (shares[j], -shares[j])
         ]
         if any(not path.startswith("instruments.") or path.endswith("_lag") for path in changes):
-            for slope, apart in zip(slopes[j], _slopes(pair, middle, (record, steps), inputs, like), strict=True):
+            for slope, apart in zip(
+                slopes[j], _slopes(pair, middle, (record, steps), inputs, like), strict=True
+            ):
                 slope[...] = apart
         else:
             up, down = (readings(_at(motion, rows), ship) for ship in pair)
             out[..., 1 + j] = rows_first(_apart(up, down)) / (2.0 * shares[j])
-    driven[..., 1:] = transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
+    driven[..., 1:] = (
+        transition[..., :6, 6:9] @ np.moveaxis(slopes, (-1, 1, 0), (0, -2, -1)) / (2.0 * shares)
+    )
     driven[~record.known[steps]] = 0.0
     out *= whole[..., None]
     return Linear(transition, driven, _output(_at(motion, rows), seen, model), out, whole)
@@ -221,7 +247,11 @@ def _slopes(pair, middle, where, inputs, like):
 
 def _step_share(regressor: Regressor, model: ShipModel) -> float:
     """Share of a regressor's size for differences; they must not turn round a vector that is short."""
-    length = float(np.hypot(*(model.get(path) for path in regressor.vector))) if regressor.vector else 0.0
+    length = (
+        float(np.hypot(*(model.get(path) for path in regressor.vector)))
+        if regressor.vector
+        else 0.0
+    )
     if not length:
         return _SHARE
     size = max(abs(size) for size in regressor.changes.values())
@@ -243,7 +273,9 @@ def rows_first(motion: Motion) -> np.ndarray:
 _SMALL = {"psi": 1e-4, "u": 1e-3, "v": 1e-3, "r": 1e-5}
 
 
-def _transition(middle: Motion, inputs: Inputs, like: tuple[ShipModel, Any], record: Record) -> np.ndarray:
+def _transition(
+    middle: Motion, inputs: Inputs, like: tuple[ShipModel, Any], record: Record
+) -> np.ndarray:
     """Transition over a step, of second order about its middle, where `like` has the ship and her loads.
 
     For a small ship that of a part of the step, doubled until it is whole.
@@ -253,7 +285,9 @@ def _transition(middle: Motion, inputs: Inputs, like: tuple[ShipModel, Any], rec
     J = np.zeros((*here.shape[:-1], 6, 6))
     for name, small in _SMALL.items():
         moved = middle._replace(**{name: getattr(middle, name) + small})
-        J[..., Motion._fields.index(name)] = (rows_first(motion_rates(moved, inputs, model)) - here) / small
+        J[..., Motion._fields.index(name)] = (
+            rows_first(motion_rates(moved, inputs, model)) - here
+        ) / small
     parts = record.substeps(model)
     h = record.step / parts
     moves = np.eye(6) + h * J + 0.5 * h * h * (J @ J)
@@ -275,7 +309,8 @@ def _output(motion: Motion, seen: Motion, model: ShipModel) -> np.ndarray:
         other = readings(motion._replace(**{name: getattr(motion, name) + small}), model)
         H[..., i] = (rows_first(other) - rows) / small
     H[..., range(3), range(9, 12)] = 1.0
-    c, s = np.cos(rows[..., 2]), np.sin(rows[..., 2])
+    c = np.cos(rows[..., 2])
+    s = np.sin(rows[..., 2])
     H[..., 0, 12], H[..., 0, 13], H[..., 1, 12], H[..., 1, 13] = c, -s, s, c
     H[..., 2, 14] = H[..., 3, 15] = H[..., 4, 16] = H[..., 5, 17] = 1.0
     return H

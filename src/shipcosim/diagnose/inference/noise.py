@@ -32,7 +32,11 @@ _GROUPS = (
     ("wave_frequency", ()),
 )
 _FREQUENCIES = np.geomspace(0.4, 2.5, 8)  # rad/s, of waves
-_LEVELS = ((1.0, 1.0), (0.5, 1.0), (0.5, 0.5))  # of white noise in velocities and of waves, to begin with
+_LEVELS = (
+    (1.0, 1.0),
+    (0.5, 1.0),
+    (0.5, 0.5),
+)  # of white noise in velocities and of waves, to begin with
 _STRIDE = 0.2  # of the natural logarithm
 _LONGEST = 0.8
 _SHARES = np.array([1.0, 0.5, 0.2, 0.0])  # of a move, that are tried
@@ -57,7 +61,8 @@ def first_noise(record: Record, length: float) -> Noise:
     least = np.array([0.02, 0.02, 5e-4, 3e-3, 3e-3, 1e-4])
     white = np.where(silent[..., 0, :], 1.0, np.maximum(white, least))
     turning = 4.0 / length  # 1/m, from accelerations to those in yaw
-    jolt, walk = np.array([1e-3, 1e-3, 1e-3 * turning]), np.array([1e-5, 1e-5, 1e-5 * turning])
+    jolt = np.array([1e-3, 1e-3, 1e-3 * turning])
+    walk = np.array([1e-5, 1e-5, 1e-5 * turning])
     return Noise(white, jolt, walk, 0.7 * white[..., 3:], np.ones(white.shape[:-1]))
 
 
@@ -98,8 +103,10 @@ def tuned(
         for i in range(len(_GROUPS)):
             steps[1 + 2 * i, i], steps[2 + 2 * i, i] = _STRIDE, -_STRIDE
         score = log_likelihoods(left, _scaled(noise, steps), record)
-        up, down = score[1::2], score[2::2]
-        slope, bend = (up - down) / (2 * _STRIDE), (up + down - 2 * score[0]) / _STRIDE**2
+        up = score[1::2]
+        down = score[2::2]
+        slope = (up - down) / (2 * _STRIDE)
+        bend = (up + down - 2 * score[0]) / _STRIDE**2
         move = np.where(bend < -1e-3, -slope / np.minimum(bend, -1e-3), np.sign(slope) * _LONGEST)
         move = np.clip(move, -_LONGEST, _LONGEST)
         tries = _scaled(noise, _SHARES[:, None] * move)
@@ -133,7 +140,9 @@ def _of(noise: Noise, which: int | np.integer) -> Noise:
     return Noise(*(getattr(noise, part.name)[which] for part in fields(Noise)))
 
 
-def waves_of(noise: Noise, h: float, shape: tuple[int, int], rng: np.random.Generator) -> np.ndarray:
+def waves_of(
+    noise: Noise, h: float, shape: tuple[int, int], rng: np.random.Generator
+) -> np.ndarray:
     """First-order wave motion, drawn: place and velocity in the ship's axes.
 
     Parameters
@@ -154,20 +163,30 @@ def waves_of(noise: Noise, h: float, shape: tuple[int, int], rng: np.random.Gene
     n, m = shape
     (a, b, c, d), (place, both, speed) = oscillation(noise, h)
     along = np.divide(both, place, out=np.zeros(3), where=place > 0.0)
-    kicks = rng.standard_normal((2, n, m, 3)) * np.sqrt(np.stack([place, speed - along * both]))[:, None, None]
+    kicks = (
+        rng.standard_normal((2, n, m, 3))
+        * np.sqrt(np.stack([place, speed - along * both]))[:, None, None]
+    )
     velocity = rng.standard_normal((m, 3)) * noise.wave
-    where, found = rng.standard_normal((m, 3)) * noise.wave / noise.wave_frequency, np.empty((n, m, 6))
+    where = rng.standard_normal((m, 3)) * noise.wave / noise.wave_frequency
+    found = np.empty((n, m, 6))
     for k in range(n):
         found[k] = np.concatenate([where, velocity], axis=-1)
         first, second = kicks[:, k]
-        where, velocity = a * where + b * velocity + first, c * where + d * velocity + along * first + second
+        where, velocity = (
+            a * where + b * velocity + first,
+            c * where + d * velocity + along * first + second,
+        )
     return found
 
 
 def _scaled(noise: Noise, steps: np.ndarray) -> Noise:
     """Noise for each row of steps, which are in natural logarithms of the groups."""
     names = [part.name for part in fields(Noise)]
-    parts = {name: np.repeat(np.asarray(getattr(noise, name))[None], len(steps), axis=0) for name in names}
+    parts = {
+        name: np.repeat(np.asarray(getattr(noise, name))[None], len(steps), axis=0)
+        for name in names
+    }
     for i, (name, entries) in enumerate(_GROUPS):
         if entries:
             parts[name][:, list(entries)] *= np.exp(steps[:, i])[:, None]

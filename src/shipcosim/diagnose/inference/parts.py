@@ -16,7 +16,15 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
 
-__all__ = ["PART", "InParts", "beside", "explained", "in_parts", "linearised_by_parts", "with_columns"]
+__all__ = [
+    "PART",
+    "InParts",
+    "beside",
+    "explained",
+    "in_parts",
+    "linearised_by_parts",
+    "with_columns",
+]
 
 PART = 4096
 """Most rows of a part: as many as a processor's cache holds series of. A log of an hour at 1 Hz is one part."""
@@ -80,14 +88,23 @@ def in_parts(linear: Linear | InParts) -> InParts:
     def part(rows):
         until = slice(rows.start, min(rows.stop, steps))
         return Linear(
-            linear.transition[until], linear.driven[until], linear.output[rows], linear.seen[rows], linear.whole[rows]
+            linear.transition[until],
+            linear.driven[until],
+            linear.output[rows],
+            linear.seen[rows],
+            linear.whole[rows],
         )
 
     return InParts(len(linear.seen), linear.seen.shape[-1] - 1, part)
 
 
 def linearised_by_parts(
-    motion: Motion, record: Record, model: ShipModel, regressors: Sequence[Regressor], *, kept: bool = True
+    motion: Motion,
+    record: Record,
+    model: ShipModel,
+    regressors: Sequence[Regressor],
+    *,
+    kept: bool = True,
 ) -> InParts:
     """The linear problem about a motion, by parts.
 
@@ -105,7 +122,9 @@ def linearised_by_parts(
     -------
     InParts
     """
-    rows, columns, done = record.time.size, len(regressors), []
+    rows = record.time.size
+    columns = len(regressors)
+    done = []
     anew = InParts(rows, columns, lambda which: linearise(motion, record, model, regressors, which))
     if not kept or rows * (1 + columns) > _KEPT:
         return anew
@@ -123,9 +142,11 @@ def with_columns(linear: Linear | InParts, count: int, more: Columns) -> InParts
     first = in_parts(linear)
 
     def part(rows):
-        mine, (driven, seen) = first.part(rows), more(rows)
+        mine = first.part(rows)
+        (driven, seen) = more(rows)
         return mine._replace(
-            driven=np.concatenate([mine.driven, driven], axis=-1), seen=np.concatenate([mine.seen, seen], axis=-1)
+            driven=np.concatenate([mine.driven, driven], axis=-1),
+            seen=np.concatenate([mine.seen, seen], axis=-1),
         )
 
     return InParts(first.rows, first.columns + count, part)
@@ -144,7 +165,8 @@ def beside(linear: Linear | InParts, extra: Linear | InParts) -> InParts:
 
 def explained(linear: Linear | InParts, theta: np.ndarray) -> InParts:
     """The problem with only its first column, from which the effect of θ is taken out."""
-    weights, whole = np.concatenate([[1.0], -np.asarray(theta)])[:, None], in_parts(linear)
+    weights = np.concatenate([[1.0], -np.asarray(theta)])[:, None]
+    whole = in_parts(linear)
 
     def part(rows):
         own = whole.part(rows)

@@ -81,7 +81,8 @@ def _one_more(series):
 
 def _true_wind(speed, direction, motion):
     """Speed and direction over ground of the wind that meets the moving ship so."""
-    along, across = motion.u - speed * np.cos(direction), motion.v - speed * np.sin(direction)
+    along = motion.u - speed * np.cos(direction)
+    across = motion.v - speed * np.sin(direction)
     north, east = to_ned(motion.psi, along, across)
     return np.hypot(north, east), np.unwrap(np.arctan2(-east, -north))
 
@@ -121,7 +122,9 @@ def restarted(linear: Linear, motion: Motion, record: Record, model: ShipModel) 
     return linear._replace(driven=driven, seen=seen[..., None])
 
 
-def reference(linear: Linear, motion: Motion, noise: Noise, record: Record, model: ShipModel) -> Motion:
+def reference(
+    linear: Linear, motion: Motion, noise: Noise, record: Record, model: ShipModel
+) -> Motion:
     """What the instruments show without their noise, whatever the model: smoothed with a force that is free to change.
 
     Parameters
@@ -156,7 +159,11 @@ def stacked(problems: Sequence[Linear]) -> Linear:
 
 
 def observed(
-    problems: Sequence[Linear], noise: Noise, record: Record, motions: Sequence[Motion], models: Sequence[ShipModel]
+    problems: Sequence[Linear],
+    noise: Noise,
+    record: Record,
+    motions: Sequence[Motion],
+    models: Sequence[ShipModel],
 ) -> Known:
     """What observers knew, one for each problem.
 
@@ -177,7 +184,9 @@ def observed(
     """
     found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
-    force = np.stack([one[:, _FORCE] @ mass_matrix(model).T for one, model in zip(found, models, strict=True)])
+    force = np.stack(
+        [one[:, _FORCE] @ mass_matrix(model).T for one, model in zip(found, models, strict=True)]
+    )
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
 
 
@@ -219,7 +228,9 @@ def predicted(
     """
     parts = record.substeps(model)
     inputs = [record.inputs(model, 0.5 * i / parts) for i in range(2 * parts + 1)]
-    load, h, kept = _held(motion, force, earth, fades), record.step / parts, []
+    load = _held(motion, force, earth, fades)
+    h = record.step / parts
+    kept = []
     for k in range(horizons[-1]):
         for i in range(parts):
             during = [_at(one, rows + k) for one in inputs[2 * i : 2 * i + 3]]
@@ -234,7 +245,8 @@ def _held(motion, force, earth, fades):
     """Function from a time to the function from a heading to the load that is held."""
     if force is None:
         return lambda time: lambda psi: (0.0, 0.0, 0.0)
-    axes, start = np.moveaxis(force, -1, 0), motion.psi
+    axes = np.moveaxis(force, -1, 0)
+    start = motion.psi
 
     def load(time):
         X, Y, N = np.exp(-fades * time) * axes
@@ -245,14 +257,17 @@ def _held(motion, force, earth, fades):
 
 def _bounded(motion):
     """A motion no faster than any ship, so that a prediction that runs away stays a number."""
-    u, v = np.clip(motion.u, -FASTEST, FASTEST), np.clip(motion.v, -FASTEST, FASTEST)
+    u = np.clip(motion.u, -FASTEST, FASTEST)
+    v = np.clip(motion.v, -FASTEST, FASTEST)
     return motion._replace(u=u, v=v, r=np.clip(motion.r, -FASTEST_TURN, FASTEST_TURN))
 
 
 def _at(inputs, rows):
     """Inputs at some rows."""
     units = {name: tuple(series[rows] for series in pair) for name, pair in inputs.units.items()}
-    wind = (None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from))
+    wind = (
+        None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from)
+    )
     return type(inputs)(inputs.time[rows], units, *wind)
 
 

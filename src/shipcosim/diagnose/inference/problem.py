@@ -13,7 +13,12 @@ from shipcosim.diagnose.inference.channel_noise import most_white
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.noise import first_noise, tuned
 from shipcosim.diagnose.inference.screening import screened
-from shipcosim.diagnose.inference.thresholds import GUST_FACTOR, LENGTHS_PER_GYRADIUS, MOST_WALK, TUNED_BESIDE
+from shipcosim.diagnose.inference.thresholds import (
+    GUST_FACTOR,
+    LENGTHS_PER_GYRADIUS,
+    MOST_WALK,
+    TUNED_BESIDE,
+)
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
 
@@ -65,12 +70,17 @@ def as_logged(ship: ShipModel, repaired: xarray.Dataset) -> ShipModel:
         ship,
         span=(float(repaired["time"][0]), float(repaired["time"][-1])),
         wind_is_true="wind_speed" not in repaired and "true_wind_speed" in repaired,
-        fixed={name: angle for name, angle in ship.fixed.items() if f"{name}_azimuth" not in repaired},
+        fixed={
+            name: angle for name, angle in ship.fixed.items() if f"{name}_azimuth" not in repaired
+        },
     )
 
 
 def unidentifiable(
-    everyone: Sequence[Hypothesis], record: Record, repaired: xarray.Dataset, third_party: Collection[str] = ()
+    everyone: Sequence[Hypothesis],
+    record: Record,
+    repaired: xarray.Dataset,
+    third_party: Collection[str] = (),
 ) -> list[Hypothesis]:
     """Hypotheses that a log without some channels cannot show: of wind and what acts like it, of unlogged thrusters.
 
@@ -82,15 +92,21 @@ def unidentifiable(
     third_party : collection of str
         Thrusters that the log is sure to have, whatever drives them.
     """
-    silent = [name for name in record.units if f"{name}_rpm" not in repaired and name not in third_party]
+    silent = [
+        name for name in record.units if f"{name}_rpm" not in repaired and name not in third_party
+    ]
     return [
-        s for s in everyone if s.component in silent or (record.wind is None and s.definition.without_wind != "sought")
+        s
+        for s in everyone
+        if s.component in silent or (record.wind is None and s.definition.without_wind != "sought")
     ]
 
 
 def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
     """Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for."""
-    allowed = [hypothesis for hypothesis in everyone if hypothesis.definition.without_wind == "allowed for"]
+    allowed = [
+        hypothesis for hypothesis in everyone if hypothesis.definition.without_wind == "allowed for"
+    ]
     parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]
     return {path: parameter.typical for parameter in parameters for path in parameter.paths}
 
@@ -98,10 +114,14 @@ def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
 def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
     """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
     fit = fit or beside_likeliest(problem)
-    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length])
+    most = MOST_WALK * np.array(
+        [1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length]
+    )
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
     white = np.maximum(most_white(problem.record), problem.noise.white)
-    return tuned(problem.noise, fit.linear, problem.record, fit.left, most_walk=most, most_white=white)
+    return tuned(
+        problem.noise, fit.linear, problem.record, fit.left, most_walk=most, most_white=white
+    )
 
 
 def beside_likeliest(problem: IdentificationProblem) -> Fit:

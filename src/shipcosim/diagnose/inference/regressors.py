@@ -21,9 +21,20 @@ def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
     """Groups of regressors by which a hypothesis is first sought: one, or one for each direction of a vector."""
     parameters = hypothesis.parameters
     if hypothesis.definition.law == "linear":
-        return [[Regressor(dict.fromkeys(parameter.paths, parameter.typical)) for parameter in parameters]]
+        return [
+            [
+                Regressor(dict.fromkeys(parameter.paths, parameter.typical))
+                for parameter in parameters
+            ]
+        ]
     if hypothesis.definition.law == "turning":
-        return [[Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]]
-    pair, size = (parameters[0].paths[0], parameters[1].paths[0]), parameters[0].typical
+        return [
+            [Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]
+        ]
+    pair = (parameters[0].paths[0], parameters[1].paths[0])
+    size = parameters[0].typical
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-    return [[Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))] for a in angles]
+    return [
+        [Regressor(dict(zip(pair, (size * np.cos(a), size * np.sin(a)), strict=True)))]
+        for a in angles
+    ]

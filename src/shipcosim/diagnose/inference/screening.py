@@ -26,7 +26,10 @@ __all__ = [
 Gain = tuple[float, "Hypothesis", dict[str, float]]
 """Gain in log-evidence of a hypothesis, and first values of its parameters."""
 
-_SLOW, _STILL = 0.35, 0.05  # of the faster end: a vector this short at first sight has no direction; where it starts
+_SLOW = (
+    0.35  # of the faster end: a vector this short at first sight has no direction; where it starts
+)
+_STILL = 0.05
 
 
 def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
@@ -43,7 +46,12 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
         Gain, hypothesis, first values of the numbers that it changes; best first.
     """
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
-    added = [column for hypothesis in wanted for group in screening_regressors(hypothesis) for column in group]
+    added = [
+        column
+        for hypothesis in wanted
+        for group in screening_regressors(hypothesis)
+        for column in group
+    ]
     linear = beside(fit.linear, problem.base_of(added))
     products = inner_products(linear, problem.noise, problem.record).products
     return gains(products, fit.columns, fit.centre, wanted, fit.model.get)
@@ -75,15 +83,21 @@ def gains(
         As `screened`.
     """
     base = len(columns)
-    prior = np.concatenate([[column.prior for column in columns], np.zeros(len(products) - 1 - base)])
+    prior = np.concatenate(
+        [[column.prior for column in columns], np.zeros(len(products) - 1 - base)]
+    )
     centre = np.concatenate([centre, np.zeros(prior.size - base)])
-    nothing, place, found = evidence(products, prior, centre)[0], base, []
+    nothing = evidence(products, prior, centre)[0]
+    place = base
+    found = []
     for hypothesis in wanted:
         tries = []
         for group in screening_regressors(hypothesis):
             here = prior.copy()
             here[place : place + len(group)] = 1.0
-            taken = {path for column in group for path in column.changes} | set(hypothesis.definition.replaces)
+            taken = {path for column in group for path in column.changes} | set(
+                hypothesis.definition.replaces
+            )
             here[[i for i, column in enumerate(columns) if column.gives_way(taken)]] = 0.0
             score, theta, _ = evidence(products, here, np.where(here > 0.0, centre, 0.0))
             values = {}
@@ -97,14 +111,19 @@ def gains(
     return sorted(found, key=lambda entry: -entry[0])
 
 
-def _together(tries: list[tuple[float, dict[str, float]]], hypothesis: Hypothesis) -> tuple[float, dict[str, float]]:
+def _together(
+    tries: list[tuple[float, dict[str, float]]], hypothesis: Hypothesis
+) -> tuple[float, dict[str, float]]:
     """Evidence of a hypothesis averaged over its directions, and the values of the best."""
     scores = np.array([score for score, _ in tries])
     best = int(scores.argmax())
     values = tries[best][1]
     if hypothesis.definition.law == "turning":
-        first, grown = np.array([values[path] for path in hypothesis.definition.sought_by]).reshape(2, 2)
-        names, ends = [parameter.paths[0] for parameter in hypothesis.parameters], _one_way(first, first + grown)
+        first, grown = np.array([values[path] for path in hypothesis.definition.sought_by]).reshape(
+            2, 2
+        )
+        names = [parameter.paths[0] for parameter in hypothesis.parameters]
+        ends = _one_way(first, first + grown)
         values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values
 

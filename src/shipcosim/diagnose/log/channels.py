@@ -25,24 +25,43 @@ class Channel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     column: str = Field(default="", description="name of the column, without its [unit]")
-    unit: str | None = Field(default=None, description="unit of the column; default: the header's, else the role's")
-    sign: Literal[1, -1] = 1
-    offset: float = Field(default=0.0, description="added after the sign, in the unit of the column")
-    map: tuple[tuple[float, float], ...] | None = Field(
-        default=None, min_length=2, description="pairs of column and value in the role's unit, straight between them"
+    unit: str | None = Field(
+        default=None, description="unit of the column; default: the header's, else the role's"
     )
-    date: str | None = Field(default=None, description="of time: column with the date, beside one of clock times")
-    nanoseconds: str | None = Field(default=None, description="of time: column with these, beside one of seconds")
-    hemisphere: str | None = Field(default=None, description="of latitude and longitude: column of N and S, E and W")
+    sign: Literal[1, -1] = 1
+    offset: float = Field(
+        default=0.0, description="added after the sign, in the unit of the column"
+    )
+    map: tuple[tuple[float, float], ...] | None = Field(
+        default=None,
+        min_length=2,
+        description="pairs of column and value in the role's unit, straight between them",
+    )
+    date: str | None = Field(
+        default=None, description="of time: column with the date, beside one of clock times"
+    )
+    nanoseconds: str | None = Field(
+        default=None, description="of time: column with these, beside one of seconds"
+    )
+    hemisphere: str | None = Field(
+        default=None, description="of latitude and longitude: column of N and S, E and W"
+    )
     quaternion: tuple[str, str, str, str] | None = Field(
-        default=None, description="of the heading, instead of a column: the columns of w, x, y and z"
+        default=None,
+        description="of the heading, instead of a column: the columns of w, x, y and z",
     )
     frame: Literal["NED", "ENU"] = Field(default="NED", description="of the quaternion")
 
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of all columns that it takes."""
-        named = (self.column, self.date, self.nanoseconds, self.hemisphere, *(self.quaternion or ()))
+        named = (
+            self.column,
+            self.date,
+            self.nanoseconds,
+            self.hemisphere,
+            *(self.quaternion or ()),
+        )
         return tuple(name for name in named if name)
 
     @model_validator(mode="after")
@@ -86,18 +105,24 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
         content = toml_of(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
-    channels, problems, form = {}, [], FileLayout()
+    channels = {}
+    problems = []
+    form = FileLayout()
     if "file" in content:
         try:
             form = FileLayout.model_validate(content.pop("file"))
         except ValidationError as error:
             known = f"It can have {', '.join(FileLayout.model_fields)}."
-            problems += [replace(_field_problem(f"{path}, file", e), remedy=known) for e in error.errors()]
+            problems += [
+                replace(_field_problem(f"{path}, file", e), remedy=known) for e in error.errors()
+            ]
     for name, entry in content.items():
         where = f"{path}, {name}"
         problems += _misspelt(where, name)
         try:
-            channels[name] = Channel.model_validate({"column": entry} if isinstance(entry, str) else entry)
+            channels[name] = Channel.model_validate(
+                {"column": entry} if isinstance(entry, str) else entry
+            )
         except ValidationError as error:
             problems += [_field_problem(where, detail) for detail in error.errors()]
     problems += _together(path, content) if content or form == FileLayout() else ()
@@ -109,19 +134,29 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
 def _misspelt(where, name):
     """A name that is almost a role; any other may be a connector of the system."""
     if role_of(name) is None and get_close_matches(name, ROLES, n=1, cutoff=0.75):
-        yield Problem(where, "is no role.", suggestion(name, [*ROLES, "NAME_rpm", "NAME_azimuth", "NAME_thrust"]))
+        yield Problem(
+            where,
+            "is no role.",
+            suggestion(name, [*ROLES, "NAME_rpm", "NAME_azimuth", "NAME_thrust"]),
+        )
 
 
 def _together(path, names):
     """Problems of the names as a set."""
     if "time" not in names:
-        yield Problem(str(path), "says no column for time.", 'It should have, say, time = {column = "t"}.')
+        yield Problem(
+            str(path), "says no column for time.", 'It should have, say, time = {column = "t"}.'
+        )
     for one, other in (("north", "east"), ("latitude", "longitude")):
         if (one in names) != (other in names):
             there, missing = (one, other) if one in names else (other, one)
             yield Problem(str(path), f"has {there} without {missing}.", "A position needs both.")
     if "north" in names and "latitude" in names:
-        yield Problem(str(path), "gives the position twice.", "Give north and east, or latitude and longitude.")
+        yield Problem(
+            str(path),
+            "gives the position twice.",
+            "Give north and east, or latitude and longitude.",
+        )
 
 
 def _field_problem(where, detail):

@@ -6,7 +6,8 @@ import numpy as np
 
 __all__ = ["metres_per_degree"]
 
-EQUATORIAL_RADIUS, ECCENTRICITY_SQUARED = 6378137.0, 6.69437999014e-3  # [m, 1] WGS 84
+EQUATORIAL_RADIUS = 6378137.0  # [m, 1] WGS 84
+ECCENTRICITY_SQUARED = 6.69437999014e-3
 
 
 def metres_per_degree(latitude: float) -> tuple[float, float]:
@@ -17,7 +18,10 @@ def metres_per_degree(latitude: float) -> tuple[float, float]:
     latitude : float
         [deg]
     """
-    sine, cosine = np.sin(np.radians(latitude)), np.cos(np.radians(latitude))
+    sine = np.sin(np.radians(latitude))
+    cosine = np.cos(np.radians(latitude))
     curvature = 1.0 - ECCENTRICITY_SQUARED * sine**2
     meridian = EQUATORIAL_RADIUS * (1.0 - ECCENTRICITY_SQUARED) / curvature**1.5
-    return float(np.radians(meridian)), float(np.radians(EQUATORIAL_RADIUS / np.sqrt(curvature) * cosine))
+    return float(np.radians(meridian)), float(
+        np.radians(EQUATORIAL_RADIUS / np.sqrt(curvature) * cosine)
+    )

@@ -45,12 +45,27 @@ THRUSTER_LABELS = ("channel_swap", "sign")
 DRIVES = ("_rpm", "_azimuth", "_thrust")
 """How roles of what drives a thruster end."""
 KNOT = 1852.0 / 3600.0  # m/s
-POSITION, VELOCITY, WIND = ("north", "east"), ("surge", "sway"), ("wind_speed", "wind_from")
+POSITION = ("north", "east")
+VELOCITY = ("surge", "sway")
+WIND = ("wind_speed", "wind_from")
 CHANNEL_UNITS = {
-    VELOCITY: {"m/s": 1.0, "kn": KNOT, "km/h": 1.0 / 3.6, "ft/s": 0.3048, "mph": 0.44704, "cm/s": 0.01, "mm/s": 1e-3},
+    VELOCITY: {
+        "m/s": 1.0,
+        "kn": KNOT,
+        "km/h": 1.0 / 3.6,
+        "ft/s": 0.3048,
+        "mph": 0.44704,
+        "cm/s": 0.01,
+        "mm/s": 1e-3,
+    },
     POSITION: {"m": 1.0, "km": 1e3, "ft": 0.3048, "nmi": 1852.0, "cm": 0.01, "mm": 1e-3},
     ("heading",): {"deg": 1.0, "rad": float(np.degrees(1.0))},
-    ("yaw_rate",): {"deg/s": 1.0, "rad/s": float(np.degrees(1.0)), "deg/min": 1.0 / 60.0, "rpm": 6.0},
+    ("yaw_rate",): {
+        "deg/s": 1.0,
+        "rad/s": float(np.degrees(1.0)),
+        "deg/min": 1.0 / 60.0,
+        "rpm": 6.0,
+    },
 }
 """Units in which channels can be, and their size in the role's unit, which comes first."""
 TURNED = "north and east are turned against heading and velocities"
@@ -110,15 +125,22 @@ def mislabel_of_unit(channels: tuple[str, ...], unit: str, stated: str) -> Misla
     """Channels of CHANNEL_UNITS in a unit other than the one that they were read in."""
     units = CHANNEL_UNITS[channels]
     verb = "are" if len(channels) > 1 else "is"
-    return _in_unit(channels, units[unit] / units[stated], f"{' and '.join(channels)} {verb} in {unit}, not {stated}")
+    return _in_unit(
+        channels,
+        units[unit] / units[stated],
+        f"{' and '.join(channels)} {verb} in {unit}, not {stated}",
+    )
 
 
 def _in_unit(roles, scale, sentence):
-    return Mislabel("frame", roles, sentence, lambda log: {role: scale * log[role] for role in roles}, scale)
+    return Mislabel(
+        "frame", roles, sentence, lambda log: {role: scale * log[role] for role in roles}, scale
+    )
 
 
 def _turned_to_body(north, east, heading):
-    cosine, sine = np.cos(np.radians(heading)), np.sin(np.radians(heading))
+    cosine = np.cos(np.radians(heading))
+    sine = np.sin(np.radians(heading))
     return cosine * north + sine * east, cosine * east - sine * north
 
 
@@ -127,9 +149,17 @@ def velocity_frame(first: str, second: str) -> Mislabel:
 
     def undo(log):
         towards = {first: log["surge"], second: log["sway"]}
-        return dict(zip(VELOCITY, _turned_to_body(towards["north"], towards["east"], log["heading"]), strict=True))
+        return dict(
+            zip(
+                VELOCITY,
+                _turned_to_body(towards["north"], towards["east"], log["heading"]),
+                strict=True,
+            )
+        )
 
-    return Mislabel("frame", VELOCITY, f"surge and sway are the velocity towards {first} and {second}", undo)
+    return Mislabel(
+        "frame", VELOCITY, f"surge and sway are the velocity towards {first} and {second}", undo
+    )
 
 
 def _from_degrees(log):
@@ -158,7 +188,10 @@ def _apparent(log):
     """Apparent wind from the wind over ground, its direction relative to the bow, and the ship's velocity."""
     ahead = log["wind_speed"] * np.cos(np.radians(log["wind_from"])) + log["surge"]
     aside = log["wind_speed"] * np.sin(np.radians(log["wind_from"])) + log["sway"]
-    return {"wind_speed": np.hypot(ahead, aside), "wind_from": np.mod(np.degrees(np.arctan2(aside, ahead)), 360.0)}
+    return {
+        "wind_speed": np.hypot(ahead, aside),
+        "wind_from": np.mod(np.degrees(np.arctan2(aside, ahead)), 360.0),
+    }
 
 
 def _apparent_from_north(log):
@@ -172,7 +205,9 @@ HEADING_FROM_EAST = Mislabel(
     "heading is counted counter-clockwise from east",
     lambda log: {"heading": np.mod(90.0 - log["heading"], 360.0)},
 )
-POSITION_IN_DEGREES = Mislabel("frame", POSITION, "north and east are degrees of latitude and longitude", _from_degrees)
+POSITION_IN_DEGREES = Mislabel(
+    "frame", POSITION, "north and east are degrees of latitude and longitude", _from_degrees
+)
 HEADING_LABELS = (
     negative("yaw_rate"),
     mislabel_of_unit(("yaw_rate",), "rad/s", "deg/s"),
@@ -189,10 +224,15 @@ POSITION_LABELS = (
 )
 WIND_LABELS = (
     negative("wind_from"),
-    Mislabel("frame", ("wind_from",), "wind_from is counted from north, not from the bow", _from_bow),
+    Mislabel(
+        "frame", ("wind_from",), "wind_from is counted from north, not from the bow", _from_bow
+    ),
     Mislabel("frame", WIND, "the wind is the wind over ground, not the apparent wind", _apparent),
     Mislabel(
-        "frame", WIND, "the wind is the wind over ground, from north, not the apparent wind", _apparent_from_north
+        "frame",
+        WIND,
+        "the wind is the wind over ground, from north, not the apparent wind",
+        _apparent_from_north,
     ),
     _in_unit(("wind_speed",), KNOT, "wind_speed is in kn, not m/s"),
     _in_unit(("wind_speed",), 1.0 / KNOT, "wind_speed is in m/s, not kn"),
@@ -220,10 +260,21 @@ def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
     return [label for label in labels if all(role in log for role in label.channels)]
 
 
-def finding_of(mislabel: Mislabel, probability: float, segment: tuple[float, float] | None = None) -> Finding:
+def finding_of(
+    mislabel: Mislabel, probability: float, segment: tuple[float, float] | None = None
+) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
-    return Finding(mislabel.cause, None, "data", probability, {}, segments, mislabel.channels, note=mislabel.sentence)
+    return Finding(
+        mislabel.cause,
+        None,
+        "data",
+        probability,
+        {},
+        segments,
+        mislabel.channels,
+        note=mislabel.sentence,
+    )
 
 
 def mislabel_of(finding: Finding) -> Mislabel | None:
@@ -256,9 +307,13 @@ def undone(
 
     What was rounded away in a unit that is too large is lost: such a channel is NaN there.
     """
-    changed, here = mislabel.undo(log), inside(log["time"], segments)
+    changed = mislabel.undo(log)
+    here = inside(log["time"], segments)
     if mislabel.scale is not None:
-        changed = {role: np.nan * v if _is_rounded_away(log[role][here]) else v for role, v in changed.items()}
+        changed = {
+            role: np.nan * v if _is_rounded_away(log[role][here]) else v
+            for role, v in changed.items()
+        }
     return log | {role: np.where(here, values, log[role]) for role, values in changed.items()}
 
 

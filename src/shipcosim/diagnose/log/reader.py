@@ -31,7 +31,10 @@ if TYPE_CHECKING:
 __all__ = ["columns_of", "read_log"]
 
 
-_FARTHEST = {"latitude": 90.0, "longitude": 540.0}  # deg; some loggers count on beyond the date line
+_FARTHEST = {
+    "latitude": 90.0,
+    "longitude": 540.0,
+}  # deg; some loggers count on beyond the date line
 
 LARGEST_NUMBER = 1e100
 """Largest number that a log can hold, in the unit of its role."""
@@ -80,7 +83,8 @@ def read_log(
     given = read_channels(channels) if isinstance(channels, (str, os.PathLike)) else channels
     form = given.form if given else FileLayout()
     source = _source_of(log, form)
-    columns, proposal = source.columns, None
+    columns = source.columns
+    proposal = None
     if given is None or not given.channels:
         proposal = propose(columns, thrusters, form)
         mapping = _sure(columns, proposal)
@@ -98,8 +102,14 @@ def read_log(
     if "latitude" in signals:
         attributes |= _local_position(columns.source, signals, said)
     said += _without_value(signals)
-    attributes["column_remarks"] = [*columns.remarks, *said, *(_told(proposal) if proposal else _not_named(unused))]
-    table = make_table(time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes)
+    attributes["column_remarks"] = [
+        *columns.remarks,
+        *said,
+        *(_told(proposal) if proposal else _not_named(unused)),
+    ]
+    table = make_table(
+        time, [(n, v, unit, _meaning(n)) for n, (v, unit) in signals.items()], attributes
+    )
     table.encoding |= source.file
     for name, unit in stated.items():
         if unit and name in table.variables:
@@ -122,7 +132,10 @@ def columns_of(log: str | os.PathLike, form: FileLayout | None = None) -> LogCol
 def _source_of(log, form):
     if isinstance(log, (str, os.PathLike)):
         columns = columns_of(log, form)
-        return _Source(columns, {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()})
+        return _Source(
+            columns,
+            {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()},
+        )
     values = {"time": np.asarray(log["time"].values, float)}
     values |= {str(name): np.asarray(v.values) for name, v in log.data_vars.items()}
     units = {name: str(log[name].attrs.get("units", "")) for name in values}
@@ -142,12 +155,17 @@ def _stated(channel: Channel, name: str, columns: LogColumns) -> str:
 
 def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
     """Channels by names that have one meaning; an error that says what could be written where they do not do."""
-    mapping, source = proposal.channels(), columns.source
-    doubled = [name for name in columns.doubled if any(name in channel.columns for channel in mapping.values())]
-    problems = [Problem(f"{source}, column '{name}'", "is there twice.", _WHICH) for name in doubled]
-    help_ = (
-        f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
-    )
+    mapping = proposal.channels()
+    source = columns.source
+    doubled = [
+        name
+        for name in columns.doubled
+        if any(name in channel.columns for channel in mapping.values())
+    ]
+    problems = [
+        Problem(f"{source}, column '{name}'", "is there twice.", _WHICH) for name in doubled
+    ]
+    help_ = f"Say in a channel file which column is what: `shipcosim channels {source} --out channels.toml` proposes one."
     if "time" not in mapping:
         guess = next((g for g in proposal.used if g.role == "time"), None)
         found = f"has no column 'time', only {_shown(columns)}."
@@ -155,7 +173,9 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
             found = f"'{guess.column}' may be the time, but {guess.why}."
         problems.append(Problem(source, found, help_))
     elif len(mapping) < 2:
-        problems.append(Problem(source, f"no column but time has a role: {_shown(columns)}.", help_))
+        problems.append(
+            Problem(source, f"no column but time has a role: {_shown(columns)}.", help_)
+        )
     if problems:
         raise ShipcosimError(problems)
     return mapping
@@ -166,7 +186,9 @@ _WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
 
 def _signals(columns, mapping, form):
     """Values and unit of each channel, by role or connector, and what is to be said."""
-    problems, signals, said = [], {}, []
+    problems = []
+    signals = {}
+    said = []
     if "time" not in mapping:
         problems.append(Problem(columns.source, f"has no column 'time', only {_shown(columns)}."))
     for name, channel in mapping.items():
@@ -176,10 +198,16 @@ def _signals(columns, mapping, form):
             said += more
             problems += _beyond(f"{columns.source}, {name}", values)
         except ShipcosimError as error:
-            problems += [Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems]
+            problems += [
+                Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems
+            ]
     if not problems and len(mapping) < 2:
-        remedy = "Name them by roles, or say in a channel file which is what: --channels channels.toml."
-        problems = [Problem(columns.source, f"no column but time has a role: {_shown(columns)}.", remedy)]
+        remedy = (
+            "Name them by roles, or say in a channel file which is what: --channels channels.toml."
+        )
+        problems = [
+            Problem(columns.source, f"no column but time has a role: {_shown(columns)}.", remedy)
+        ]
     if problems:
         raise ShipcosimError(problems)
     return signals, said
@@ -195,10 +223,15 @@ def _beyond(where, values):
 def _check_time(source, time):
     if (beyond := np.abs(time) > LATEST).any() and np.isfinite(time[beyond]).any():
         row = int(np.flatnonzero(beyond)[0])
-        found, remedy = f"is {time[row]:g} s in row {row + 2}.", f"Times are at most {LATEST:g} s, say since 1970."
+        found = f"is {time[row]:g} s in row {row + 2}."
+        remedy = f"Times are at most {LATEST:g} s, say since 1970."
         raise ShipcosimError(Problem(f"{source}, time", found, remedy))
     if len(np.unique(time[np.isfinite(time)])) < 2:
-        raise ShipcosimError(Problem(f"{source}, time", "has fewer than two different times.", "A log has many rows."))
+        raise ShipcosimError(
+            Problem(
+                f"{source}, time", "has fewer than two different times.", "A log has many rows."
+            )
+        )
 
 
 def _shown(columns):
@@ -216,10 +249,13 @@ def _over_the_earth(signals):
     if not given or ("surge" in signals and "sway" in signals):
         return []
     if "heading" not in signals:
-        return ["Velocities over the earth are not used: they become surge and sway by a heading, and there is none."]
+        return [
+            "Velocities over the earth are not used: they become surge and sway by a heading, and there is none."
+        ]
     heading = np.radians(signals["heading"][0])
     if {"north_velocity", "east_velocity"} <= set(given):
-        velocity, of = given["north_velocity"] + 1j * given["east_velocity"], "velocities north and east"
+        velocity = given["north_velocity"] + 1j * given["east_velocity"]
+        of = "velocities north and east"
     elif {"speed_over_ground", "course_over_ground"} <= set(given):
         speed = given["speed_over_ground"]
         velocity = speed * np.exp(1j * np.radians(given["course_over_ground"]))
@@ -237,9 +273,12 @@ def _local_position(source, signals, said):
     degrees = {name: signals.pop(name)[0] for name in LARGEST}
     for name, values in degrees.items():
         limit = _FARTHEST[name]
-        known, beyond = np.isfinite(values), np.abs(values) > limit
+        known = np.isfinite(values)
+        beyond = np.abs(values) > limit
         if not known.any():
-            raise ShipcosimError(Problem(f"{source}, {name}", "has no value in any row.", "Leave the channel out."))
+            raise ShipcosimError(
+                Problem(f"{source}, {name}", "has no value in any row.", "Leave the channel out.")
+            )
         if beyond.sum() > 0.5 * known.sum():
             row = int(np.flatnonzero(beyond)[0])
             found = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
@@ -249,14 +288,20 @@ def _local_position(source, signals, said):
     nowhere = (degrees["latitude"] == 0.0) & (degrees["longitude"] == 0.0)
     if nowhere.all():
         nowhere[:] = False
-    for rows, why in ((lost, "a position beyond the earth"), (nowhere, "the position 0, 0, which is no fix")):
+    for rows, why in (
+        (lost, "a position beyond the earth"),
+        (nowhere, "the position 0, 0, which is no fix"),
+    ):
         if rows.any():
             said.append(f"{int(rows.sum())} row{'s' * int(rows.sum() > 1)} with {why}: left empty.")
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
     fixed = np.flatnonzero(np.isfinite(values[0]) & np.isfinite(values[1]))
     if not len(fixed):
-        raise ShipcosimError(Problem(f"{source}, latitude", "has no row with a longitude.", "A fix needs both."))
-    latitude, longitude = np.radians(values[0]), np.radians(values[1])
+        raise ShipcosimError(
+            Problem(f"{source}, latitude", "has no row with a longitude.", "A fix needs both.")
+        )
+    latitude = np.radians(values[0])
+    longitude = np.radians(values[1])
     first = fixed[0]
     meridian, parallel = metres_per_degree(float(np.degrees(latitude[first])))
     signals["north"] = meridian * np.degrees(latitude - latitude[first]), "m"
@@ -292,7 +337,11 @@ def _told(proposal):
 
 def _not_named(unused):
     """Columns that a channel file does not name."""
-    return [f"Columns that the channel file does not name are not used: {', '.join(unused)}."] if unused else []
+    return (
+        [f"Columns that the channel file does not name are not used: {', '.join(unused)}."]
+        if unused
+        else []
+    )
 
 
 def _said(guess):

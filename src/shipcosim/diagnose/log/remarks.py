@@ -30,18 +30,26 @@ def remarks(log: xarray.Dataset) -> list[str]:
     if len(known) < len(time):
         said.append(f"{_rows(len(time) - len(known))} without a time: left out.")
     if (back := known[1:][np.diff(known) < 0.0]).size:
-        said.append(f"{_rows(back.size)} earlier than the one before, the first at {back[0]:g} s: sorted by time.")
+        said.append(
+            f"{_rows(back.size)} earlier than the one before, the first at {back[0]:g} s: sorted by time."
+        )
     ordered = np.sort(known)
     if (again := ordered[1:][np.diff(ordered) == 0.0]).size:
-        said.append(f"{_rows(again.size)} with a time that was there, the first at {again[0]:g} s: the first is kept.")
+        said.append(
+            f"{_rows(again.size)} with a time that was there, the first at {again[0]:g} s: the first is kept."
+        )
     rows = usable_rows(time)
     said += _steps(time[rows])
     for name, variable in log.data_vars.items():
         if empty := int(np.sum(~np.isfinite(variable.values[rows]))):
             said.append(f"{name}: {_rows(empty)} without a number.")
-    far = outliers({str(name): np.asarray(v.values[rows], float) for name, v in log.data_vars.items()})
+    far = outliers(
+        {str(name): np.asarray(v.values[rows], float) for name, v in log.data_vars.items()}
+    )
     said += [
-        f"{role}: {_rows(int(bad.sum()))} far off both neighbours: left out." for role, bad in far.items() if bad.any()
+        f"{role}: {_rows(int(bad.sum()))} far off both neighbours: left out."
+        for role, bad in far.items()
+        if bad.any()
     ]
     return said
 

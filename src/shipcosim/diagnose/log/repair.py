@@ -57,15 +57,21 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
     base = read_anew({"time": logged}, findings)["time"]
     step = usual_step(base)
     time = _true_time(logged, base, findings, step)
-    channels = {str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()}
+    channels = {
+        str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()
+    }
     channels = _put_right(logged, channels, findings)
     _check_span(time, step)
     grid = time[0] + step * np.arange(int(np.floor((time[-1] - time[0]) / step + 1e-6)) + 1)
     place = _Place(time, grid, np.diff(base) > HOLE * usual_distance(base))
     columns = [
-        (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"]) for n, v in channels.items()
+        (n, place(v, _is_angle(n)), log[n].attrs["units"], log[n].attrs["long_name"])
+        for n, v in channels.items()
     ]
-    columns = [(n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning) for n, v, unit, meaning in columns]
+    columns = [
+        (n, np.mod(v, 360.0) if n == "heading" else v, unit, meaning)
+        for n, v, unit, meaning in columns
+    ]
     table = make_table(grid, columns, attributes)
     origin = {"units": "s", "long_name": "time as logged"}
     return table.assign_coords(logged_time=("time", np.interp(grid, time, logged), origin))
@@ -75,13 +81,23 @@ def _check_span(time, step):
     """A stamp far off all others would make a log of years."""
     if time[-1] - time[0] > LONGEST_SPAN * step * len(time):
         row = int(np.argmax(np.diff(time)))
-        found = f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
-        raise ShipcosimError(Problem("time", found, "Leave out the rows whose times are wrong, or cut the log there."))
+        found = (
+            f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
+        )
+        raise ShipcosimError(
+            Problem(
+                "time", found, "Leave out the rows whose times are wrong, or cut the log there."
+            )
+        )
 
 
 def rate_of(findings: Sequence[Finding]) -> float:
     """True seconds per logged second throughout a log, by findings on its clock."""
-    rates = [f.parameters["rate"].estimate for f in findings if f.cause == "clock" and f.parameters and not f.segments]
+    rates = [
+        f.parameters["rate"].estimate
+        for f in findings
+        if f.cause == "clock" and f.parameters and not f.segments
+    ]
     return float(np.prod(rates))
 
 
@@ -98,7 +114,10 @@ def read_anew(log: dict, findings: Sequence[Finding]) -> dict:
 def _labels_throughout(findings):
     """The heading first: velocities are turned by it."""
     found = [(mislabel_of(f), f) for f in findings if not f.segments]
-    return sorted((m for m, _ in found if m is not None), key=lambda mislabel: mislabel.channels != ("heading",))
+    return sorted(
+        (m for m, _ in found if m is not None),
+        key=lambda mislabel: mislabel.channels != ("heading",),
+    )
 
 
 def _true_time(logged, base, findings, step):
@@ -112,7 +131,12 @@ def _true_time(logged, base, findings, step):
         for segment in finding.segments if finding.cause == "clock" else ():
             here = inside(logged[1:], [segment]) & inside(logged[:-1], [segment])
             lasts = finding.parameters["rate"].estimate * np.diff(base)[here].sum()
-            rates[here] *= finding.parameters["rate"].estimate * max(round(lasts / step), 1) * step / max(lasts, step)
+            rates[here] *= (
+                finding.parameters["rate"].estimate
+                * max(round(lasts / step), 1)
+                * step
+                / max(lasts, step)
+            )
     return base[0] + np.r_[0.0, np.cumsum(rates * np.diff(base))]
 
 
@@ -129,7 +153,11 @@ def _put_right(time, channels, findings):
     for finding in findings:
         if finding.cause in CUT_OUT:
             bad = inside(time, finding.segments)
-            channels |= {role: np.where(bad, np.nan, channels[role]) for role in finding.channels if role in channels}
+            channels |= {
+                role: np.where(bad, np.nan, channels[role])
+                for role in finding.channels
+                if role in channels
+            }
     return channels
 
 
@@ -146,11 +174,14 @@ class _Place:
         span = np.diff(time)[self.before]
         share = (grid - time[self.before]) / span
         near = 1e-6 * np.median(span) / span
-        self.share = np.where(np.abs(share) < near, 0.0, np.where(np.abs(share - 1.0) < near, 1.0, share))
+        self.share = np.where(
+            np.abs(share) < near, 0.0, np.where(np.abs(share - 1.0) < near, 1.0, share)
+        )
         self.empty = is_hole[self.before] & (self.share > 0.0) & (self.share < 1.0)
 
     def __call__(self, values, is_angle):
-        first, second = values[self.before], values[self.before + 1]
+        first = values[self.before]
+        second = values[self.before + 1]
         change = wrap_series(second - first) if is_angle else second - first
         between = first + self.share * change
         exact = np.where(self.share == 0.0, first, np.where(self.share == 1.0, second, between))

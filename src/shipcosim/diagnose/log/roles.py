@@ -39,7 +39,9 @@ ROLES = {
     "wind_speed": Role("m/s", "apparent wind speed at the mast"),
     "wind_from": Role("deg", "direction the apparent wind comes from, clockwise from the bow"),
     "true_wind_speed": Role("m/s", "wind speed over ground"),
-    "true_wind_from": Role("deg", "direction the wind over ground comes from, clockwise from true north"),
+    "true_wind_from": Role(
+        "deg", "direction the wind over ground comes from, clockwise from true north"
+    ),
     "speed_over_ground": Role("m/s", "speed of the antenna over ground"),
     "course_over_ground": Role("deg", "direction the antenna moves, clockwise from true north"),
     "north_velocity": Role("m/s", "velocity of the antenna northwards"),

@@ -32,7 +32,8 @@ def usual_distance(time: np.ndarray) -> float:
 
     Times are uneven where they keep to no clock; a log of even times with lost rows is not.
     """
-    step, spans = usual_step(time), np.diff(time)
+    step = usual_step(time)
+    spans = np.diff(time)
     off = np.abs(spans / step - np.round(spans / step))
     return float(np.quantile(spans, 0.95)) if np.median(off) > UNEVEN else step
 

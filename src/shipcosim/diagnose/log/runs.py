@@ -28,7 +28,14 @@ _SHIP = {
     "wind_from": ("apparent_wind_from", "rad"),
 }
 """Role: output of the ship and its unit."""
-_WAVES = {"x": "x_wave", "y": "y_wave", "psi": "psi_wave", "u": "u_wave", "v": "v_wave", "r": "r_wave"}
+_WAVES = {
+    "x": "x_wave",
+    "y": "y_wave",
+    "psi": "psi_wave",
+    "u": "u_wave",
+    "v": "v_wave",
+    "r": "r_wave",
+}
 _NEEDED = ("north", "east", "heading")
 
 
@@ -60,7 +67,8 @@ def run_as_log(
         If it is the table of a run without this ship.
     """
     if isinstance(log, xarray.Dataset):
-        signals, file = {str(name): value.values for name, value in log.data_vars.items()}, {}
+        signals = {str(name): value.values for name, value in log.data_vars.items()}
+        file = {}
         signals["time"] = log["time"].values
         units = {str(name): value.attrs.get("units", "") for name, value in log.data_vars.items()}
     elif not _names_components(Path(log)):
@@ -71,21 +79,28 @@ def run_as_log(
         file = {"source": str(log), "sha256": hashlib.sha256(Path(log).read_bytes()).hexdigest()}
     if not _is_run(signals):
         return log
-    named = {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items() if f"{ship}.{output}" in signals}
+    named = {
+        role: f"{ship}.{output}"
+        for role, (output, _) in _SHIP.items()
+        if f"{ship}.{output}" in signals
+    }
     if missing := [role for role in _NEEDED if role not in named]:
         there = sorted({name.rpartition(".")[0] for name in signals if "." in name})
-        found = (
-            f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
-        )
+        found = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
         raise ShipcosimError(Problem(file.get("source", "log"), found, remedy))
     for name in thrusters:
         for kind in ("rpm", "azimuth"):
             if f"{name}_{kind}" not in signals and f"{name}.{kind}" in signals:
                 named[f"{name}_{kind}"] = f"{name}.{kind}"
-    named |= {name: name for name in signals if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name}
+    named |= {
+        name: name
+        for name in signals
+        if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name
+    }
     table = make_table(
-        np.asarray(signals["time"], float), [_column(*pair, ship, signals, units) for pair in named.items()]
+        np.asarray(signals["time"], float),
+        [_column(*pair, ship, signals, units) for pair in named.items()],
     )
     table.encoding |= file
     return table
@@ -111,11 +126,18 @@ def channels_of_run(
     ship = ship or next(name for name in ships if f"{name}.x" in signals and f"{name}.y" in signals)
     drives = [name.removesuffix(".rpm") for name in signals if name.endswith(".rpm")]
     named = {role: f"{ship}.{output}" for role, (output, _) in _SHIP.items()}
-    named |= {f"{name}_{kind}": f"{name}.{kind}" for name in thrusters or drives for kind in ("rpm", "azimuth")}
+    named |= {
+        f"{name}_{kind}": f"{name}.{kind}"
+        for name in thrusters or drives
+        for kind in ("rpm", "azimuth")
+    }
     units = {role: unit for role, (_, unit) in _SHIP.items()}
     there = {"time": "time"} | {role: signal for role, signal in named.items() if signal in signals}
     turn = {role: "rad" for role in there if role.endswith("_azimuth")}
-    return {role: Channel(column=signal, unit=(units | turn).get(role)) for role, signal in there.items()}
+    return {
+        role: Channel(column=signal, unit=(units | turn).get(role))
+        for role, signal in there.items()
+    }
 
 
 def _names_components(path: Path) -> bool:
@@ -144,7 +166,12 @@ def _is_run(signals: Mapping[str, object]) -> bool:
     ships = (name.removesuffix(".psi") for name in signals if name.endswith(".psi"))
     if not any(f"{ship}.x" in signals and f"{ship}.y" in signals for ship in ships):
         return False  # names of another tool, such as ROS
-    return "time" in signals and "north" not in signals and "latitude" not in signals and 2 * dotted > len(signals)
+    return (
+        "time" in signals
+        and "north" not in signals
+        and "latitude" not in signals
+        and 2 * dotted > len(signals)
+    )
 
 
 def _column(role: str, signal: str, ship: str, signals: Mapping, units: Mapping) -> tuple:

@@ -82,7 +82,8 @@ ANGLE_TOLERANCE = (0.02, 0.1)
 """The same of the angle between velocity and change of position. [rad] Assumed."""
 FAR_SHARE = 0.03
 """Share of those few. Assumed."""
-GOES_AHEAD, GOES_ASTERN = 0.8, 0.05
+GOES_AHEAD = 0.8
+GOES_ASTERN = 0.05
 """Shares of logs in which a craft that has one course against her bow goes ahead or astern; the rest goes anywhere.
 Assumed."""
 DRIFT = 0.25

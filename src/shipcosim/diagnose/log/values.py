@@ -27,12 +27,17 @@ CLOCK_NUMBER = "hhmmss"
 TEN_MILLIONTHS = "1e-7 deg"
 """Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
-_STEPS = 2e-4, 90.0  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
+_STEPS = (
+    2e-4,
+    90.0,
+)  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
 _PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start anew
 _NEAR_END = 300.0  # s; within which of its end one was, and of its start it is. Assumed.
 
 
-def values_of(channel: Channel, name: str, log: LogColumns, form: FileLayout) -> tuple[np.ndarray, str, list[str]]:
+def values_of(
+    channel: Channel, name: str, log: LogColumns, form: FileLayout
+) -> tuple[np.ndarray, str, list[str]]:
     """Values of a channel, their unit, and what is to be said of them.
 
     Parameters
@@ -112,7 +117,9 @@ def _numbers(log: LogColumns, column: str) -> np.ndarray:
     if values.dtype.kind in "iub":
         return values.astype(float)
     if values.dtype.kind != "f":
-        row = next((i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0)
+        row = next(
+            (i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0
+        )
         found = f"column '{column}' holds '{values[row]}' in row {row + 2}, not only numbers."
         raise ShipcosimError(Problem("", found, "A missing value is an empty field or nan."))
     return values
@@ -161,7 +168,11 @@ def _check_steps(column, times):
         return
     unit, name, size = ("d", "days", 86400.0) if step < _STEPS[0] else ("ms", "milliseconds", 1e-3)
     found = f"its rows are {step:.2g} s apart: are these {name}? Then they are {size * step:.3g} s apart."
-    raise ShipcosimError(Problem("", found, f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}, or "s".'))
+    raise ShipcosimError(
+        Problem(
+            "", found, f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}, or "s".'
+        )
+    )
 
 
 def _without_summer_time(times):
@@ -174,7 +185,9 @@ def _without_summer_time(times):
         return times, []
     row = int(known[falls[0] + 1])
     on = np.where(np.arange(len(times)) >= row, times + 3600.0, times)
-    return on, [f"The clock is put back by an hour before row {row + 2}, as where summer time ends: the times go on."]
+    return on, [
+        f"The clock is put back by an hour before row {row + 2}, as where summer time ends: the times go on."
+    ]
 
 
 def _past_the_end(times):
@@ -185,7 +198,9 @@ def _past_the_end(times):
         if not len(falls) or known.min() < 0.0 or known.max() >= period:
             continue
         if (known[falls] > period - _NEAR_END).all() and (known[falls + 1] < _NEAR_END).all():
-            return seconds_of_clock(times, period)[0], [f"Seconds of the {name} pass its end: they go on."]
+            return seconds_of_clock(times, period)[0], [
+                f"Seconds of the {name} pass its end: they go on."
+            ]
     return times, []
 
 
@@ -195,7 +210,9 @@ def _joined(log, date, clocks):
     if dates.dtype.kind == "f":
         width = 8 if np.nanmax(dates) > 999999 else 6
         dates = [None if not np.isfinite(d) else f"{int(d):0{width}d}" for d in dates]
-    return np.array([f"{_day(d)} {c}" if d and c else None for d, c in zip(dates, clocks, strict=True)], object)
+    return np.array(
+        [f"{_day(d)} {c}" if d and c else None for d, c in zip(dates, clocks, strict=True)], object
+    )
 
 
 def _day(text):
@@ -204,13 +221,16 @@ def _day(text):
 
 
 def _of_clock(numbers):
-    hours, minutes, seconds = numbers // 10000, numbers // 100 % 100, numbers % 100
+    hours = numbers // 10000
+    minutes = numbers // 100 % 100
+    seconds = numbers % 100
     return 3600.0 * hours + 60.0 * minutes + seconds
 
 
 def _position(channel, column, stated, name, log):
     """Degrees of latitude or longitude that are not plain numbers; None for those."""
-    values, said = log.values[column], []
+    values = log.values[column]
+    said = []
     if values.dtype.kind == "O":
         degrees = degrees_of_texts(values, LARGEST[name])
         if degrees is None:
@@ -219,7 +239,11 @@ def _position(channel, column, stated, name, log):
         degrees = 1e-7 * values
     elif stated.lower() == MINUTES or (not stated and is_minutes(values, LARGEST[name])):
         degrees = degrees_of_minutes(values)
-        said = [] if stated else [f"'{column}' is {name} in {MINUTES}, as it is beyond {LARGEST[name]:g}."]
+        said = (
+            []
+            if stated
+            else [f"'{column}' is {name} in {MINUTES}, as it is beyond {LARGEST[name]:g}."]
+        )
     elif channel.hemisphere is None:
         return None
     else:
@@ -242,5 +266,9 @@ def _mapped(values, channel, column):
     if (beyond := known & ((values < given[0]) | (values > given[-1]))).any():
         row = int(np.flatnonzero(beyond)[0])
         found = f"column '{column}' holds {values[row]:g} in row {row + 2}, beyond its map."
-        raise ShipcosimError(Problem("", found, f"The map goes from {given[0]:g} to {given[-1]:g}."))
-    return channel.sign * np.interp(values, given, wanted, left=np.nan, right=np.nan) + channel.offset
+        raise ShipcosimError(
+            Problem("", found, f"The map goes from {given[0]:g} to {given[-1]:g}.")
+        )
+    return (
+        channel.sign * np.interp(values, given, wanted, left=np.nan, right=np.nan) + channel.offset
+    )

@@ -79,7 +79,8 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     -------
     Finding or None
     """
-    known, edges = problem.known(()), _edges(problem)
+    known = problem.known(())
+    edges = _edges(problem)
     gain, finding = _most_likely(_blocks(problem, edges, known))
     if finding is None:
         return None
@@ -101,12 +102,16 @@ def _all_aspects_agree(problem, finding, known):
     is a matter of the clock.
     """
     here = inside(0.5 * (problem.record.time[:-1] + problem.record.time[1:]), finding.segments)
-    moved, aspects = _moved(problem) * here[:, None], np.zeros((6, len(ASPECTS)))
+    moved = _moved(problem) * here[:, None]
+    aspects = np.zeros((6, len(ASPECTS)))
     for aspect, states in enumerate(ASPECTS):
         aspects[states, aspect] = 1.0
-    match, inner = _left(problem, known, len(ASPECTS), lambda steps: -moved[steps, :, None] * aspects)
+    match, inner = _left(
+        problem, known, len(ASPECTS), lambda steps: -moved[steps, :, None] * aspects
+    )
     covariance = np.linalg.pinv(inner)
-    rates, apart = covariance @ match, ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
+    rates = covariance @ match
+    apart = ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
     rest = rates - weight.sum(axis=0) @ rates / weight.sum()
     return survival(rest @ weight @ rest, len(ASPECTS) - 1) > ASPECT_CHANCE
@@ -129,7 +134,9 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
     own = np.arange(1, len(inner), 2)
     more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + CLOCK_SLAB**-2)
     rate = finding.parameters["rate"]
-    return replace(finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))})
+    return replace(
+        finding, parameters={"rate": replace(rate, estimate=float(rate.estimate * (1.0 + more)))}
+    )
 
 
 def is_testable(problem: IdentificationProblem) -> bool:
@@ -147,7 +154,9 @@ def is_testable(problem: IdentificationProblem) -> bool:
 def _edges(problem):
     """Even edges of blocks."""
     time = problem.record.time
-    return np.linspace(time[0], time[-1], int(np.clip(np.ptp(time) / CLOCK_BLOCK, 4, MOST_BLOCKS)) + 1)
+    return np.linspace(
+        time[0], time[-1], int(np.clip(np.ptp(time) / CLOCK_BLOCK, 4, MOST_BLOCKS)) + 1
+    )
 
 
 def _most_likely(blocks):
@@ -158,21 +167,35 @@ def _most_likely(blocks):
     block = blocks.edges[1] - blocks.edges[0]
     allowed = (span * block >= SHORTEST_CLOCK) & (span <= LARGEST_SHARE * count)
     cost = 2.0 * np.log(count)
-    gain, runs = 0.0, []
+    gain = 0.0
+    runs = []
     for _ in range(MOST_SEGMENTS):
         at = _best(match, energy, allowed)
         nats = _nats(match[at], energy[at]) - cost * (1 + len(runs))
         if nats < gain + CLOCK_GAIN * (not runs) or np.isneginf(nats):
             break
-        gain, runs, value = nats, [*runs, at], match[at] / (energy[at] + CLOCK_SLAB**-2)
+        gain = nats
+        runs = [*runs, at]
+        value = match[at] / (energy[at] + CLOCK_SLAB**-2)
         std = (energy[at] + CLOCK_SLAB**-2) ** -0.5
-        match, energy = match[at] + match, energy[at] + energy + 2.0 * blocks.with_run(*at)
+        match = match[at] + match
+        energy = energy[at] + energy + 2.0 * blocks.with_run(*at)
         first, last = at
-        allowed = allowed & ((np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last))
-    if not runs or not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1] or abs(value) < SMALLEST_RATE:
+        allowed = allowed & (
+            (np.arange(count + 1)[None, :] <= first) | (np.arange(count + 1)[:, None] >= last)
+        )
+    if (
+        not runs
+        or not PLAUSIBLE_RATES[0] < 1.0 + value < PLAUSIBLE_RATES[1]
+        or abs(value) < SMALLEST_RATE
+    ):
         return 0.0, None
     segments = tuple(sorted((float(blocks.edges[a]), float(blocks.edges[b])) for a, b in runs))
-    rate = {"rate": ParameterEstimate(1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1")}
+    rate = {
+        "rate": ParameterEstimate(
+            1.0 + float(value), float(np.hypot(std, RATE_UNSURE * value)), "1"
+        )
+    }
     note = "the ship answers thrusters and wind at another rate than logged"
     return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
 
@@ -189,19 +212,30 @@ def _best(match, energy, allowed):
 
 def _blocks(problem, edges, columns: list[Regressor]):
     """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
-    count, moved = len(edges) - 1, _moved(problem)
-    place = np.clip(np.searchsorted(edges, problem.record.time[:-1], side="right") - 1, 0, count - 1)
+    count = len(edges) - 1
+    moved = _moved(problem)
+    place = np.clip(
+        np.searchsorted(edges, problem.record.time[:-1], side="right") - 1, 0, count - 1
+    )
     blocks = np.arange(count)
     return _Blocks(
         edges,
-        *_left(problem, columns, count, lambda steps: -moved[steps, :, None] * (place[steps, None, None] == blocks)),
+        *_left(
+            problem,
+            columns,
+            count,
+            lambda steps: -moved[steps, :, None] * (place[steps, None, None] == blocks),
+        ),
     )
 
 
 def _moved(problem):
     """What each step moves the ship, (n-1, 6) array."""
-    record, middle = problem.record, Motion(*(0.5 * (value[:-1] + value[1:]) for value in problem.motion))
-    moved = record.step * rows_first(motion_rates(middle, record.inputs(problem.model, 0.5), problem.model))
+    record = problem.record
+    middle = Motion(*(0.5 * (value[:-1] + value[1:]) for value in problem.motion))
+    moved = record.step * rows_first(
+        motion_rates(middle, record.inputs(problem.model, 0.5), problem.model)
+    )
     return np.where(record.known[:-1, None], moved, 0.0)
 
 
@@ -212,10 +246,13 @@ def _left(problem, columns, count, driven):
     """
     others = len(columns)
     linear = with_columns(
-        problem.base_of(columns), count, lambda rows: (driven(rows), np.zeros((rows.stop - rows.start, 6, count)))
+        problem.base_of(columns),
+        count,
+        lambda rows: (driven(rows), np.zeros((rows.stop - rows.start, 6, count))),
     )
     products = inner_products(linear, problem.noise, problem.record, parts=1).products
-    theirs, own = slice(1, 1 + others), slice(1 + others, None)
+    theirs = slice(1, 1 + others)
+    own = slice(1 + others, None)
     inner = products[theirs, theirs] + np.diag([column.prior**-2 for column in columns])
     left = products - products[:, theirs] @ np.linalg.solve(inner, products[theirs, :])
     return left[own, 0], left[own, own]

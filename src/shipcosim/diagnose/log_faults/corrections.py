@@ -17,7 +17,13 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.thresholds import MOST_CAUSES, UNMODELLED
 from shipcosim.diagnose.log.checks.wind import leaps
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of, mislabel_in, mislabel_of, possible
+from shipcosim.diagnose.log.mislabels import (
+    WIND_LABELS,
+    finding_of,
+    mislabel_in,
+    mislabel_of,
+    possible,
+)
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log_faults.clock import clock_by_response, with_rate
 from shipcosim.diagnose.log_faults.input_labels import (
@@ -62,14 +68,16 @@ def with_right_navigation(found: Identification) -> Identification:
     candidates = relabelled(found.log, found.faults, found.problem)
     if not candidates:
         return found
-    best, enough = found, explain(found.problem, most=1)[0].score + FAULT
+    best = found
+    enough = explain(found.problem, most=1)[0].score + FAULT
     for candidate in candidates:
         again = _repaired(found, candidate.faults)
         if at_first_sight(again.problem) + candidate.density < enough:
             continue
         score = explain(again.problem, most=1)[0].score + candidate.density
         if score > enough:
-            best, enough = again, score
+            best = again
+            enough = score
     return best
 
 
@@ -98,10 +106,13 @@ def _with_right_wind_label(found, place):
 
     One that the log alone told of throughout, and the ship's answer of nearly nowhere, is none.
     """
-    before, after = found.faults[:place], found.faults[place + 1 :]
+    before = found.faults[:place]
+    after = found.faults[place + 1 :]
     as_logged = replace(found, repaired=_without(found, (*before, *after)))
     fault, problem = _likeliest_direction(as_logged, found.faults[place])
-    fault, right = _with_settled_segment(replace(as_logged, problem=problem), mislabel_of(fault), fault)
+    fault, right = _with_settled_segment(
+        replace(as_logged, problem=problem), mislabel_of(fault), fault
+    )
     shrunk = fault.segments and not found.faults[place].segments
     if shrunk and not _is_told_by_the_ship(right.problem, as_logged.repaired):
         problem = identification_problem(as_logged.repaired, found.ship, found.causes)
@@ -111,7 +122,10 @@ def _with_right_wind_label(found, place):
 
 def _is_told_by_the_ship(problem, logged):
     """Whether the ship answers a log with a label put right, as the problem has it, and not one as logged."""
-    return likelihood(problem, problem.record) > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
+    return (
+        likelihood(problem, problem.record)
+        > likelihood(problem, record_of(logged, problem.model)) + PART_GAIN
+    )
 
 
 def _likeliest_direction(as_logged, fault):
@@ -119,12 +133,15 @@ def _likeliest_direction(as_logged, fault):
 
     `as_logged` has the log without that fault put right, and the problem with it put right.
     """
-    log, problem = as_logged.repaired, as_logged.problem
+    log = as_logged.repaired
+    problem = as_logged.problem
     if mislabel_in(fault).scale is not None:
         return fault, problem
     directions = [label for label in possible(WIND_LABELS, log) if label.scale is None]
     rights = {label: with_label(log, label, fault.segments) for label in directions}
-    label = max(rights, key=lambda label: likelihood(problem, record_of(rights[label], as_logged.ship)))
+    label = max(
+        rights, key=lambda label: likelihood(problem, record_of(rights[label], as_logged.ship))
+    )
     if label is mislabel_of(fault):
         return fault, problem
     again = identification_problem(rights[label], as_logged.ship, as_logged.causes)
@@ -145,7 +162,9 @@ def with_right_connections(found: Identification) -> Identification:
         problem = identification_problem(found.repaired, ship, found.causes)
         if (rewired := at_first_sight(problem)) > score + FAULT:
             finding = Finding("connection", name, "physics", 0.99, {}, note=what)
-            found = replace(found, ship=ship, problem=problem, misconnections=(*found.misconnections, finding))
+            found = replace(
+                found, ship=ship, problem=problem, misconnections=(*found.misconnections, finding)
+            )
             score = rewired
     return found
 
@@ -170,7 +189,8 @@ def _with_right_input(explained):
     The ends of a segment are rough until they are settled, so the likeliest fault is settled before it is held against
     all causes; further ones only where they are better than those even so.
     """
-    found, best = explained.identification, explained.fits[0]
+    found = explained.identification
+    best = explained.fits[0]
     candidates = []
     for _, mislabel, fault in suspected_inputs(found.repaired, found.problem)[:MOST_TRIED]:
         again = _relabelled(found, mislabel, fault)
@@ -181,7 +201,9 @@ def _with_right_input(explained):
             return None
         least = best.score
         fault, right = _with_settled_segment(replace(found, problem=problem), mislabel, fault)
-        if at_first_sight(right.problem) < best.score or not _shows_at_its_ends(found.repaired, mislabel, fault):
+        if at_first_sight(right.problem) < best.score or not _shows_at_its_ends(
+            found.repaired, mislabel, fault
+        ):
             continue
         fits = tuple(explain(right.problem))
         close = [fit for fit in fits[:3] if fit.score > best.score + _least_gain(fault, best)]
@@ -206,7 +228,9 @@ def _without(found, faults):
 def _relabelled(found, mislabel, fault):
     """An identification anew, of its repaired log with a mislabel undone too."""
     log = with_label(found.repaired, mislabel, fault.segments)
-    return replace(found, repaired=log, problem=identification_problem(log, found.ship, found.causes))
+    return replace(
+        found, repaired=log, problem=identification_problem(log, found.ship, found.causes)
+    )
 
 
 def _with_settled_segment(found, mislabel, fault):
@@ -219,7 +243,8 @@ def _with_settled_segment(found, mislabel, fault):
         refined = with_refined_segment(found.repaired, mislabel, fault, right.problem)
         if refined is fault:
             break
-        fault, right = refined, _relabelled(found, mislabel, refined)
+        fault = refined
+        right = _relabelled(found, mislabel, refined)
     return fault, right
 
 
@@ -229,16 +254,25 @@ def _shows_at_its_ends(log, mislabel, fault):
         return True
     speed = log["wind_speed"].values
     known = np.isfinite(speed)
-    return leaps(log["time"].values[known], speed[known], next(iter(fault.segments), None), 1.0 / mislabel.scale)
+    return leaps(
+        log["time"].values[known],
+        speed[known],
+        next(iter(fault.segments), None),
+        1.0 / mislabel.scale,
+    )
 
 
 def _least_gain(fault, fit):
     """What a fault of the inputs' channels must gain over a fit: little, if a wrong unit looks like a cause in it."""
-    label, alike = mislabel_of(fault), {channel for one in fit.hypotheses for channel in one.definition.unit_of}
+    label = mislabel_of(fault)
+    alike = {channel for one in fit.hypotheses for channel in one.definition.unit_of}
     is_unit = label is not None and label.scale is not None
     return UNIT if is_unit and alike & set(fault.channels) else FAULT
 
 
 def _is_explained(problem, fit):
     """Whether no unmodelled error stands out beside a fit."""
-    return len(fit.hypotheses) <= MOST_CAUSES and max(unmodelled_gains(problem, fit).values()) < UNMODELLED
+    return (
+        len(fit.hypotheses) <= MOST_CAUSES
+        and max(unmodelled_gains(problem, fit).values()) < UNMODELLED
+    )

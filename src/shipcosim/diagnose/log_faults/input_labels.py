@@ -19,7 +19,15 @@ from shipcosim.diagnose.inference.innovations import inner_products, innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
 from shipcosim.diagnose.inference.workers import each
-from shipcosim.diagnose.log.mislabels import WIND_LABELS, Mislabel, exchanged, finding_of, negative, possible, undone
+from shipcosim.diagnose.log.mislabels import (
+    WIND_LABELS,
+    Mislabel,
+    exchanged,
+    finding_of,
+    negative,
+    possible,
+    undone,
+)
 from shipcosim.diagnose.log.rows import arrays_of
 from shipcosim.diagnose.log_faults.thresholds import (
     BESIDE_AN_END,
@@ -42,10 +50,19 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["best_run", "likelihood", "suspected_inputs", "where_best", "with_label", "with_refined_segment"]
+__all__ = [
+    "best_run",
+    "likelihood",
+    "suspected_inputs",
+    "where_best",
+    "with_label",
+    "with_refined_segment",
+]
 
 
-def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> list[tuple[float, Mislabel, Finding]]:
+def suspected_inputs(
+    log: xarray.Dataset, problem: IdentificationProblem
+) -> list[tuple[float, Mislabel, Finding]]:
     """Channels of thrusters and wind that could be mislabelled, likeliest first.
 
     Parameters
@@ -60,7 +77,8 @@ def suspected_inputs(log: xarray.Dataset, problem: IdentificationProblem) -> lis
     list of (float, Mislabel, Finding)
         Gain in log-likelihood [nats], what would be wrong, and about where.
     """
-    base, found = _by_row(problem, problem.record), []
+    base = _by_row(problem, problem.record)
+    found = []
     for mislabel in _mislabels(log, problem.model):
         gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
         total, finding = where_best(gain, mislabel, problem.record)
@@ -89,8 +107,11 @@ def with_refined_segment(
     Finding
         The same one if no other segment gains enough.
     """
-    time, known, relabelled = problem.record.time, {}, _Relabelled(log, mislabel, problem)
-    least, last = round(SHORTEST_INPUT / problem.record.step), time.size - 1
+    time = problem.record.time
+    known = {}
+    relabelled = _Relabelled(log, mislabel, problem)
+    least = round(SHORTEST_INPUT / problem.record.step)
+    last = time.size - 1
 
     def segment(ends):
         return ((float(time[ends[0]]), float(time[ends[1]])),)
@@ -107,7 +128,11 @@ def with_refined_segment(
         return dict(zip(many, each(likelihood_of, many), strict=True)).get
 
     whole = (0, last)
-    first = tuple(int(i) for i in np.searchsorted(time, finding.segments[0])) if finding.segments else whole
+    first = (
+        tuple(int(i) for i in np.searchsorted(time, finding.segments[0]))
+        if finding.segments
+        else whole
+    )
     stride = max(round(SEARCH_STEP / problem.record.step), last // MOST_PLACES)
     ends = _likeliest_ends(likelihoods_of, first, last, stride)
     least_gain = PART_GAIN if first == whole else SEGMENT_GAIN
@@ -117,7 +142,8 @@ def with_refined_segment(
 
 def _likeliest_ends(likelihoods_of, first, last, stride):
     """First and last row of the likeliest segment: each end anywhere in coarse steps, then moved by halved steps."""
-    ends, places = first, [*range(0, last, stride), last]
+    ends = first
+    places = [*range(0, last, stride), last]
     for _ in range(2):
         for i in (0, 1):
             tried = list(dict.fromkeys([ends, *(_moved(ends, i, place) for place in places)]))
@@ -149,8 +175,12 @@ class _Relabelled:
     """
 
     def __init__(self, log: xarray.Dataset, mislabel: Mislabel, problem: IdentificationProblem):
-        self.log, self.mislabel, self.problem = log, mislabel, problem
-        self.logged, self.right = (self._linear(one).whole() for one in (log, with_label(log, mislabel)))
+        self.log = log
+        self.mislabel = mislabel
+        self.problem = problem
+        self.logged, self.right = (
+            self._linear(one).whole() for one in (log, with_label(log, mislabel))
+        )
         lags = [abs(problem.model.get(path)) for path in LAGS]
         self.reach = BESIDE_AN_END + int(np.ceil(sum(lags) / problem.record.step))
 
@@ -160,10 +190,12 @@ class _Relabelled:
 
     def likelihood(self, ends: tuple[int, int], segment: Sequence[tuple[float, float]]) -> float:
         """Log-likelihood with the mislabel undone in a segment [s] between two rows, up to a constant. [nats]"""
-        problem, steps = self.problem, len(self.right.transition)
+        problem = self.problem
+        steps = len(self.right.transition)
         log = with_label(self.log, self.mislabel, segment)
         record = with_inputs_of(problem.record, log, problem.model)
-        transition, driven = self.logged.transition.copy(), self.logged.driven.copy()
+        transition = self.logged.transition.copy()
+        driven = self.logged.driven.copy()
         transition[ends[0] : ends[1]] = self.right.transition[ends[0] : ends[1]]
         driven[ends[0] : ends[1]] = self.right.driven[ends[0] : ends[1]]
         for end in ends:
@@ -181,9 +213,17 @@ def _mislabels(log, model):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
         if _make(model, one) == _make(model, other):
-            found += [exchanged(group) for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]]) if group]
+            found += [
+                exchanged(group)
+                for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
+                if group
+            ]
     for name in model.thrusters:
-        found += [negative(role) for role in (f"{name}_rpm", f"{name}_thrust", f"{name}_azimuth") if role in log]
+        found += [
+            negative(role)
+            for role in (f"{name}_rpm", f"{name}_thrust", f"{name}_azimuth")
+            if role in log
+        ]
     if "wind_from" in log:
         motion = all(role in log for role in ("heading", "surge", "sway"))
         labels = WIND_LABELS if motion else (negative("wind_from"),)
@@ -197,7 +237,9 @@ def _make(model, name):
     return third_party.component.fmu.model_name if third_party else type(model.parts[name])
 
 
-def with_label(log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple[float, float]] = ()) -> xarray.Dataset:
+def with_label(
+    log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple[float, float]] = ()
+) -> xarray.Dataset:
     """A repaired log with a mislabel undone, in segments [s] or everywhere."""
     fixed = undone(arrays_of(log), mislabel, segments)
     return log.assign({role: log[role].copy(data=fixed[role]) for role in mislabel.channels})
@@ -207,9 +249,13 @@ def _by_row(problem, record):
     """Log-likelihood of each row, known numbers fitted within their tolerances; what that costs is shared by all."""
     columns = problem.known(())
     linear = linearised_by_parts(problem.motion, record, problem.model, columns)
-    theta = evidence(inner_products(linear, problem.noise, record).products, np.ones(len(columns)))[1]
+    theta = evidence(inner_products(linear, problem.noise, record).products, np.ones(len(columns)))[
+        1
+    ]
     left = innovations(explained(linear, theta), problem.noise, record)
-    return -0.5 * ((left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows)
+    return -0.5 * (
+        (left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows
+    )
 
 
 def where_best(
@@ -225,7 +271,9 @@ def where_best(
 def best_run(gain: np.ndarray, least: int) -> tuple[int, int, float]:
     """First and last row of the run of at least `least` rows whose gains add up to most, and the sum."""
     total = np.concatenate([[0.0], np.cumsum(gain)])
-    lowest, first, best = 0, 0, (0, 0, -np.inf)
+    lowest = 0
+    first = 0
+    best = (0, 0, -np.inf)
     for last in range(least, gain.size + 1):
         if total[last - least] < total[lowest]:
             lowest = last - least

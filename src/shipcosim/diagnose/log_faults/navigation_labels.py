@@ -16,7 +16,13 @@ from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.parts import linearised_by_parts
 from shipcosim.diagnose.log.checks.kinematics import filter_for, is_clear, position_motion
-from shipcosim.diagnose.log.mislabels import HEADING_LABELS, POSITION_LABELS, mislabel_in, mislabel_of, possible
+from shipcosim.diagnose.log.mislabels import (
+    HEADING_LABELS,
+    POSITION_LABELS,
+    mislabel_in,
+    mislabel_of,
+    possible,
+)
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.log.rows import arrays_of, inside
 from shipcosim.diagnose.log_faults.input_labels import where_best, with_label
@@ -57,7 +63,9 @@ class Relabelled:
     density: float
 
 
-def relabelled(log: xarray.Dataset, faults: Sequence[Finding], problem: IdentificationProblem) -> list[Relabelled]:
+def relabelled(
+    log: xarray.Dataset, faults: Sequence[Finding], problem: IdentificationProblem
+) -> list[Relabelled]:
     """The likeliest labels of the navigation, where they are not those that the faults say.
 
     Each in its likeliest stretch, and but for units throughout: row by row it is judged with the noise of the log as it
@@ -83,12 +91,19 @@ def relabelled(log: xarray.Dataset, faults: Sequence[Finding], problem: Identifi
         return []
     if found:
         calm = CALM_JOLT * first_noise(problem.record, problem.model.parts["hull"].length).jolt
-        problem = replace(problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm)))
+        problem = replace(
+            problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm))
+        )
     base = _by_row(problem, record_of(plain, problem.model))
     known = [mislabel_in(fault) for fault in found]
-    labels = [label for label in possible(LABELS, plain) if label in known or _matters(plain, label)]
+    labels = [
+        label for label in possible(LABELS, plain) if label in known or _matters(plain, label)
+    ]
     gains = {label: _gain(plain, label, problem) - base for label in labels}
-    so_far = sum(float(gains[mislabel_in(one)][inside(problem.record.time, one.segments)].sum()) for one in found)
+    so_far = sum(
+        float(gains[mislabel_in(one)][inside(problem.record.time, one.segments)].sum())
+        for one in found
+    )
     tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
     less = sum(_density(one, problem) for one in found)
     return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
@@ -98,18 +113,24 @@ def _likely(gains, record, least):
     """Findings of the labels that gain most by their rows' gains, those above a least gain, in their stretches."""
     found = [where_best(gain, label, record, SHORTEST_LABEL) for label, gain in gains.items()]
     likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > least]
-    tried = {(one.note, one.segments): one for part in likely[:LIKELY_LABELS] for one in _stretches(part)}
+    tried = {
+        (one.note, one.segments): one for part in likely[:LIKELY_LABELS] for one in _stretches(part)
+    }
     return tried.values()
 
 
 def _stretches(found):
     """A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own."""
-    return (found,) if mislabel_in(found).scale is not None else (found, replace(found, segments=()))
+    return (
+        (found,) if mislabel_in(found).scale is not None else (found, replace(found, segments=()))
+    )
 
 
 def _matters(plain, label):
     """Whether a label, put right, makes its channels other ones: at a heading near north earth-fixed is body-fixed."""
-    right, changed, size = with_label(plain, label), 0.0, 0.0
+    right = with_label(plain, label)
+    changed = 0.0
+    size = 0.0
     for role in label.channels:
         changed += np.nansum((right[role].values - plain[role].values) ** 2)
         size += np.nansum(plain[role].values ** 2)
@@ -124,8 +145,11 @@ def _is_clear(plain):
 
 def _gain(plain, label, problem):
     """Log-likelihood of each row with a label put right, as a density of what was logged."""
-    places, noise = [CHANNELS.index(role) for role in label.channels], problem.noise
-    white, wave, scale = np.array(noise.white), np.array(noise.wave), np.ones(len(CHANNELS))
+    places = [CHANNELS.index(role) for role in label.channels]
+    noise = problem.noise
+    white = np.array(noise.white)
+    wave = np.array(noise.wave)
+    scale = np.ones(len(CHANNELS))
     if label.scale is not None:
         scale[places] = label.scale
     if label.cause == "channel_swap":
@@ -140,8 +164,12 @@ def _by_row(problem, record):
     """Log-likelihood of each row, about the motion that the record itself describes."""
     motion = first_motion(record, problem.model)
     for _ in range(2):
-        motion, _ = smoothed(linearised_by_parts(motion, record, problem.model, []), problem.noise, record, motion)
-    found = innovations(linearised_by_parts(motion, record, problem.model, []), problem.noise, record)
+        motion, _ = smoothed(
+            linearised_by_parts(motion, record, problem.model, []), problem.noise, record, motion
+        )
+    found = innovations(
+        linearised_by_parts(motion, record, problem.model, []), problem.noise, record
+    )
     return -0.5 * ((found.white[..., 0] ** 2).sum(-1) + found.log_determinant)
 
 
@@ -149,5 +177,8 @@ def _density(finding, problem):
     """Logarithm of the factors by which a finding changes the values of its channels."""
     scale = mislabel_in(finding).scale or 1.0
     places = [CHANNELS.index(role) for role in finding.channels]
-    here = np.isfinite(problem.record.measured[:, places]) & inside(problem.record.time, finding.segments)[:, None]
+    here = (
+        np.isfinite(problem.record.measured[:, places])
+        & inside(problem.record.time, finding.segments)[:, None]
+    )
     return float(np.log(scale) * here.sum())

@@ -25,7 +25,9 @@ class Bands:
 
     def with_series(self, series: np.ndarray) -> np.ndarray:
         """Inner products of the columns with a series (n,), (k,)."""
-        return np.concatenate([series[first : first + len(values)] @ values for first, values in self.blocks])
+        return np.concatenate(
+            [series[first : first + len(values)] @ values for first, values in self.blocks]
+        )
 
     def squares(self) -> np.ndarray:
         """Sum of squares of each column, (k,)."""
@@ -44,8 +46,10 @@ class Bands:
 
 
 def _product(one, other):
-    (first, values), (second, others) = one, other
-    begin, end = max(first, second), min(first + len(values), second + len(others))
+    (first, values) = one
+    (second, others) = other
+    begin = max(first, second)
+    end = min(first + len(values), second + len(others))
     if begin >= end:
         return np.zeros((values.shape[1], others.shape[1]))
     return values[begin - first : end - first].T @ others[begin - second : end - second]

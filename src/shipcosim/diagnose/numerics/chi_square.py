@@ -33,7 +33,8 @@ def log_survival(value: float, degrees: float) -> float:
     >>> log_survival(3000.0, 2.0)
     -1500.0
     """
-    a, x = 0.5 * float(degrees), 0.5 * float(value)
+    a = 0.5 * float(degrees)
+    x = 0.5 * float(value)
     if not 0.0 < x < math.inf:
         return math.nan if math.isnan(x) else -math.inf if x > 0.0 else 0.0
     log_power = a * math.log(x) - x - math.lgamma(a)
@@ -67,8 +68,11 @@ def _lower_series(a, x):
 def _upper_fraction(a, x):
     """1 / (x + 1 - a - 1 (1 - a) / (x + 3 - a - 2 (2 - a) / (x + 5 - a - ...)))."""
     b = x + 1.0 - a
-    c, d = 1.0 / _TINY, 1.0 / b
-    found, change, k = d, 0.0, 0
+    c = 1.0 / _TINY
+    d = 1.0 / b
+    found = d
+    change = 0.0
+    k = 0
     while abs(change - 1.0) > 1e-15:
         k += 1
         numerator = k * (a - k)

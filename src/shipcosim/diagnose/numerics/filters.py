@@ -68,7 +68,9 @@ def moving_average(series: np.ndarray, rows: int) -> np.ndarray:
     array([1., 3., 6., 8.])
     """
     before = rows // 2
-    return _convolved(series, np.full(rows, 1.0 / rows), (before, rows - 1 - before), "reflected", -1)
+    return _convolved(
+        series, np.full(rows, 1.0 / rows), (before, rows - 1 - before), "reflected", -1
+    )
 
 
 def _convolved(series, weights, beyond, ends, axis):

@@ -7,7 +7,9 @@ __all__ = ["least_squares"]
 _ROUNDS = 50  # a column, as a guard against rounding; a few are needed
 
 
-def least_squares(columns: np.ndarray, series: np.ndarray, positive: np.ndarray | None = None) -> np.ndarray:
+def least_squares(
+    columns: np.ndarray, series: np.ndarray, positive: np.ndarray | None = None
+) -> np.ndarray:
     """Coefficients for which the columns come closest to a series, some or all of them not negative.
 
     Parameters
@@ -32,9 +34,16 @@ def least_squares(columns: np.ndarray, series: np.ndarray, positive: np.ndarray 
     array([ 1.,  0., -3.])
     """
     turn, triangle = np.linalg.qr(columns)
-    target, count = turn.T @ series, columns.shape[1]
+    target = turn.T @ series
+    count = columns.shape[1]
     bound = np.ones(count, bool) if positive is None else np.asarray(positive, bool)
-    least = 10.0 * max(columns.shape) * np.finfo(float).eps * np.abs(triangle).sum(0).max() * np.linalg.norm(target)
+    least = (
+        10.0
+        * max(columns.shape)
+        * np.finfo(float).eps
+        * np.abs(triangle).sum(0).max()
+        * np.linalg.norm(target)
+    )
     free = ~bound
     found = _solution(triangle, target, free)
     for _ in range(_ROUNDS * count):

@@ -48,9 +48,14 @@ def _slopes(step, slope):
         return np.concatenate([slope, slope])
     if len(step) == 2:
         bend = (slope[1:] - slope[:1]) / step.sum(axis=0)
-        return np.concatenate([slope[:1] - bend * step[:1], slope[:1] + bend * step[:1], slope[1:] + bend * step[1:]])
-    before, after = step[:-1], step[1:]
-    lower, diagonal, upper = after.copy(), 2.0 * (before + after), before.copy()
+        return np.concatenate(
+            [slope[:1] - bend * step[:1], slope[:1] + bend * step[:1], slope[1:] + bend * step[1:]]
+        )
+    before = step[:-1]
+    after = step[1:]
+    lower = after.copy()
+    diagonal = 2.0 * (before + after)
+    upper = before.copy()
     right = 3.0 * (after * slope[:-1] + before * slope[1:])
     first = _end(step[0], step[1], slope[0], slope[1])
     last = _end(step[-1], step[-2], slope[-1], slope[-2])
@@ -59,7 +64,10 @@ def _slopes(step, slope):
     diagonal[-1] -= step[-1] + step[-2]
     right[0], right[-1] = right[0] - first, right[-1] - last
     inner = solve_tridiagonal(lower.ravel(), diagonal.ravel(), upper.ravel(), right)
-    ends = (first - (step[0] + step[1]) * inner[0]) / step[1], (last - (step[-1] + step[-2]) * inner[-1]) / step[-2]
+    ends = (
+        (first - (step[0] + step[1]) * inner[0]) / step[1],
+        (last - (step[-1] + step[-2]) * inner[-1]) / step[-2],
+    )
     return np.concatenate([ends[0][None], inner, ends[1][None]])
 
 

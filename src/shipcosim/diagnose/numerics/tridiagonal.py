@@ -5,7 +5,9 @@ import numpy as np
 __all__ = ["solve_tridiagonal"]
 
 
-def solve_tridiagonal(lower: np.ndarray, diagonal: np.ndarray, upper: np.ndarray, right: np.ndarray) -> np.ndarray:
+def solve_tridiagonal(
+    lower: np.ndarray, diagonal: np.ndarray, upper: np.ndarray, right: np.ndarray
+) -> np.ndarray:
     """Solve lower[i] x[i - 1] + diagonal[i] x[i] + upper[i] x[i + 1] = right[i] for all rows at once.
 
     By cyclic reduction: every other row is put into its neighbours, which leaves a system of half the size. Without
@@ -31,18 +33,28 @@ def solve_tridiagonal(lower: np.ndarray, diagonal: np.ndarray, upper: np.ndarray
     >>> solve_tridiagonal(one, two, one, np.array([4.0, 8.0, 8.0]))
     array([1., 2., 3.])
     """
-    below, middle, above = (one.reshape(-1, *[1] * (right.ndim - 1)) for one in (lower, diagonal, upper))
+    below, middle, above = (
+        one.reshape(-1, *[1] * (right.ndim - 1)) for one in (lower, diagonal, upper)
+    )
     return _solved(below, middle, above, right)
 
 
 def _solved(lower, diagonal, upper, right):
     if len(diagonal) == 1:
         return right / diagonal
-    before, after, alone = (one[1::2] / diagonal[1::2] for one in (lower, upper, right))  # of every other row
+    before, after, alone = (
+        one[1::2] / diagonal[1::2] for one in (lower, upper, right)
+    )  # of every other row
     n = len(before)
-    up, down = upper[::2][:n], lower[::2][1:]
+    up = upper[::2][:n]
+    down = lower[::2][1:]
     left = slice(0, len(down))
-    rest = [np.zeros_like(lower[::2]), diagonal[::2].copy(), np.zeros_like(upper[::2]), np.array(right[::2])]
+    rest = [
+        np.zeros_like(lower[::2]),
+        diagonal[::2].copy(),
+        np.zeros_like(upper[::2]),
+        np.array(right[::2]),
+    ]
     rest[0][1:], rest[2][:n] = -down * before[left], -up * after
     rest[1][:n] -= up * before
     rest[1][1:] -= down * after[left]

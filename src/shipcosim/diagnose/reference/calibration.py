@@ -19,9 +19,22 @@ from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.screening import Gain
 from shipcosim.diagnose.inference.thresholds import ENOUGH, FORM_COST
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly
-from shipcosim.diagnose.reference.reference import SCHEMA, KnownNumber, Reference, ReferenceLog, fingerprint
+from shipcosim.diagnose.reference.reference import (
+    SCHEMA,
+    KnownNumber,
+    Reference,
+    ReferenceLog,
+    fingerprint,
+)
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
-from shipcosim.diagnose.reference.thresholds import MOST_SUSPECTS, MOST_WEIGHT, SCALES, USUAL_FORM, WEATHER_GAIN, WIDER
+from shipcosim.diagnose.reference.thresholds import (
+    MOST_SUSPECTS,
+    MOST_WEIGHT,
+    SCALES,
+    USUAL_FORM,
+    WEATHER_GAIN,
+    WIDER,
+)
 from shipcosim.diagnose.ship.model import ShipModel
 
 __all__ = ["Calibration", "calibrated_to", "causes_beside", "numbers_of", "reference_of"]
@@ -67,14 +80,19 @@ def calibrated_to(logs: SeveralLogs) -> Calibration:
     logs, form_gain = with_common_form(logs)
     scale = likeliest_scale(fitted_jointly(logs, about_all=True))
     fit = partial(fitted_jointly, scale=scale, about_all=True)
-    fits = cast(list[JointFit], explain(logs, most=2 * len(logs.problems), fitted=fit, screened=screened_jointly))
+    fits = cast(
+        list[JointFit],
+        explain(logs, most=2 * len(logs.problems), fitted=fit, screened=screened_jointly),
+    )
     ordinary = {one.label: WEATHER_GAIN for one in logs.hypotheses}
     best = next(one for one in fits if not one.hypotheses or admissible(one, fits, ordinary))
     again = likeliest_scale(best, scale)
     if again != scale:
         best = fitted_jointly(logs, best.hypotheses, best.values, scale=again, about_all=True)
     own = errors_of_the_fit(best)
-    unmodelled = {name: unmodelled_gains(one, best.parts[name]) | own for name, one in logs.problems.items()}
+    unmodelled = {
+        name: unmodelled_gains(one, best.parts[name]) | own for name, one in logs.problems.items()
+    }
     return Calibration(logs, best, again, unmodelled, form_gain)
 
 
@@ -114,10 +132,15 @@ def causes_beside(found: Calibration) -> dict[str, float]:
         By label; those that could be named, were healthy logs to gain what is assumed of weather. Where the logs want
         wider tolerances, a cause beside the stated ones must explain them better than those do.
     """
-    every, suspects = replace(found.logs, is_well=False), {}
+    every = replace(found.logs, is_well=False)
+    suspects = {}
     for scale in dict.fromkeys((found.scale, 1.0)):
         fit = partial(fitted_jointly, scale=scale, about_all=True)
-        without = found.fit if scale == found.scale else fit(every, found.fit.hypotheses, found.fit.values)
+        without = (
+            found.fit
+            if scale == found.scale
+            else fit(every, found.fit.hypotheses, found.fit.values)
+        )
         for _, hypothesis, values in _most_likely(every, without):
             again = fit(every, (*without.hypotheses, hypothesis), without.values | values)
             gain = again.score - found.fit.score
@@ -149,7 +172,12 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
     of_ship = np.array([_is_known_of_ship(column, fit) for column in fit.columns])
     prior = np.array([column.prior for column in fit.columns])
     scores = np.array(
-        [evidence(fit.products.products, np.where(of_ship, s / scale, 1.0) * prior, fit.centre)[0] for s in SCALES]
+        [
+            evidence(fit.products.products, np.where(of_ship, s / scale, 1.0) * prior, fit.centre)[
+                0
+            ]
+            for s in SCALES
+        ]
     )
     near = np.flatnonzero(scores > scores.max() - WIDER)
     return SCALES[near[0]]
@@ -157,7 +185,9 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
 
 def _is_known_of_ship(column: Regressor, fit: JointFit) -> bool:
     """Whether a column is of known numbers of the ship, and of no cause."""
-    turned = {path for one in fit.hypotheses for parameter in one.parameters for path in parameter.paths}
+    turned = {
+        path for one in fit.hypotheses for parameter in one.parameters for path in parameter.paths
+    }
     return not any(ShipModel.is_of_day(path) or path in turned for path in column.changes)
 
 
@@ -255,5 +285,6 @@ def reference_of(
 def _within_bounds(ship: ShipModel, name: str, value: float) -> float:
     """A number's value, brought to what it can be."""
     about = ship.about(name)
-    low, high = (-np.inf if about["minimum"] is None else about["minimum"]), about["maximum"]
+    low = -np.inf if about["minimum"] is None else about["minimum"]
+    high = about["maximum"]
     return float(np.clip(value, low, np.inf if high is None else high))

@@ -34,12 +34,16 @@ def with_sizes_at_reference(
         Those of the data, and of what no number of the reference holds, are as they were: a current is the day's.
     """
     known = {number.name: number for number in reference.numbers}
-    hypotheses = {one.label: one for one in hypotheses_of(dict(causes), with_reference(ship, reference))}
+    hypotheses = {
+        one.label: one for one in hypotheses_of(dict(causes), with_reference(ship, reference))
+    }
     found = []
     for finding in findings:
         hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
         before = {
-            of.name: ParameterEstimate(known[path].estimate * of.factor, known[path].std * abs(of.factor), of.unit)
+            of.name: ParameterEstimate(
+                known[path].estimate * of.factor, known[path].std * abs(of.factor), of.unit
+            )
             for of in (hypothesis.parameters if hypothesis else ())
             for path in of.paths[:1]
             if path in known

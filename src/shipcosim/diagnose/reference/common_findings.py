@@ -113,7 +113,9 @@ def leans_to(labels: Labels | None, fault: Finding) -> bool:
         return True
     wanted = {role.rpartition("_")[0] for role in fault.channels}
     readings = (labels.best, *labels.rivals)
-    return any(wanted in [set(change.thrusters) for change in reading.changes] for reading in readings)
+    return any(
+        wanted in [set(change.thrusters) for change in reading.changes] for reading in readings
+    )
 
 
 def with_right_labels(log: xarray.Dataset, faults: Sequence[Finding]) -> xarray.Dataset:
@@ -160,21 +162,28 @@ class RatioOfLogs:
 
     def _is_apart(self, name: str) -> bool:
         rest = ratio_of_logs({other: one for other, one in self.each.items() if other != name})
-        own, others = self.each[name], rest.common
+        own = self.each[name]
+        others = rest.common
         if others is None:
             return False
-        return abs(np.log(own.ratio / others.ratio)) > APART * np.hypot(own.std / own.ratio, others.std / others.ratio)
+        return abs(np.log(own.ratio / others.ratio)) > APART * np.hypot(
+            own.std / own.ratio, others.std / others.ratio
+        )
 
     def without(self, name: str) -> CommonRatio | None:
         """The ratio by the other logs."""
-        return ratio_of_logs({other: one for other, one in self.each.items() if other != name}).common
+        return ratio_of_logs(
+            {other: one for other, one in self.each.items() if other != name}
+        ).common
 
     @property
     def contradiction(self) -> str:
         """That the logs contradict each other, in a sentence; empty where they do not."""
         if self.common is not None or not self.each:
             return ""
-        sizes = ", ".join(f"{name} {one.ratio:.2f} ± {one.std:.2f}" for name, one in self.each.items())
+        sizes = ", ".join(
+            f"{name} {one.ratio:.2f} ± {one.std:.2f}" for name, one in self.each.items()
+        )
         return f"Thrust over inertia differs from log to log by more than their errors, so none is common: {sizes}."
 
 
@@ -192,7 +201,9 @@ def ratio_of_logs(each: Mapping[str, CommonRatio]) -> RatioOfLogs:
     mean, std, squares = _weighted(logs, np.array([one.std / one.ratio for one in each.values()]))
     chance = survival(float(squares), logs.size - 1) if logs.size > 1 else 1.0
     axes = tuple(dict.fromkeys(axis for one in each.values() for axis in one.axes))
-    std = float(max(std, COMMON_SPREAD / np.sqrt(max(len(axes), 1))))  # forms of a hull differ alike in all logs
+    std = float(
+        max(std, COMMON_SPREAD / np.sqrt(max(len(axes), 1)))
+    )  # forms of a hull differ alike in all logs
     ratio = float(np.exp(mean))
     common = CommonRatio(ratio, ratio * std, axes) if chance > SAME_RATIO else None
     return RatioOfLogs(dict(each), common, chance)
@@ -231,7 +242,8 @@ def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:
     what = _NUMBER.sub(lambda _: next(ranges), same[0].what)
     values = np.array([one.estimate for one in same])
     stds = np.array([one.std for one in same])
-    mean, std = float(values.mean()), 0.0
+    mean = float(values.mean())
+    std = 0.0
     if (stds > 0.0).all():
         mean, std, _ = _weighted(values, stds)
     share = sum(one.share for one in same) / logs
@@ -239,5 +251,6 @@ def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:
 
 
 def _range(texts: Sequence[str]) -> str:
-    low, high = min(texts, key=float), max(texts, key=float)
+    low = min(texts, key=float)
+    high = max(texts, key=float)
     return low if low == high else f"{low} to {high}"

@@ -93,9 +93,15 @@ def sizes_without(
     logs: SeveralLogs, name: str, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
 ) -> list[Finding]:
     """Causes in the ship with their sizes by all logs but one, as findings."""
-    others = SeveralLogs({other: problem for other, problem in logs.problems.items() if other != name})
-    known = [one for one in hypotheses if not is_in_one_log(one) or one.component in others.problems]
-    fit = fitted_jointly(others, known, {path: value for path, value in values.items() if _in(path, known)}, rounds=3)
+    others = SeveralLogs(
+        {other: problem for other, problem in logs.problems.items() if other != name}
+    )
+    known = [
+        one for one in hypotheses if not is_in_one_log(one) or one.component in others.problems
+    ]
+    fit = fitted_jointly(
+        others, known, {path: value for path, value in values.items() if _in(path, known)}, rounds=3
+    )
     of_ship = {hypothesis.label for hypothesis in known if not is_in_one_log(hypothesis)}
     return [finding for finding in findings_of(fit) if finding.label in of_ship]
 
@@ -120,7 +126,12 @@ def sizes_by_log(
     found: dict[str, dict[str, dict[str, ParameterEstimate]]] = {}
     for name, problem in logs.problems.items():
         own = [one for _, one in logs.all_within(name, hypotheses)]
-        fit = fitted(problem, own, {p: v for p, v in values_in(name, values).items() if _in(p, own)}, rounds=3)
+        fit = fitted(
+            problem,
+            own,
+            {p: v for p, v in values_in(name, values).items() if _in(p, own)},
+            rounds=3,
+        )
         for finding, one in zip(findings_of(fit), own, strict=True):
             known = {of.name: of.tolerance * of.factor for of in one.parameters}
             found.setdefault(finding.label, {})[name] = {
@@ -134,7 +145,11 @@ def sizes_by_log(
 def weather_of(fit: JointFit, name: str, hypotheses: Sequence[Hypothesis]) -> list[Finding]:
     """Those of some causes that are of the day of one log, as all logs together have them."""
     own = {hypothesis.cause for hypothesis in hypotheses if hypothesis.component == name}
-    return [finding for finding in findings_of(fit.parts[name]) if finding.cause in own and finding.component is None]
+    return [
+        finding
+        for finding in findings_of(fit.parts[name])
+        if finding.cause in own and finding.component is None
+    ]
 
 
 def errors_by_log(
@@ -200,7 +215,9 @@ def _log_errors(
         remark = f"{log.name} was not co-simulated: {remark}"
         log = replace(log, own=[], others=())
         try:
-            tracks = tracks_by_models(log.problem.record, {"before": log.problem.model}, log.horizon)
+            tracks = tracks_by_models(
+                log.problem.record, {"before": log.problem.model}, log.horizon
+            )
         except ShipcosimError:
             return None
     errors = errors_of(tracks)
@@ -219,12 +236,19 @@ def _log_errors(
 
 def _cosimulated(log, given, causes, progress) -> Tracks:
     """Predictions by the system, and by the one with the causes in it."""
-    record, model = log.problem.record, log.problem.model
+    record = log.problem.record
+    model = log.problem.model
     systems = {"before": Replayed(given.given)}
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         if log.of_ship or log.own:
             about = {"span": model.span, "source": ", ".join(log.others)}
-            made = extend(given.source, [*log.of_ship, *log.own], folder, log_attributes=about, catalogue=causes)
+            made = extend(
+                given.source,
+                [*log.of_ship, *log.own],
+                folder,
+                log_attributes=about,
+                catalogue=causes,
+            )
             systems["after"] = Replayed(read_system(str(made.ssp)), made.signals)
         each = lambda done, of: progress(log.name, done, of)  # noqa: E731
         return tracks_by_systems(record, model, systems, log.horizon, each, MOST_PIECES)
@@ -235,4 +259,6 @@ def _misses(log: _Judged, tracks: Tracks) -> np.ndarray:
     floor = tracks_by_models(log.problem.record, {"floor": log.fitted_to_it}, log.horizon)
     starts, before = misses_at_end(tracks, "before")
     all_starts, least = misses_at_end(floor, "floor")
-    return np.stack([before, misses_at_end(tracks, "after")[1], least[np.searchsorted(all_starts, starts)]])
+    return np.stack(
+        [before, misses_at_end(tracks, "after")[1], least[np.searchsorted(all_starts, starts)]]
+    )

@@ -81,24 +81,32 @@ def fitted_jointly(
     -------
     JointFit
     """
-    values, last = bounded(hypotheses, values or {}), None
+    values = bounded(hypotheses, values or {})
+    last = None
     about: dict[str, dict[str, float]] = {name: {} for name in logs.problems}
     motions = {name: problem.motion for name, problem in logs.problems.items()}
-    own = {name: tuple(one for _, one in logs.all_within(name, hypotheses)) for name in logs.problems}
+    own = {
+        name: tuple(one for _, one in logs.all_within(name, hypotheses)) for name in logs.problems
+    }
     columns = {
-        name: [_scaled(column, scale) for column in problem.known(own[name])] + own_columns(problem, own[name])
+        name: [_scaled(column, scale) for column in problem.known(own[name])]
+        + own_columns(problem, own[name])
         for name, problem in logs.problems.items()
     }
     layout, common = _layout(logs, hypotheses, columns)
     for _ in range(rounds):
         found = {
-            name: linearised(problem, columns[name], values_in(name, values) | about[name], motions[name])
+            name: linearised(
+                problem, columns[name], values_in(name, values) | about[name], motions[name]
+            )
             for name, problem in logs.problems.items()
         }
         fit = _posterior(logs, hypotheses, own, values, layout, found)
-        motions, values = {name: part.motion for name, part in fit.parts.items()}, next_values(fit)
+        motions = {name: part.motion for name, part in fit.parts.items()}
+        values = next_values(fit)
         about = {
-            name: tolerated(part) | (_at_the_mean(fit, common) if about_all else {}) for name, part in fit.parts.items()
+            name: tolerated(part) | (_at_the_mean(fit, common) if about_all else {})
+            for name, part in fit.parts.items()
         }
         if _moved(fit, values) < CLOSE and last and abs(fit.score - last.score) < 1.0:
             break
@@ -121,14 +129,19 @@ def _layout(
         for one in hypotheses
         for k, parameter in enumerate(one.parameters)
     ]
-    known, companions, named = {}, [], {}
+    known = {}
+    companions = []
+    named = {}
     for name in logs.problems:
         pairs = logs.all_within(name, hypotheses)
         turned = [f"{one.label}, {k}" for one, _ in pairs for k in range(len(one.parameters))]
         about = sum(len(own.definition.companions) for _, own in pairs)
         split = len(columns[name]) - len(turned) - about
         known[name] = columns[name][:split]
-        beside_them = [(f"{name}, {i}", column) for i, column in enumerate(columns[name][split : split + about])]
+        beside_them = [
+            (f"{name}, {i}", column)
+            for i, column in enumerate(columns[name][split : split + about])
+        ]
         companions += beside_them
         named[name] = [key for key, _ in beside_them] + turned
     layout = laid_out(known, companions + parameters, named)
@@ -154,7 +167,9 @@ def _posterior(logs, hypotheses, own, values, layout, found):
     for name, one in found.items():
         at = layout.places[name]
         posterior = theta[at], covariance[np.ix_(at, at)]
-        parts[name] = one.with_posterior(logs.problems[name], own[name], values_in(name, values), score, *posterior)
+        parts[name] = one.with_posterior(
+            logs.problems[name], own[name], values_in(name, values), score, *posterior
+        )
     first = next(iter(parts.values()))
     return JointFit(
         tuple(hypotheses),
@@ -187,7 +202,9 @@ def _at_the_mean(fit: JointFit, common: np.ndarray) -> dict[str, float]:
 def _moved(fit: JointFit, values: Mapping[str, float]) -> float:
     """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
     parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
-    return max((abs(values[k.paths[0]] - fit.get(k.paths[0])) / k.typical for k in parameters), default=0.0)
+    return max(
+        (abs(values[k.paths[0]] - fit.get(k.paths[0])) / k.typical for k in parameters), default=0.0
+    )
 
 
 def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
@@ -225,7 +242,8 @@ def screening_layout(logs: SeveralLogs, layout: Layout, wanted: Sequence[Hypothe
     Layout
         In each log the columns of the fit are followed by those of the hypotheses that it has something to say of.
     """
-    regressors, places = list(layout.regressors), {name: list(own) for name, own in layout.places.items()}
+    regressors = list(layout.regressors)
+    places = {name: list(own) for name, own in layout.places.items()}
     for hypothesis in wanted:
         columns = [column for group in screening_regressors(hypothesis) for column in group]
         where = range(len(regressors), len(regressors) + len(columns))

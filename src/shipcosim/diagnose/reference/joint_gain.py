@@ -61,7 +61,9 @@ def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any]
         where nothing in the ship is named, or no other log says how large it is.
     """
     judged = {name: one for name, one in errors.items() if one.fitted_on and one.misses is not None}
-    squares = {name: _whole(one.misses) ** 2 for name, one in judged.items() if one.misses is not None}
+    squares = {
+        name: _whole(one.misses) ** 2 for name, one in judged.items() if one.misses is not None
+    }
     squares = {name: of for name, of in squares.items() if of.size}
     if not squares:
         return None
@@ -77,7 +79,9 @@ def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any]
         "after_m": float(after),
         "noise_floor_m": float(floor),
         "share_of_explainable": float(share) if some else None,
-        "ci95": [float(q) for q in np.nanquantile(share_explained(*drawn), (0.025, 0.975))] if some else None,
+        "ci95": [float(q) for q in np.nanquantile(share_explained(*drawn), (0.025, 0.975))]
+        if some
+        else None,
         "logs": list(squares),
     }
 

@@ -105,7 +105,11 @@ class JointDiagnosis:
     def own_faults(self, name: str) -> list[Finding]:
         """Faults of the data that are one log's own."""
         common = {(one.what.cause, one.what.channels) for one in self.findings if name in one.logs}
-        return [f for f in self.logs[name].findings if f.kind == "data" and (f.cause, f.channels) not in common]
+        return [
+            f
+            for f in self.logs[name].findings
+            if f.kind == "data" and (f.cause, f.channels) not in common
+        ]
 
     def as_json(self) -> dict[str, Any]:
         """The content of diagnosis.json, with an entry for each log under `logs`."""
@@ -114,10 +118,14 @@ class JointDiagnosis:
             "verdict": self.verdict,
             "findings": [self._finding(one) for one in self.findings],
             "candidates": [self._entry(asdict(candidate)) for candidate in self.candidates],
-            "indistinguishable": [self._entry(asdict(candidate)) for candidate in self.indistinguishable],
+            "indistinguishable": [
+                self._entry(asdict(candidate)) for candidate in self.indistinguishable
+            ],
             "not_testable": list(self.not_testable),
             "prescription": asdict(self.prescription) if self.prescription else None,
-            "discrepancies": [asdict(one.what) | {"logs": list(one.logs)} for one in self.discrepancies],
+            "discrepancies": [
+                asdict(one.what) | {"logs": list(one.logs)} for one in self.discrepancies
+            ],
             "baseline": joint_baseline(self.errors),
             "gain": joint_gain(self.errors),
             "remarks": list(self.remarks),
@@ -130,7 +138,8 @@ class JointDiagnosis:
             entry["put_right_in"] = list(one.put_right)
         if own := self.sizes.get(one.what.label):
             entry["by_log"] = {
-                name: {key: asdict(value) for key, value in parameters.items()} for name, parameters in own.items()
+                name: {key: asdict(value) for key, value in parameters.items()}
+                for name, parameters in own.items()
             }
         return entry
 
@@ -146,4 +155,9 @@ class JointDiagnosis:
         of_log = ("verdict", "findings", "discrepancies", "baseline", "not_testable")
         errors = self.errors[name].as_json() if name in self.errors else None
         used = self.left_out.get(name)
-        return {"name": name, **{key: content[key] for key in of_log}, "errors": errors, "left_out": used}
+        return {
+            "name": name,
+            **{key: content[key] for key in of_log},
+            "errors": errors,
+            "left_out": used,
+        }

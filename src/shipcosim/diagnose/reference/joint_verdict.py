@@ -21,7 +21,12 @@ from shipcosim.diagnose.inference.thresholds import (
     NULL_GAIN_WITHOUT_WIND,
     TESTABLE,
 )
-from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly, screened_jointly, screening_layout
+from shipcosim.diagnose.reference.joint_fit import (
+    JointFit,
+    fitted_jointly,
+    screened_jointly,
+    screening_layout,
+)
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 
 __all__ = ["JointVerdict", "judged_jointly", "untestable_jointly"]
@@ -75,7 +80,10 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
     null = {one.label: usual for one in logs.hypotheses}
     judgement = judge(fits, unmodelled_beside, null)
-    if judgement.verdict == "unknown" and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown":
+    if (
+        judgement.verdict == "unknown"
+        and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
+    ):
         return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
     if simulated := _null_gains(logs, judgement.fit, fits):
         null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
@@ -99,9 +107,11 @@ def _null_gains(logs, fit, fits):
     """Largest gain of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
     if not any(gained(one, fit, fits) < FAR_ABOVE_NULL for one in fit.hypotheses):
         return {}
-    nothing, wanted = cast(JointFit, without_causes(fits)), fit.hypotheses
+    nothing = cast(JointFit, without_causes(fits))
+    wanted = fit.hypotheses
     layout = screening_layout(logs, nothing.layout, wanted)
-    together, kept = np.zeros(()), np.array(True)
+    together = np.zeros(())
+    kept = np.array(True)
     for name, problem in logs.problems.items():
         own = [one for _, one in logs.all_within(name, wanted)]
         _, products = healthy_products(problem, fit.parts[name].motion, own)
@@ -109,27 +119,36 @@ def _null_gains(logs, fit, fits):
         together = together + layout.spread(name, products)
     found = {one.label: [] for one in wanted}
     for products in together[kept]:
-        for gain, one, _ in gains(products, nothing.columns, np.zeros(len(nothing.columns)), wanted, nothing.get):
+        for gain, one, _ in gains(
+            products, nothing.columns, np.zeros(len(nothing.columns)), wanted, nothing.get
+        ):
             found[one.label].append(gain)
     return {
-        label: float(max(np.mean(values) + 3.0 * np.std(values), max(values))) if values else NULL_GAIN_UNKNOWN
+        label: float(max(np.mean(values) + 3.0 * np.std(values), max(values)))
+        if values
+        else NULL_GAIN_UNKNOWN
         for label, values in found.items()
     }
 
 
 def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
     """Causes that these logs together could not have shown had they had their typical size."""
-    logs, nothing = verdict.logs, cast(JointFit, without_causes(verdict.fits))
+    logs = verdict.logs
+    nothing = cast(JointFit, without_causes(verdict.fits))
     layout = screening_layout(logs, nothing.layout, logs.hypotheses)
     together = np.zeros(())
     for name, problem in logs.problems.items():
         columns = list(nothing.parts[name].columns)
         columns += [
-            c for _, own in logs.all_within(name, logs.hypotheses) for g in screening_regressors(own) for c in g
+            c
+            for _, own in logs.all_within(name, logs.hypotheses)
+            for g in screening_regressors(own)
+            for c in g
         ]
         products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
         together = together + layout.spread(name, products)
-    groups, place = [], len(nothing.columns)
+    groups = []
+    place = len(nothing.columns)
     for one in logs.hypotheses:
         for group in screening_regressors(one):
             groups.append((one, list(range(place, place + len(group)))))

@@ -15,7 +15,9 @@ FILE = "calibrated.ssv"
 """Name of the set in the folder that a calibration leaves."""
 
 
-def write_parameter_set(system: System, reference: Reference, path: str | os.PathLike[str]) -> dict[str, float]:
+def write_parameter_set(
+    system: System, reference: Reference, path: str | os.PathLike[str]
+) -> dict[str, float]:
     """Write a parameter set with the numbers of a reference that the system has.
 
     Not all of it is true: numbers that the logs cannot tell apart share what they explain.
@@ -44,7 +46,9 @@ def write_parameter_set(system: System, reference: Reference, path: str | os.Pat
         if variable is not None:
             unit = None if variable.unit in (None, "1") else variable.unit
             text = f"{variable.description}; calibrated to {len(reference.logs)} logs, {number.nominal:g} before"
-            values[number.name] = parameter(number.name, number.estimate, unit, text, tolerance=number.std)
+            values[number.name] = parameter(
+                number.name, number.estimate, unit, text, tolerance=number.std
+            )
     write_ssv(path, "calibrated", values.values())
     return {name: value.value for name, value in values.items()}
 
@@ -56,7 +60,9 @@ def _variable(system: System, number: KnownNumber):
     if part is None or name not in part.fmu.variables:
         return None
     start = part.start_value(name)
-    known = isinstance(start, int | float) and any(is_same(start, one) for one in (number.nominal, number.estimate))
+    known = isinstance(start, int | float) and any(
+        is_same(start, one) for one in (number.nominal, number.estimate)
+    )
     return part.fmu.variables[name] if known else None
 
 

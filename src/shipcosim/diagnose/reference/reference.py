@@ -112,7 +112,9 @@ class Reference(_Strict):
     def _square(self) -> Reference:
         count = len(self.numbers)
         if len(self.correlation) != count or any(len(row) != count for row in self.correlation):
-            raise ValueError(f"correlation: {count} rows of {count} numbers are wanted, one for each of numbers")
+            raise ValueError(
+                f"correlation: {count} rows of {count} numbers are wanted, one for each of numbers"
+            )
         return self
 
     @property
@@ -124,8 +126,12 @@ class Reference(_Strict):
     def as_json(self) -> str:
         """The content of the file."""
         content = self.model_dump(by_alias=True)
-        rows = ",\n    ".join(json.dumps([round(value, 6) for value in row]) for row in content.pop("correlation"))
-        numbers = ",\n    ".join(json.dumps(number, ensure_ascii=False) for number in content.pop("numbers"))
+        rows = ",\n    ".join(
+            json.dumps([round(value, 6) for value in row]) for row in content.pop("correlation")
+        )
+        numbers = ",\n    ".join(
+            json.dumps(number, ensure_ascii=False) for number in content.pop("numbers")
+        )
         head = json.dumps(content, indent=2, ensure_ascii=False).removesuffix("\n}")
         return f'{head},\n  "numbers": [\n    {numbers}\n  ],\n  "correlation": [\n    {rows}\n  ]\n}}\n'
 
@@ -160,7 +166,9 @@ def read_reference(path: str | os.PathLike[str] | Reference) -> Reference:
         remedy = "Give the folder or the file that `shipcosim calibrate` left."
         raise ShipcosimError(Problem(str(file), "There is no such reference.", remedy)) from error
     except ValidationError as error:
-        problems = [Problem(f"{file}: {'.'.join(map(str, e['loc']))}", e["msg"]) for e in error.errors()]
+        problems = [
+            Problem(f"{file}: {'.'.join(map(str, e['loc']))}", e["msg"]) for e in error.errors()
+        ]
         raise ShipcosimError(problems) from error
 
 
@@ -171,7 +179,9 @@ def is_same(one: float, other: float) -> bool:
 
 def fingerprint(ship: ShipModel, names: list[str]) -> str:
     """SHA-256 of some numbers of a ship and of their tolerances."""
-    content = [[name, float(ship.get(name)), float(ship.tolerances.get(name, 0.0))] for name in names]
+    content = [
+        [name, float(ship.get(name)), float(ship.tolerances.get(name, 0.0))] for name in names
+    ]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 
@@ -196,14 +206,18 @@ def with_reference(ship: ShipModel, reference: Reference) -> ShipModel:
     problems = []
     for number in reference.numbers:
         if not ship.has(number.name):
-            problems.append(Problem(number.name, "The ship of this system has no such number.", _REMEDY))
+            problems.append(
+                Problem(number.name, "The ship of this system has no such number.", _REMEDY)
+            )
         elif not any(is_same(ship.get(number.name), v) for v in (number.nominal, number.estimate)):
             found = f"The system has {ship.get(number.name):g}, the reference was made from {number.nominal:g}."
             problems.append(Problem(number.name, found, _REMEDY))
     if problems:
         raise ShipcosimError(problems)
     moved = ship.with_values({number.name: number.estimate for number in reference.numbers})
-    ordinary = {kind: ORDINARY * gain for kind, gain in reference.ordinary_errors.items() if gain > 0.0}
+    ordinary = {
+        kind: ORDINARY * gain for kind, gain in reference.ordinary_errors.items() if gain > 0.0
+    }
     ordinary[ANY_CAUSE] = ENOUGH * max(reference.dispersion - 1.0, 0.0)
     return replace(moved, directions=_directions(reference), ordinary_errors=ordinary)
 
@@ -221,4 +235,7 @@ def _directions(reference: Reference) -> tuple[dict[str, float], ...]:
     spread = reference.covariance / unit[:, None] / unit + DAY_TO_DAY**2 * np.eye(unit.size)
     variance, axes = np.linalg.eigh(spread)
     wanted = [i for i in np.argsort(-variance) if variance[i] > NEGLIGIBLE**2]
-    return tuple(dict(zip(names, map(float, unit * axes[:, i] * np.sqrt(variance[i])), strict=True)) for i in wanted)
+    return tuple(
+        dict(zip(names, map(float, unit * axes[:, i] * np.sqrt(variance[i])), strict=True))
+        for i in wanted
+    )

@@ -68,36 +68,52 @@ def _by_others(found: Calibration, name: str) -> RemainingErrors | None:
     values = {path: v for path, v in found.fit.values.items() if path.partition("|")[0] in others}
     logs = SeveralLogs(others, is_well=True)
     fit = fitted_jointly(logs, weather, values, scale=found.scale, about_all=True)
-    return _errors(found, name, found.logs.problems[name].record, _with_numbers(found, name, fit), tuple(others))
+    return _errors(
+        found,
+        name,
+        found.logs.problems[name].record,
+        _with_numbers(found, name, fit),
+        tuple(others),
+    )
 
 
 def _of_last_rows(found: Calibration, name: str) -> RemainingErrors | None:
     problem = found.logs.problems[name]
     rows = first_rows(problem.record)
     early = SeveralLogs({name: trained(problem, rows)}, is_well=True)
-    fit = fitted_jointly(early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True)
-    return _errors(found, name, _rows_of(problem.record, ~rows), _with_numbers(found, name, fit), ())
+    fit = fitted_jointly(
+        early, found.fit.hypotheses, found.fit.values, scale=found.scale, about_all=True
+    )
+    return _errors(
+        found, name, _rows_of(problem.record, ~rows), _with_numbers(found, name, fit), ()
+    )
 
 
 def _with_numbers(found: Calibration, name: str, fit: JointFit) -> ShipModel:
     """The ship of a log with the numbers of a fit to other rows, in the weather that was fitted in the log itself."""
-    model, part = found.logs.problems[name].model, found.fit.parts[name]
+    model = found.logs.problems[name].model
+    part = found.fit.parts[name]
     names, _, moved, _ = numbers_of(fit)
-    of_ship = {path: model.get(path) + by for path, by in zip(names, moved, strict=True) if model.has(path)}
+    of_ship = {
+        path: model.get(path) + by for path, by in zip(names, moved, strict=True) if model.has(path)
+    }
     of_day = {path: value for path, value in part.values.items() if ShipModel.is_of_day(path)}
     return model.with_values(of_ship | of_day)
 
 
 def _errors(found, name, record, after, others) -> RemainingErrors | None:
     """Errors on a record by the system, by `after`, and by the ship as all logs have her."""
-    model, part = found.logs.problems[name].model, found.fit.parts[name]
+    model = found.logs.problems[name].model
+    part = found.fit.parts[name]
     models = {"before": model, "after": after, "floor": calibrated(part)}
     try:
         errors = errors_of(tracks_by_models(record, models, fitting_horizon(record, model)))
     except ShipcosimError:
         return None
     of = {one: tuple(map(float, errors["position"].sel(simulation=one).values)) for one in models}
-    return RemainingErrors(tuple(map(float, errors["after"].values)), of["before"], of["after"], of["floor"], others)
+    return RemainingErrors(
+        tuple(map(float, errors["after"].values)), of["before"], of["after"], of["floor"], others
+    )
 
 
 def _rows_of(record: Record, rows: np.ndarray) -> Record:

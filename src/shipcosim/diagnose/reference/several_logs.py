@@ -27,7 +27,9 @@ def is_of_day(hypothesis: Hypothesis) -> bool:
 
     An instrument that is wrong, unlike what it is off within its tolerance, is wrong in all logs.
     """
-    return all(path.startswith("water.") for parameter in hypothesis.parameters for path in parameter.paths)
+    return all(
+        path.startswith("water.") for parameter in hypothesis.parameters for path in parameter.paths
+    )
 
 
 def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
@@ -43,7 +45,9 @@ def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
 
 def is_in_one_log(hypothesis: Hypothesis) -> bool:
     """Whether a cause is of the day of one log, as `of_log` makes it."""
-    return all(_SEPARATOR in path for parameter in hypothesis.parameters for path in parameter.paths)
+    return all(
+        _SEPARATOR in path for parameter in hypothesis.parameters for path in parameter.paths
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +68,8 @@ class SeveralLogs:
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """Causes in the ship once, those of the day for each log."""
-        ship, day = {}, []
+        ship = {}
+        day = []
         for name, problem in self.problems.items():
             for hypothesis in problem.hypotheses:
                 if is_of_day(hypothesis):
@@ -81,9 +86,14 @@ class SeveralLogs:
                 return None
             component = None
         wanted = hypothesis.cause, component
-        return next((one for one in self.problems[name].hypotheses if (one.cause, one.component) == wanted), None)
+        return next(
+            (one for one in self.problems[name].hypotheses if (one.cause, one.component) == wanted),
+            None,
+        )
 
-    def all_within(self, name: str, hypotheses: Sequence[Hypothesis]) -> list[tuple[Hypothesis, Hypothesis]]:
+    def all_within(
+        self, name: str, hypotheses: Sequence[Hypothesis]
+    ) -> list[tuple[Hypothesis, Hypothesis]]:
         """Causes that one log has something to say of, each with what it is there."""
         pairs = ((one, self.within(name, one)) for one in hypotheses)
         return [(one, own) for one, own in pairs if own is not None]
@@ -160,8 +170,14 @@ def laid_out(
             found.setdefault(_key(log, column), column)
     found |= dict(others)
     order = {key: place for place, key in enumerate(found)}
-    keys = {log: [*(_key(log, column) for column in columns), *named[log]] for log, columns in known.items()}
-    return Layout(list(found.values()), {log: np.array([order[key] for key in own], int) for log, own in keys.items()})
+    keys = {
+        log: [*(_key(log, column) for column in columns), *named[log]]
+        for log, columns in known.items()
+    }
+    return Layout(
+        list(found.values()),
+        {log: np.array([order[key] for key in own], int) for log, own in keys.items()},
+    )
 
 
 def _key(log: str, column: Regressor) -> object:

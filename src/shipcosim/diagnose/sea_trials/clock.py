@@ -32,17 +32,24 @@ def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np
         heading over integrated yaw rate. So a clock that runs wrong throughout is no scale of the velocity. Without a
         yaw rate the clock is taken to be right in the median.
     """
-    psi, u, v = measured[:, 2], measured[:, 3], measured[:, 4]
-    step, speed = np.diff(time), np.hypot(u, v)
+    psi = measured[:, 2]
+    u = measured[:, 3]
+    v = measured[:, 4]
+    step = np.diff(time)
+    speed = np.hypot(u, v)
     if not np.isfinite(speed).all():
         return time, 1.0
     course = psi + np.arctan2(v, u)
-    north, east = np.cos(course) + np.cos(np.roll(course, -1)), np.sin(course) + np.sin(np.roll(course, -1))
+    north = np.cos(course) + np.cos(np.roll(course, -1))
+    east = np.sin(course) + np.sin(np.roll(course, -1))
     size = np.maximum(np.hypot(north, east), 1e-9)
-    way = (np.diff(measured[:, 0]) * (north / size)[:-1]) + (np.diff(measured[:, 1]) * (east / size)[:-1])
+    way = (np.diff(measured[:, 0]) * (north / size)[:-1]) + (
+        np.diff(measured[:, 1]) * (east / size)[:-1]
+    )
     sailed = 0.5 * step * (speed[1:] + speed[:-1])
     rows = max(int(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step))), 1)
-    way, sailed = moving_average(way, rows), moving_average(sailed, rows)
+    way = moving_average(way, rows)
+    sailed = moving_average(sailed, rows)
     moving = sailed > thresholds.UNDER_WAY * np.sqrt(9.81 * length) * np.median(step)
     if not moving.any():
         return time, 1.0
@@ -60,7 +67,8 @@ def _clock_by_heading(rate, measured, step, length, rows):
     psi, u, v, r = measured[:, 2:].T
     if not np.isfinite(r).all():
         return 1.0
-    turned, told = moving_average(np.diff(psi), rows), moving_average(0.5 * step * (r[1:] + r[:-1]), rows)
+    turned = moving_average(np.diff(psi), rows)
+    told = moving_average(0.5 * step * (r[1:] + r[:-1]), rows)
     quick = np.abs(r[1:]) * length > thresholds.TURNS * np.hypot(u, v)[1:]
     quick &= np.isfinite(rate) & (np.abs(told) > 0.2 * np.max(np.abs(told)))
     if quick.sum() < 20:

@@ -70,9 +70,12 @@ class SetOfCauses:
     def plausible(self) -> bool:
         """Whether each estimate is inside its bounds, and one of each cause at least the least that matters."""
         pairs = list(zip(self.parameters, self.values, strict=True))
-        inside = all(p.bounds[0] < p.neutral + value * p.typical < p.bounds[1] for (_, p), value in pairs)
+        inside = all(
+            p.bounds[0] < p.neutral + value * p.typical < p.bounds[1] for (_, p), value in pairs
+        )
         return inside and all(
-            max(abs(value) for (owner, _), value in pairs if owner is cause) > cause.definition.least
+            max(abs(value) for (owner, _), value in pairs if owner is cause)
+            > cause.definition.least
             for cause in self.hypotheses
         )
 
@@ -136,16 +139,24 @@ def trial_evidence(
     -------
     TrialEvidence
     """
-    causes = [(parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters]
+    causes = [
+        (parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters
+    ]
     known = known_numbers(model)
     both = [{path: sign * size for path in p.paths} for sign in (1.0, -1.0) for p, size in causes]
-    found = predicted(trials, model, [{}, *both, *({path: size} for path, size in known)], orders=orders)
-    slopes = (found[1 : 1 + len(causes)] - found[1 + len(causes) : 1 + 2 * len(causes)]) / (2.0 * _PART)
+    found = predicted(
+        trials, model, [{}, *both, *({path: size} for path, size in known)], orders=orders
+    )
+    slopes = (found[1 : 1 + len(causes)] - found[1 + len(causes) : 1 + 2 * len(causes)]) / (
+        2.0 * _PART
+    )
     beside = found[1 + 2 * len(causes) :] - found[0]
     length = model.parts["hull"].length
     noise = blocks([covariance_of(trial, length) for trial in trials])
     measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
-    first = TrialEvidence(tuple(trials), model, orders, tuple(hypotheses), measured, found[0], slopes, beside, noise)
+    first = TrialEvidence(
+        tuple(trials), model, orders, tuple(hypotheses), measured, found[0], slopes, beside, noise
+    )
     scaled = [replace(first, noise=scale**2 * noise, scale=scale) for scale in thresholds.SCALES]
     return max(scaled, key=lambda one: max(value for value, _ in _linear(one, 2)))
 
@@ -159,21 +170,39 @@ def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
         Number of the ship and standard deviation; compass and antenna, `MOUNTING`, last.
     """
     places = (model.vessel, *model.thrusters)
-    found = [(path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places]
-    found = [(path, size) for path, size in found if isinstance(model.get(path), float) and "wind" not in path]
-    found += [("water.current_north", thresholds.CURRENT), ("water.current_east", thresholds.CURRENT)]
+    found = [
+        (path, size) for path, size in model.tolerances.items() if path.rpartition(".")[0] in places
+    ]
+    found = [
+        (path, size)
+        for path, size in found
+        if isinstance(model.get(path), float) and "wind" not in path
+    ]
+    found += [
+        ("water.current_north", thresholds.CURRENT),
+        ("water.current_east", thresholds.CURRENT),
+    ]
     sizes = thresholds.HEADING_BIAS, thresholds.LEVER * model.parts["hull"].length
     return [*found, *zip(MOUNTING, sizes, strict=True)]
 
 
 def predicted(
-    trials: Sequence[SeaTrial], model: ShipModel, changes: Sequence[dict[str, float]], *, orders: bool
+    trials: Sequence[SeaTrial],
+    model: ShipModel,
+    changes: Sequence[dict[str, float]],
+    *,
+    orders: bool,
 ) -> np.ndarray:
     """Features of trials by changed ships, (p, f) array of all trials one after the other; as for `sailed`."""
     motions = sailed(trials, model, changes, orders=orders)
     return np.array(
         [
-            np.concatenate([features_of(trial, motion[i]) for trial, motion in zip(trials, motions, strict=True)])
+            np.concatenate(
+                [
+                    features_of(trial, motion[i])
+                    for trial, motion in zip(trials, motions, strict=True)
+                ]
+            )
             for i in range(len(changes))
         ]
     )
@@ -188,7 +217,14 @@ def slopes_of(
     found = []
     for one in sets:
         here = next(features)
-        found.append((here, np.array([(next(features) - here) / _PART for _ in one.values]).reshape(-1, here.size)))
+        found.append(
+            (
+                here,
+                np.array([(next(features) - here) / _PART for _ in one.values]).reshape(
+                    -1, here.size
+                ),
+            )
+        )
     return found
 
 
@@ -199,7 +235,8 @@ def _steps(one):
 def blocks(matrices: Sequence[np.ndarray]) -> np.ndarray:
     """A matrix of square matrices along its diagonal."""
     size = sum(len(one) for one in matrices)
-    found, at = np.zeros((size, size)), 0
+    found = np.zeros((size, size))
+    at = 0
     for one in matrices:
         found[at : at + len(one), at : at + len(one)] = one
         at += len(one)
@@ -244,7 +281,10 @@ def _linear(found: TrialEvidence, most: int) -> Iterator[tuple[float, tuple[int,
 def _columns(hypotheses):
     """Places of each hypothesis' parameters among all."""
     ends = np.cumsum([len(one.parameters) for one in hypotheses])
-    return [list(range(end - len(one.parameters), end)) for one, end in zip(hypotheses, ends, strict=True)]
+    return [
+        list(range(end - len(one.parameters), end))
+        for one, end in zip(hypotheses, ends, strict=True)
+    ]
 
 
 def _products(covariance, rest, slopes):
@@ -275,7 +315,12 @@ def ranked(found: TrialEvidence) -> list[SetOfCauses]:
     everyone = sorted(_linear(found, thresholds.MOST_CAUSES), reverse=True)
     chosen = {()}
     for count in range(1, thresholds.MOST_CAUSES + 1):
-        chosen |= {places for _, places in [one for one in everyone if len(one[1]) == count][: thresholds.RELINEARISED]}
+        chosen |= {
+            places
+            for _, places in [one for one in everyone if len(one[1]) == count][
+                : thresholds.RELINEARISED
+            ]
+        }
     chosen |= {part for places in chosen for part in combinations(places, max(len(places) - 1, 0))}
     sets = [tuple(found.hypotheses[i] for i in places) for places in sorted(chosen)]
     return sorted(_fitted(found, sets), key=lambda one: -one.evidence)
@@ -286,7 +331,8 @@ def _fitted(found, sets):
     own = dict(zip((h.label for h in found.hypotheses), _columns(found.hypotheses), strict=True))
     slopes = [found.slopes[[i for one in causes for i in own[one.label]]] for causes in sets]
     fits = [
-        _solved(found, causes, s, found.predicted, np.zeros(len(s))) for causes, s in zip(sets, slopes, strict=True)
+        _solved(found, causes, s, found.predicted, np.zeros(len(s)))
+        for causes, s in zip(sets, slopes, strict=True)
     ]
     for _ in range(thresholds.ROUNDS):
         about = slopes_of(found.trials, found.model, fits, orders=found.orders)
@@ -302,4 +348,6 @@ def _solved(found, causes, slopes, here, centre):
     products, free = _products(found.covariance, found.measured - here, slopes)
     gain, mean, covariance = evidence(products, np.ones(len(centre)), centre)
     limit = 1.5 + np.abs(centre)
-    return SetOfCauses(causes, np.clip(mean, -limit, limit), np.sqrt(np.diag(covariance)), free + gain)
+    return SetOfCauses(
+        causes, np.clip(mean, -limit, limit), np.sqrt(np.diag(covariance)), free + gain
+    )

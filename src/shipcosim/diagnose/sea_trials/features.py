@@ -29,8 +29,16 @@ FEATURES = {
     "zig-zag": ("peak rate", "swing", "speed"),
     "straight run": ("speed",),
     "pull-out": ("rate at a quarter", "rate at half", "speed at the end"),
-    "spiral": ("speed", "rate", "rate at the second helm", "rate at the third helm", "rate at the fourth helm"),
-    "change of speed": tuple(f"speed at {part} of the time" for part in ("1/4", "1/2", "3/4", "the end")),
+    "spiral": (
+        "speed",
+        "rate",
+        "rate at the second helm",
+        "rate at the third helm",
+        "rate at the fourth helm",
+    ),
+    "change of speed": tuple(
+        f"speed at {part} of the time" for part in ("1/4", "1/2", "3/4", "the end")
+    ),
     "course held": ("speed", "drift", "turned"),
 }
 """Names of the features by kind of trial.
@@ -83,7 +91,9 @@ def _circle(trial, motion, speed):
     speeds = np.interp(np.radians(thresholds.HEADINGS_OF_SPEED), rising, speed)
     ways = np.maximum(_ways(motion, trial, rising), 1e-3)
     steady_state = np.log(np.mean(speed[steady])), np.log(rate), drift
-    return np.concatenate((steady_state, np.log(np.maximum(times, 0.1)), np.log(speeds), np.log(ways)))
+    return np.concatenate(
+        (steady_state, np.log(np.maximum(times, 0.1)), np.log(speeds), np.log(ways))
+    )
 
 
 def _ways(motion, trial, turned):
@@ -91,17 +101,26 @@ def _ways(motion, trial, turned):
 
     Along and across the first course, not the first heading: what the compass is off would turn the track.
     """
-    (north, east), time = motion[:, :2].T, trial.time
+    (north, east) = motion[:, :2].T
+    time = trial.time
     u, v = motion[0, 3:5]
     towards = np.array(
-        [np.cos(motion[0, 2]) * u - np.sin(motion[0, 2]) * v, np.sin(motion[0, 2]) * u + np.cos(motion[0, 2]) * v]
+        [
+            np.cos(motion[0, 2]) * u - np.sin(motion[0, 2]) * v,
+            np.sin(motion[0, 2]) * u + np.cos(motion[0, 2]) * v,
+        ]
     )
     drift = _drift(motion, trial, turned)
     c, s = (towards - drift) / np.hypot(*(towards - drift))
-    north, east = north - north[0] - drift[0] * time, east - east[0] - drift[1] * time
-    ahead, across = c * north + s * east, trial.side * (c * east - s * north)
+    north = north - north[0] - drift[0] * time
+    east = east - east[0] - drift[1] * time
+    ahead = c * north + s * east
+    across = trial.side * (c * east - s * north)
     quarter, half = np.radians((90.0, 180.0))
-    return np.array([np.interp(quarter, turned, way) for way in (ahead, across)] + [np.interp(half, turned, across)])
+    return np.array(
+        [np.interp(quarter, turned, way) for way in (ahead, across)]
+        + [np.interp(half, turned, across)]
+    )
 
 
 def _drift(motion, trial, turned):
@@ -110,13 +129,27 @@ def _drift(motion, trial, turned):
     Nothing where the ship did not turn round in steady state. [m/s]
     """
     half = np.radians(thresholds.HALF_A_CIRCLE)
-    if np.ptp(trial.measured[:, 2]) < half + np.radians(thresholds.DRIFT_TOLD) or turned[-1] < 1.5 * half:
+    if (
+        np.ptp(trial.measured[:, 2]) < half + np.radians(thresholds.DRIFT_TOLD)
+        or turned[-1] < 1.5 * half
+    ):
         return np.zeros(2)
     steady = turned > half
-    psi, since = motion[steady, 2], trial.time[steady] - np.mean(trial.time[steady])
-    none, one, c, s = np.zeros_like(psi), np.ones_like(psi), np.cos(psi), np.sin(psi)
-    rows = np.block([[np.stack((one, none, c, -s, since, none), 1)], [np.stack((none, one, s, c, none, since), 1)]])
-    return np.linalg.lstsq(rows, np.concatenate((motion[steady, 0], motion[steady, 1])), rcond=None)[0][4:]
+    psi = motion[steady, 2]
+    since = trial.time[steady] - np.mean(trial.time[steady])
+    none = np.zeros_like(psi)
+    one = np.ones_like(psi)
+    c = np.cos(psi)
+    s = np.sin(psi)
+    rows = np.block(
+        [
+            [np.stack((one, none, c, -s, since, none), 1)],
+            [np.stack((none, one, s, c, none, since), 1)],
+        ]
+    )
+    return np.linalg.lstsq(
+        rows, np.concatenate((motion[steady, 0], motion[steady, 1])), rcond=None
+    )[0][4:]
 
 
 def _zig_zag(trial, psi, r, speed):
@@ -124,7 +157,9 @@ def _zig_zag(trial, psi, r, speed):
     side = np.sign(_helm(trial))
     changes = np.flatnonzero(np.diff(side) != 0) + 1
     changes = changes[changes > 0]
-    swings = [slice(a, b) for a, b in zip(changes[:-1], changes[1:], strict=True) if b - a > 4] or [slice(0, psi.size)]
+    swings = [slice(a, b) for a, b in zip(changes[:-1], changes[1:], strict=True) if b - a > 4] or [
+        slice(0, psi.size)
+    ]
     peaks = [np.max(np.abs(r[swing])) for swing in swings]
     turned = [np.ptp(psi[swing]) for swing in swings]
     return np.array([np.mean(np.log(peaks)), np.mean(np.log(turned)), np.log(np.mean(speed))])
@@ -137,8 +172,15 @@ def is_logarithm(kind: str, name: str) -> bool:
 
 def _pull_out(trial, motion):
     """Rate of turn after the helm is put amidships, over that before; speed at the end over that before."""
-    rate, rows = trial.measured[0, 5], len(motion) - 1
-    return np.array([motion[rows // 4, 5] / rate, motion[rows // 2, 5] / rate, motion[-1, 3] / trial.measured[0, 3]])
+    rate = trial.measured[0, 5]
+    rows = len(motion) - 1
+    return np.array(
+        [
+            motion[rows // 4, 5] / rate,
+            motion[rows // 2, 5] / rate,
+            motion[-1, 3] / trial.measured[0, 3],
+        ]
+    )
 
 
 def _spiral(trial, motion):
@@ -148,7 +190,9 @@ def _spiral(trial, motion):
     first = np.mean(trial.measured[parts[0], 5])
     speed = np.mean(np.hypot(*motion[parts[0], 3:5].T))
     rates = np.array([np.mean(motion[part, 5]) / first for part in parts])
-    return np.concatenate(([np.log(speed), np.log(max(rates[0], 1e-3)) + np.log(abs(first))], rates[1:]))
+    return np.concatenate(
+        ([np.log(speed), np.log(max(rates[0], 1e-3)) + np.log(abs(first))], rates[1:])
+    )
 
 
 def _change_of_speed(trial, motion):
@@ -160,7 +204,13 @@ def _course_held(trial, motion):
     """Mean speed and drift angle over the last third of the time, and the change of heading in all."""
     last = motion[-len(motion) // 3 :]
     drift = -trial.side * np.mean(np.arctan2(last[:, 4], last[:, 3]))
-    return np.array([np.log(np.mean(np.hypot(*last[:, 3:5].T))), drift, trial.side * (motion[-1, 2] - motion[0, 2])])
+    return np.array(
+        [
+            np.log(np.mean(np.hypot(*last[:, 3:5].T))),
+            drift,
+            trial.side * (motion[-1, 2] - motion[0, 2]),
+        ]
+    )
 
 
 _OTHERS = {
@@ -208,12 +258,17 @@ def covariance_of(trial: SeaTrial, length: float) -> np.ndarray:
     if trial.kind in _SPREADS:
         return np.diag(np.square(_SPREADS[trial.kind]))
     own = [t.SPEED, t.RATE, t.DRIFT, *t.TIMES, *[t.SPEEDS] * len(t.HEADINGS_OF_SPEED), *t.WAYS]
-    names, features = FEATURES[trial.kind], features_of(trial, trial.measured)
+    names = FEATURES[trial.kind]
+    features = features_of(trial, trial.measured)
     late = t.START * np.sqrt(length)
     found = np.diag(np.square(own))
     for shares in (
         {name: late / np.exp(x) for name, x in zip(names, features, strict=True) if name in _TIMES}
-        | {"advance": late * np.hypot(*trial.measured[0, 3:5]) / np.exp(features[names.index("advance")])},
+        | {
+            "advance": late
+            * np.hypot(*trial.measured[0, 3:5])
+            / np.exp(features[names.index("advance")])
+        },
         dict.fromkeys(("speed", *_SPEEDS, *_WAYS), t.COMMON),
         {"rate": t.COMMON} | dict.fromkeys((*_TIMES, *_WAYS), -t.COMMON),
     ):

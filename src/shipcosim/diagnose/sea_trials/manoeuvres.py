@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["PlannedTrial", "as_trials", "catalogue"]
 
-_FULL, _HALF, _SLOW = 1.0, 0.6, 0.35  # of the largest shaft speed of the trials
+_FULL = 1.0  # of the largest shaft speed of the trials
+_HALF = 0.6
+_SLOW = 0.35
 _KEEPS_HEADING = 1.5, 1.0  # helm over heading error, and over rate of turn r L / U
 _MOST_HELM = np.radians(35.0)
 
@@ -85,7 +87,9 @@ class PlannedTrial:
         return sum(leg.way for leg in self.legs)
 
 
-def _planned(name: str, kind: str, approach: float, *legs: Leg, seen: int | None = None) -> PlannedTrial:
+def _planned(
+    name: str, kind: str, approach: float, *legs: Leg, seen: int | None = None
+) -> PlannedTrial:
     return PlannedTrial(name, kind, approach, legs, len(legs) if seen is None else seen)
 
 
@@ -104,21 +108,37 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
     speeds = {"full speed": _FULL, "half speed": _HALF, "slow speed": _SLOW}
     fast = {name: power for name, power in speeds.items() if power != _SLOW}
     found = [
-        _planned(f"turning circle with {angle} deg at {name}", "turning circle", power, Leg(45.0, power, d(angle)))
+        _planned(
+            f"turning circle with {angle} deg at {name}",
+            "turning circle",
+            power,
+            Leg(45.0, power, d(angle)),
+        )
         for name, power in fast.items()
         for angle in (10, 20, 35)
     ]
     found += [
-        _planned(f"zig-zag {helm}/{check} at {name}", "zig-zag", power, Leg(30.0, power, d(helm), check=d(check)))
+        _planned(
+            f"zig-zag {helm}/{check} at {name}",
+            "zig-zag",
+            power,
+            Leg(30.0, power, d(helm), check=d(check)),
+        )
         for name, power in fast.items()
         for helm, check in ((10, 10), (20, 20), (35, 5))
     ]
-    turn, amidships = Leg(12.0, _FULL, d(20)), Leg(6.0, _FULL)
+    turn = Leg(12.0, _FULL, d(20))
+    amidships = Leg(6.0, _FULL)
     spiral = [Leg(12.0, _FULL, d(angle)) for angle in (20, 10, 5, 2.5)]
     found += [
         _planned("pull-out from 20 deg at full speed", "pull-out", _FULL, turn, amidships, seen=1),
         _planned("spiral from 20 to 2.5 deg at full speed", "spiral", _FULL, *spiral),
-        _planned("speeding up from slow to full speed", "change of speed", _SLOW, Leg(12.0, _FULL, held=True)),
+        _planned(
+            "speeding up from slow to full speed",
+            "change of speed",
+            _SLOW,
+            Leg(12.0, _FULL, held=True),
+        ),
         _planned("thrusters stopped at full speed", "change of speed", _FULL, Leg(10.0, 0.0)),
         _planned("crash stop from full speed", "change of speed", _FULL, Leg(6.0, -_FULL)),
     ]
@@ -150,7 +170,10 @@ def _pushes_sideways(unit):
 
 
 def as_trials(
-    planned: Sequence[PlannedTrial], model: ShipModel, shafts: Mapping[str, float], changes: Mapping[str, float]
+    planned: Sequence[PlannedTrial],
+    model: ShipModel,
+    shafts: Mapping[str, float],
+    changes: Mapping[str, float],
 ) -> list[tuple[PlannedTrial, list[SeaTrial]]]:
     """What a log would have of manoeuvres that a ship sails, without noise, in calm water.
 
@@ -168,9 +191,13 @@ def as_trials(
     list of (PlannedTrial, list of SeaTrial)
         Without those that she does not get through: a circle in which she does not turn round.
     """
-    length, h = model.parts["hull"].length, thresholds.STEP * np.sqrt(model.parts["hull"].length)
+    length = model.parts["hull"].length
+    h = thresholds.STEP * np.sqrt(model.parts["hull"].length)
     approaches = sorted({one.approach for one in planned})
-    orders = [{name: _orders(model, shafts, power, 0.0, 0.0)[name] for name in model.thrusters} for power in approaches]
+    orders = [
+        {name: _orders(model, shafts, power, 0.0, 0.0)[name] for name in model.thrusters}
+        for power in approaches
+    ]
     speeds = dict(zip(approaches, settled(orders, model, changes, h), strict=True))
     runs = [(one, side) for one in planned for side in (1, -1)]
     pilots = [_Pilot(one, side, speeds[one.approach], length, shafts, model) for one, side in runs]
@@ -197,7 +224,8 @@ def as_trials(
 def _seen(one, side, motion, units, h):
     """The part of a run that features are taken from, or nothing."""
     ways = np.cumsum([0.0, *(leg.way for leg in one.legs)]) / one.way
-    first, last = int(ways[-1 - one.seen] * (len(motion) - 1)), len(motion)
+    first = int(ways[-1 - one.seen] * (len(motion) - 1))
+    last = len(motion)
     if one.kind == "turning circle":
         turned = side * (motion[:, 2] - motion[0, 2])
         if turned.max() < np.radians(thresholds.CIRCLES):
@@ -229,15 +257,22 @@ class _Pilot:
     """Gives the orders of one run from the motion that it sees."""
 
     def __init__(self, planned, side, speed, length, shafts, model):
-        self.planned, self.side, self.speed, self.length = planned, side, speed, length
-        self.shafts, self.model = shafts, model
+        self.planned = planned
+        self.side = side
+        self.speed = speed
+        self.length = length
+        self.shafts = shafts
+        self.model = model
         self.ends = np.cumsum([leg.way for leg in planned.legs]) * length / speed
-        self.first, self.helm_to = None, side
+        self.first = None
+        self.helm_to = side
 
     def __call__(self, time, psi, r):
         """Orders at a time [s], heading [rad] and rate of turn [rad/s]."""
         self.first = psi if self.first is None else self.first
-        leg = self.planned.legs[min(int(np.searchsorted(self.ends, time, "right")), len(self.ends) - 1)]
+        leg = self.planned.legs[
+            min(int(np.searchsorted(self.ends, time, "right")), len(self.ends) - 1)
+        ]
         helm = self.side * leg.helm
         if leg.held:
             error, rate = _KEEPS_HEADING

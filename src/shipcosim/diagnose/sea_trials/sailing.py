@@ -22,7 +22,11 @@ __all__ = ["sailed", "settled", "steered"]
 
 
 def sailed(
-    trials: Sequence[SeaTrial], model: ShipModel, changes: Sequence[Mapping[str, float]], *, orders: bool
+    trials: Sequence[SeaTrial],
+    model: ShipModel,
+    changes: Sequence[Mapping[str, float]],
+    *,
+    orders: bool,
 ) -> list[np.ndarray]:
     """What instruments would show of ships that sail the orders of trials from where these began.
 
@@ -45,12 +49,18 @@ def sailed(
     ships = _side_by_side(model, changes)
     lengths, driven = zip(*(_driven(trial, model) for trial in trials), strict=True)
     most = max(lengths)
-    units = {name: tuple(_padded([d[name][i] for d in driven], most) for i in (0, 1)) for name in model.thrusters}
+    units = {
+        name: tuple(_padded([d[name][i] for d in driven], most) for i in (0, 1))
+        for name in model.thrusters
+    }
     seen = Motion(*np.array([trial.measured[0] for trial in trials]).T)
     state = true_motion(seen, ships)._replace(v=0.0 * seen.v)
-    h, many = float(trials[0].time[1]), (len(changes), len(trials))
+    h = float(trials[0].time[1])
+    many = (len(changes), len(trials))
     state = Motion(*(np.broadcast_to(value, many).copy() for value in state))
-    table = np.stack([_shown(now, ships) for now in _way(state, units, ships, most, h, orders)], axis=-2)
+    table = np.stack(
+        [_shown(now, ships) for now in _way(state, units, ships, most, h, orders)], axis=-2
+    )
     return [table[:, i, :n] for i, n in enumerate(lengths)]  # ships, trials, rows, channels
 
 
@@ -60,12 +70,16 @@ def _way(state, units, ships, rows, h, follows):
     yield state
     for k in range(1, rows):
         after = _followed(actual, units, k, ships, h) if follows else _at(units, k)
-        state, actual = _stepped(state, actual, after, ships, h), after
+        state = _stepped(state, actual, after, ships, h)
+        actual = after
         yield state
 
 
 def settled(
-    orders: Sequence[Mapping[str, tuple[float, float]]], model: ShipModel, changes: Mapping[str, float], h: float
+    orders: Sequence[Mapping[str, tuple[float, float]]],
+    model: ShipModel,
+    changes: Mapping[str, float],
+    h: float,
 ) -> list[float]:
     """Speed straight ahead at constant orders.
 
@@ -85,11 +99,13 @@ def settled(
         [m/s]
     """
     length = model.parts["hull"].length
-    ships, zero = _side_by_side(model, [changes]), np.zeros((1, len(orders)))
+    ships = _side_by_side(model, [changes])
+    zero = np.zeros((1, len(orders)))
     speed = thresholds.FROUDE * np.sqrt(9.81 * length)
     rows = int(thresholds.RUN * length / speed / h) + 2
     units = {
-        name: tuple(np.tile([one[name][i] for one in orders], (rows, 1)) for i in (0, 1)) for name in model.thrusters
+        name: tuple(np.tile([one[name][i] for one in orders], (rows, 1)) for i in (0, 1))
+        for name in model.thrusters
     }
     state = Motion(zero, zero, zero, zero + speed, zero, zero)
     *_, last = _way(state, units, ships, rows, h, False)
@@ -127,7 +143,10 @@ def steered(
     ships = _side_by_side(model, [changes])
     x, y, psi, u = (np.array([values]) for values in np.array(start).T)
     state = Motion(x, y, psi, u, 0.0 * u, 0.0 * u)
-    units = {name: (np.zeros((rows, len(pilots))), np.zeros((rows, len(pilots)))) for name in model.thrusters}
+    units = {
+        name: (np.zeros((rows, len(pilots))), np.zeros((rows, len(pilots))))
+        for name in model.thrusters
+    }
 
     def order(k, motion):
         for i, pilot in enumerate(pilots):
@@ -152,7 +171,10 @@ def _side_by_side(model, changes):
     """One ship model with the numbers of all as arrays over the first axis."""
     paths = {path for change in changes for path in change}
     return model.with_values(
-        {path: np.array([[model.get(path) + change.get(path, 0.0)] for change in changes]) for path in paths}
+        {
+            path: np.array([[model.get(path) + change.get(path, 0.0)] for change in changes])
+            for path in paths
+        }
     )
 
 
@@ -162,12 +184,16 @@ def _driven(trial, model):
         return trial.time.size, trial.units
     speed = np.median(np.hypot(trial.measured[:, 3], trial.measured[:, 4]))
     rows = int(thresholds.RUN * model.parts["hull"].length / speed / trial.time[1]) + 2
-    return rows, {name: tuple(np.full(rows, np.mean(s)) for s in pair) for name, pair in trial.units.items()}
+    return rows, {
+        name: tuple(np.full(rows, np.mean(s)) for s in pair) for name, pair in trial.units.items()
+    }
 
 
 def _padded(series, rows):
     """(rows, trials) array of series, each held after its end."""
-    return np.stack([np.concatenate((one, np.full(rows - one.size, one[-1]))) for one in series], axis=1)
+    return np.stack(
+        [np.concatenate((one, np.full(rows - one.size, one[-1]))) for one in series], axis=1
+    )
 
 
 def _at(units, k):
@@ -178,8 +204,10 @@ def _followed(actual, units, k, ships, h):
     """Speed and direction of each unit a step later, which follow their orders. [rev/s or N, rad]"""
     found = {}
     for name, (speed, direction) in units.items():
-        unit, lag = ships.parts[name], ships.parts["instruments"].order_lag
-        wanted, angle = _late(speed, k, lag / h), _late(direction, k, lag / h)
+        unit = ships.parts[name]
+        lag = ships.parts["instruments"].order_lag
+        wanted = _late(speed, k, lag / h)
+        angle = _late(direction, k, lag / h)
         if hasattr(unit, "rpm_max"):
             wanted = np.clip(wanted, -unit.rpm_max / 60.0, unit.rpm_max / 60.0)
         n = wanted + (actual[name][0] - wanted) * np.exp(-h / thresholds.RPM_LAG)
@@ -193,7 +221,8 @@ def _late(series, k, rows):
     """A series (n, trials) some rows before row k, linear between rows; by ship where the lag is an array."""
     at = np.clip(k - np.asarray(rows, float), 0.0, len(series) - 1.0)
     low = np.minimum(at.astype(int), len(series) - 2)
-    share, trial = at - low, np.arange(series.shape[1])
+    share = at - low
+    trial = np.arange(series.shape[1])
     return (1.0 - share) * series[low, trial] + share * series[low + 1, trial]
 
 
@@ -202,7 +231,9 @@ def _stepped(state, before, after, ships, h):
 
     def rates(motion, share):
         units = {
-            name: tuple((1.0 - share) * a + share * b for a, b in zip(pair, after[name], strict=True))
+            name: tuple(
+                (1.0 - share) * a + share * b for a, b in zip(pair, after[name], strict=True)
+            )
             for name, pair in before.items()
         }
         return motion_rates(motion, Inputs(0.0, units, None, None), ships)
@@ -214,5 +245,7 @@ def _stepped(state, before, after, ships, h):
     k2 = rates(moved(k1, 0.5 * h), 0.5)
     k3 = rates(moved(k2, 0.5 * h), 0.5)
     k4 = rates(moved(k3, h), 1.0)
-    mean = Motion(*((a + 2.0 * b + 2.0 * c + d) / 6.0 for a, b, c, d in zip(k1, k2, k3, k4, strict=True)))
+    mean = Motion(
+        *((a + 2.0 * b + 2.0 * c + d) / 6.0 for a, b, c, d in zip(k1, k2, k3, k4, strict=True))
+    )
     return moved(mean, h)

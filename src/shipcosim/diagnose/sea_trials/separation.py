@@ -11,8 +11,20 @@ import numpy as np
 
 from shipcosim.diagnose.experiment.design import CLEAR, ExperimentDesign
 from shipcosim.diagnose.sea_trials import thresholds
-from shipcosim.diagnose.sea_trials.evidence import blocks, changes_of, known_numbers, predicted, slopes_of
-from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, SOUGHT, covariance_of, is_logarithm
+from shipcosim.diagnose.sea_trials.evidence import (
+    blocks,
+    changes_of,
+    known_numbers,
+    predicted,
+    slopes_of,
+)
+from shipcosim.diagnose.sea_trials.features import (
+    ANGLES,
+    FEATURES,
+    SOUGHT,
+    covariance_of,
+    is_logarithm,
+)
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
 from shipcosim.diagnose.ship.model import ShipModel
 
@@ -95,28 +107,43 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
     list of Separation
         Best first: by the log-evidence of the closest pair.
     """
-    sets, model = list(sets)[:MOST_SETS], found.model
+    sets = list(sets)[:MOST_SETS]
+    model = found.model
     planned = as_trials(catalogue(model), model, _shafts(found.trials, model), changes_of(sets[0]))
     trials = [trial for _, pair in planned for trial in pair]
     there = slopes_of(trials, model, sets, orders=True)
-    numbers, untold = known_numbers(model), _untold(found, sets)
-    sizes = [{path: size} for path, size in numbers] + [dict.fromkeys(p.paths, p.typical) for _, p in untold]
+    numbers = known_numbers(model)
+    untold = _untold(found, sets)
+    sizes = [{path: size} for path, size in numbers] + [
+        dict.fromkeys(p.paths, p.typical) for _, p in untold
+    ]
     first = changes_of(sets[0])
-    moved = [first | {path: first.get(path, 0.0) + _PART * size for path, size in one.items()} for one in sizes]
+    moved = [
+        first | {path: first.get(path, 0.0) + _PART * size for path, size in one.items()}
+        for one in sizes
+    ]
     beside = (predicted(trials, model, moved, orders=True) - there[0][0]) / _PART
     known = replace(found, known=np.vstack((found.known, *(found.slopes[i] for i, _ in untold))))
-    spread = found.scale**2 * blocks([covariance_of(trial, model.parts["hull"].length) for trial in trials])
+    spread = found.scale**2 * blocks(
+        [covariance_of(trial, model.parts["hull"].length) for trial in trials]
+    )
     of_day = np.array([ShipModel.is_of_day(path) for one in sizes for path in list(one)[:1]])
     priors = [
         _prediction(known, at_trials, here, beside, of_day, spread)
-        for at_trials, here in zip(slopes_of(found.trials, model, sets, orders=found.orders), there, strict=True)
+        for at_trials, here in zip(
+            slopes_of(found.trials, model, sets, orders=found.orders), there, strict=True
+        )
     ]
-    results, at = [], 0
+    results = []
+    at = 0
     for one, pair in planned:
         names = [(trial.kind, trial.side, name) for trial in pair for name in FEATURES[trial.kind]]
         part = slice(at, at + len(names))
         at += len(names)
-        pairs = {(a, b): _apart(priors[a], priors[b], part, names) for a, b in combinations(range(len(sets)), 2)}
+        pairs = {
+            (a, b): _apart(priors[a], priors[b], part, names)
+            for a, b in combinations(range(len(sets)), 2)
+        }
         minutes = float(sum(trial.logged[1] + _approach(trial, model) for trial in pair)) / 60.0
         results.append(
             Separation(
@@ -150,7 +177,10 @@ def _approach(trial, model):
 
 def _shafts(trials: Sequence[SeaTrial], model: ShipModel) -> dict[str, float]:
     """Largest shaft speed of each thruster in the trials, as the median of a trial. [rev/s]"""
-    return {name: max(float(np.median(abs(trial.units[name][0]))) for trial in trials) for name in model.thrusters}
+    return {
+        name: max(float(np.median(abs(trial.units[name][0]))) for trial in trials)
+        for name in model.thrusters
+    }
 
 
 def _prediction(found, at_trials, here, known, of_day, spread):
@@ -168,8 +198,10 @@ def _prediction(found, at_trials, here, known, of_day, spread):
 
 def _apart(one, other, part, names):
     """Log-evidence by which the right one of two is expected to lead, and the feature that says most."""
-    (a, C_a), (b, C_b) = one, other
-    d, found = (b - a)[part], []
+    (a, C_a) = one
+    (b, C_b) = other
+    d = (b - a)[part]
+    found = []
     for C in (C_a[part, part], C_b[part, part]):
         found.append((0.5 * float(d @ np.linalg.solve(C, d)), np.sqrt(np.diag(C))))
     nats, sigma = min(found, key=lambda pair: pair[0])
@@ -178,11 +210,15 @@ def _apart(one, other, part, names):
     unit, factor = ("deg", np.degrees(1.0)) if name in ANGLES else ("%", 100.0)
     difference = np.expm1(d[best]) if is_logarithm(kind, name) else d[best]
     to = "to starboard" if side > 0 else "to port"
-    told = TellingFeature(f"{name} {to}", float(factor * difference), float(factor * sigma[best]), unit)
+    told = TellingFeature(
+        f"{name} {to}", float(factor * difference), float(factor * sigma[best]), unit
+    )
     return nats, told
 
 
-def designed(found: Sequence[Separation], sets: Sequence[SetOfCauses]) -> tuple[ExperimentDesign, ...]:
+def designed(
+    found: Sequence[Separation], sets: Sequence[SetOfCauses]
+) -> tuple[ExperimentDesign, ...]:
     """The manoeuvres to be sailed next, as few as will do: each tells as many pairs apart as any that the ones before
     it do not, clearly.
 
@@ -199,7 +235,8 @@ def designed(found: Sequence[Separation], sets: Sequence[SetOfCauses]) -> tuple[
     tuple of ExperimentDesign
         Empty where no manoeuvre separates any pair.
     """
-    left, chosen = set(found[0].nats) if found else set(), []
+    left = set(found[0].nats) if found else set()
+    chosen = []
 
     def worth(one):
         clear = [nats for pair, nats in one.nats.items() if pair in left and nats >= CLEAR]
@@ -219,5 +256,7 @@ def designed(found: Sequence[Separation], sets: Sequence[SetOfCauses]) -> tuple[
 def differing(one: SetOfCauses, other: SetOfCauses) -> tuple[str, str]:
     """What two sets of causes do not share."""
     a, b = ([cause.label for cause in each.hypotheses] for each in (one, other))
-    only_a, only_b = (" + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a)))
+    only_a, only_b = (
+        " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))
+    )
     return only_a or "nothing more", only_b or "nothing more"

@@ -26,7 +26,13 @@ from shipcosim.diagnose.sea_trials.evidence import (
 )
 from shipcosim.diagnose.sea_trials.features import ANGLES, FEATURES, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
-from shipcosim.diagnose.sea_trials.separation import MOST_SETS, Separation, designed, differing, separations
+from shipcosim.diagnose.sea_trials.separation import (
+    MOST_SETS,
+    Separation,
+    designed,
+    differing,
+    separations,
+)
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel
@@ -163,7 +169,9 @@ class SeaTrialStudy:
     @property
     def findings(self) -> list[Finding]:
         """The causes that are named, as those of a diagnosis; their probability is the best set's among its rivals."""
-        share = 1.0 / sum(np.exp(one.evidence - self.best.evidence) for one in (self.best, *self.rivals))
+        share = 1.0 / sum(
+            np.exp(one.evidence - self.best.evidence) for one in (self.best, *self.rivals)
+        )
         return [
             Finding(
                 cause.cause,
@@ -198,10 +206,19 @@ class SeaTrialStudy:
 
 def _separation_as_json(one, sets):
     pairs = [
-        {"between": differing(sets[a], sets[b]), "nats": round(nats, 1), "telling": one.telling[a, b]._asdict()}
+        {
+            "between": differing(sets[a], sets[b]),
+            "nats": round(nats, 1),
+            "telling": one.telling[a, b]._asdict(),
+        }
         for (a, b), nats in one.nats.items()
     ]
-    return {"manoeuvre": one.manoeuvre, "minutes": one.minutes, "read_from_logs": one.read, "pairs": pairs}
+    return {
+        "manoeuvre": one.manoeuvre,
+        "minutes": one.minutes,
+        "read_from_logs": one.read,
+        "pairs": pairs,
+    }
 
 
 def _as_json(found):
@@ -209,7 +226,9 @@ def _as_json(found):
         {
             "cause": cause.cause,
             "component": cause.component,
-            "parameters": {name: vars(estimate) for name, estimate in _estimates(found, cause).items()},
+            "parameters": {
+                name: vars(estimate) for name, estimate in _estimates(found, cause).items()
+            },
         }
         for cause in found.hypotheses
     ]
@@ -227,7 +246,9 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
     """Estimates of a set's parameters in the units of their files."""
     return [
         ParameterEstimate(
-            float(p.factor * (p.neutral + value * p.typical)), float(abs(p.factor * p.typical) * std), p.unit
+            float(p.factor * (p.neutral + value * p.typical)),
+            float(abs(p.factor * p.typical) * std),
+            p.unit,
         )
         for (_, p), value, std in zip(found.parameters, found.values, found.std, strict=True)
     ]
@@ -274,18 +295,24 @@ def study(
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise ShipcosimError(Problem(system.file, found, "Sea trials are sailed with thrusters of ours."))
+        raise ShipcosimError(
+            Problem(system.file, found, "Sea trials are sailed with thrusters of ours.")
+        )
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
     record = as_ordered(record, read.repaired, read.ship) if orders else record
     trials = sea_trials_of(record, read.ship, lost, orders=orders)
     if not any(trial.kind == "turning circle" for trial in trials):
         found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
-        right = (
-            f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
-        )
+        right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
         raise ShipcosimError(Problem(str(read.repaired.attrs.get("source", "log")), found, right))
-    return studied(trials, read.ship, causes_of_trials(read.ship, read.causes, orders=orders), say, orders=orders)
+    return studied(
+        trials,
+        read.ship,
+        causes_of_trials(read.ship, read.causes, orders=orders),
+        say,
+        orders=orders,
+    )
 
 
 def motions_of(found: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]]:
@@ -295,19 +322,24 @@ def motions_of(found: SeaTrialStudy) -> tuple[list[np.ndarray], list[np.ndarray]
     return [motion[0] for motion in motions], [motion[1] for motion in motions]
 
 
-def causes_of_trials(model: ShipModel, catalogue: Mapping[str, Cause], *, orders: bool) -> list[Hypothesis]:
+def causes_of_trials(
+    model: ShipModel, catalogue: Mapping[str, Cause], *, orders: bool
+) -> list[Hypothesis]:
     """Causes in the hull and its thrusters, and where a log has orders how late these are answered.
 
     A current, the compass and the antenna are allowed for beside every cause.
     """
     places = {model.vessel, *model.thrusters}
-    allowed = {path for path in model.numbers if path.rpartition(".")[0] in places and "wind" not in path}
+    allowed = {
+        path for path in model.numbers if path.rpartition(".")[0] in places and "wind" not in path
+    }
     allowed |= {"instruments.order_lag"} if orders else set()
     everyone = hypotheses_of(catalogue, model, "sea trials")
     return [
         one
         for one in everyone
-        if one.definition.law == "linear" and all(path in allowed for p in one.parameters for path in p.paths)
+        if one.definition.law == "linear"
+        and all(path in allowed for p in one.parameters for path in p.paths)
     ]
 
 
@@ -334,19 +366,27 @@ def studied(
     -------
     SeaTrialStudy
     """
-    sides = {name: [t for t in trials if _turns(t, side)] for name, side in (("port", -1), ("starboard", 1))}
+    sides = {
+        name: [t for t in trials if _turns(t, side)]
+        for name, side in (("port", -1), ("starboard", 1))
+    }
     held_out = {}
     if all(sides.values()):
         for name, own in sides.items():
             progress(f"fitted on circles to {name}, judged on the others")
-            others = [trial for trial in trials if trial.kind != "straight run" and trial not in own]
+            others = [
+                trial for trial in trials if trial.kind != "straight run" and trial not in own
+            ]
             straight = [trial for trial in trials if trial.kind == "straight run"]
             held_out[name] = _judged([*straight, *own], others, model, hypotheses, orders)
     progress("fitted on all manoeuvres")
     whole = trial_evidence(trials, model, hypotheses, orders=orders)
     ranking = ranked(whole)
-    best, rivals = best_of(ranking), rivals_of(ranking)
-    (after,) = predicted(trials, model, [changes_of(best) | allowed_for(whole, best)], orders=orders)
+    best = best_of(ranking)
+    rivals = rivals_of(ranking)
+    (after,) = predicted(
+        trials, model, [changes_of(best) | allowed_for(whole, best)], orders=orders
+    )
     progress("what would tell causes apart")
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
@@ -357,7 +397,9 @@ def _turns(trial, side):
 
 
 def _judged(train, others, model, hypotheses, orders):
-    both_sides = [one for one in hypotheses if one.component is None]  # one unit alone: told by comparing both sides
+    both_sides = [
+        one for one in hypotheses if one.component is None
+    ]  # one unit alone: told by comparing both sides
     found = trial_evidence(train, model, both_sides, orders=orders)
     ranking = tuple(ranked(found))
     best = best_of(ranking)
@@ -419,7 +461,8 @@ def errors(
     """
     measured = [features_of(trial, trial.measured) for trial in trials]
     sailed = predicted(trials, model, [changes], orders=orders)[0]
-    found, at = {}, 0
+    found = {}
+    at = 0
     for trial, own in zip(trials, measured, strict=True):
         for name, off in zip(FEATURES[trial.kind], sailed[at : at + own.size] - own, strict=True):
             size = np.degrees(off) if name in ANGLES else 100.0 * np.expm1(off)

@@ -55,7 +55,9 @@ HEADINGS = (20.0, 60.0, 90.0, 180.0)
 HEADINGS_OF_SPEED = (40.0, 90.0, 180.0)
 """Headings turned at which speeds are compared. [deg]"""
 
-SPEED, RATE, DRIFT = 0.025, 0.025, 0.026
+SPEED = 0.025
+RATE = 0.025
+DRIFT = 0.026
 """How well the steady speed, rate (shares) and drift angle (rad) of a circle repeat, assumed: waves, wind, helm."""
 TIMES = (0.10, 0.06, 0.05, 0.04)
 """The same of the times to `HEADINGS`, assumed. [1]"""
@@ -65,9 +67,14 @@ WAYS = (0.04, 0.06, 0.04)
 """The same of advance, transfer and tactical diameter, assumed. [1]"""
 STRAIGHT_SPEED = 0.015
 """The same of the speed of a straight run, beside the current, assumed. [1]"""
-PEAK_RATE, SWING, ZIG_ZAG_SPEED = 0.04, 0.08, 0.03
+PEAK_RATE = 0.04
+SWING = 0.08
+ZIG_ZAG_SPEED = 0.03
 """The same of a zig-zag's mean largest rate, mean heading change of a swing, and mean speed, assumed. [1]"""
-PULL_OUT_RATE, SPIRAL_RATE, CHANGED_SPEED, TURNED = 0.04, 0.03, 0.025, 0.1
+PULL_OUT_RATE = 0.04
+SPIRAL_RATE = 0.03
+CHANGED_SPEED = 0.025
+TURNED = 0.1
 """The same of the rates of a pull-out and a spiral over the first, of a changing speed over the first (shares), and of
 the change of heading while a course is held (rad), assumed."""
 START = 0.12

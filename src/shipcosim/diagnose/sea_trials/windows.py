@@ -62,7 +62,11 @@ class SeaTrial:
 
 
 def sea_trials_of(
-    record: Record, model: ShipModel, lost: Sequence[tuple[float, float]] = (), *, orders: bool = False
+    record: Record,
+    model: ShipModel,
+    lost: Sequence[tuple[float, float]] = (),
+    *,
+    orders: bool = False,
 ) -> list[SeaTrial]:
     """The manoeuvres of a log in the order of time.
 
@@ -97,7 +101,11 @@ def sea_trials_of(
     clock, scale = own_clock(record.time, measured, length)
     measured = measured.copy()
     measured[:, 3:5] *= scale
-    kept = [one for one in kept if not (orders and one[0] == "straight run" and _clipped(one[1], record, model))]
+    kept = [
+        one
+        for one in kept
+        if not (orders and one[0] == "straight run" and _clipped(one[1], record, model))
+    ]
     trials = [_trial(kind, rows, record, measured, clock, helm, length) for kind, rows in kept]
     return sorted(trials, key=lambda trial: trial.logged)
 
@@ -123,13 +131,20 @@ def as_ordered(record: Record, log: xarray.Dataset, model: ShipModel) -> Record:
     for name, (speed, direction) in record.units.items():
         told = {f"{name}_rpm": (speed, 1.0 / 60.0), f"{name}_thrust": (speed, 1.0)}
         role = next(
-            (role for role in told if role in log and role.removeprefix(f"{name}_") in model.drives(name)), None
+            (
+                role
+                for role in told
+                if role in log and role.removeprefix(f"{name}_") in model.drives(name)
+            ),
+            None,
         )
         own = speed if role is None else told[role][1] * _known(log[role].values, speed, at)
         azimuth = f"{name}_azimuth"
         units[name] = (
             own,
-            _known(unwrap_series(np.radians(log[azimuth].values)), direction, at) if azimuth in log else direction,
+            _known(unwrap_series(np.radians(log[azimuth].values)), direction, at)
+            if azimuth in log
+            else direction,
         )
     return replace(record, units=units)
 
@@ -163,7 +178,9 @@ def steering(record: Record, model: ShipModel) -> np.ndarray:
 
 def _bridged(measured):
     """Measurements with short holes filled, and whether each row has values all the same."""
-    filled, whole, rows = measured.copy(), np.ones(len(measured), bool), np.arange(len(measured))
+    filled = measured.copy()
+    whole = np.ones(len(measured), bool)
+    rows = np.arange(len(measured))
     for channel in range(measured.shape[1]):
         there = np.isfinite(measured[:, channel])
         if not there.any():
@@ -191,7 +208,9 @@ def _circles(helm, measured):
             if turned[run.stop - 1] < np.radians(thresholds.CIRCLE):
                 continue
             start = run.start
-            while start > 0 and side * helm[start - 1] > thresholds.STEADY and start > run.start - 20:
+            while (
+                start > 0 and side * helm[start - 1] > thresholds.STEADY and start > run.start - 20
+            ):
                 start -= 1
             far = np.flatnonzero(turned[run] > np.radians(thresholds.CIRCLES))
             end = run.start + int(far[0]) + 1 if far.size else run.stop
@@ -217,7 +236,9 @@ def _zig_zags(helm, measured, length):
             chains.append([run])
     for chain in (chain for chain in chains if len(chain) > thresholds.SWINGS):
         start = chain[0].start
-        while start > 0 and abs(helm[start - 1]) > thresholds.STEADY and start > chain[0].start - 10:
+        while (
+            start > 0 and abs(helm[start - 1]) > thresholds.STEADY and start > chain[0].start - 10
+        ):
             start -= 1
         yield "zig-zag", slice(max(start - 1, 0), chain[-1].start + 1)
 
@@ -230,7 +251,8 @@ def _straight_runs(helm, record, measured, length, busy):
     """Rows of straight courses at held orders, after the speed has settled."""
     way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
     held = np.abs(moving_average(helm, _rows_of_rest(record))) < thresholds.STEADY
-    rate, speed = moving_average(measured[:, 5], _rows_of_rest(record)), np.hypot(measured[:, 3], measured[:, 4])
+    rate = moving_average(measured[:, 5], _rows_of_rest(record))
+    speed = np.hypot(measured[:, 3], measured[:, 4])
     held &= np.abs(rate) * length < thresholds.STRAIGHT_RATE * speed
     for order, _ in record.units.values():
         held &= _held(order, record)
@@ -253,7 +275,10 @@ def _rows_of_rest(record):
 def _clipped(rows, record, model):
     """Whether a thruster is ordered to its largest speed."""
     most = {name: getattr(model.parts[name], "rpm_max", np.inf) / 60.0 for name in record.units}
-    return any(np.mean(speed[rows]) > thresholds.CLIPPED * most[name] for name, (speed, _) in record.units.items())
+    return any(
+        np.mean(speed[rows]) > thresholds.CLIPPED * most[name]
+        for name, (speed, _) in record.units.items()
+    )
 
 
 def _held(series, record):
@@ -274,9 +299,14 @@ def _trial(kind, rows, record, measured, clock, helm, length):
         return np.interp(time, own, series[rows])
 
     nearest = np.argmin(np.abs(own[:, None] - time), axis=0) + rows.start
-    units = {name: (speed[nearest], direction[nearest]) for name, (speed, direction) in record.units.items()}
+    units = {
+        name: (speed[nearest], direction[nearest])
+        for name, (speed, direction) in record.units.items()
+    }
     order = helm[rows][np.argmax(np.abs(helm[rows]) > thresholds.ZIG_ZAG)]
     side = 0 if kind == "straight run" else int(np.sign(order))
     logged = float(record.time[rows][0]), float(record.time[rows][-1])
     size = float(np.median(np.abs(helm[rows])))
-    return SeaTrial(kind, side, logged, size, time, np.stack([even(c) for c in measured.T], axis=1), units)
+    return SeaTrial(
+        kind, side, logged, size, time, np.stack([even(c) for c in measured.T], axis=1), units
+    )

@@ -30,14 +30,18 @@ if TYPE_CHECKING:
 __all__ = ["current_at", "loads", "motion_rates", "rate_difference", "with_steady_current"]
 
 Alike = tuple["ShipModel", dict[str, Load]]
-_MADE_OF = {"wind": ("wind", "wind_form"), "hull_form": ("hull", "hull_form")}  # parts that a load is made of
+_MADE_OF = {
+    "wind": ("wind", "wind_form"),
+    "hull_form": ("hull", "hull_form"),
+}  # parts that a load is made of
 _CURRENT = tuple(f"{of}_{to}" for of in ("current", "trend") for to in ("north", "east"))
 _CURRENT += tuple(f"{to}_{at}" for to in ("north", "east") for at in ("start", "end"))
 
 
 def current_at(time: Arithmetic, model: ShipModel) -> tuple[Arithmetic, Arithmetic]:
     """Velocity of the water towards north and east [m/s] at some times [s]."""
-    water, (first, last) = model.parts["water"], model.span
+    water = model.parts["water"]
+    (first, last) = model.span
     share = share_of(time, model.span)
     north = water.current_north + water.trend_north * share
     east = water.current_east + water.trend_east * share
@@ -55,14 +59,18 @@ def with_steady_current(model: ShipModel, time: float) -> ShipModel:
     return model.with_values({f"water.{name}": value for name, value in steady.items()})
 
 
-def _body_current(psi: Arithmetic, time: Arithmetic, model: ShipModel) -> tuple[Arithmetic, Arithmetic]:
+def _body_current(
+    psi: Arithmetic, time: Arithmetic, model: ShipModel
+) -> tuple[Arithmetic, Arithmetic]:
     """Velocity of the water forward and to starboard. [m/s]"""
     if not any(acts(getattr(model.parts["water"], name)) for name in _CURRENT):
         return 0.0, 0.0
     return to_body(psi, *current_at(time, model))
 
 
-def loads(motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None = None) -> dict[str, Load]:
+def loads(
+    motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None = None
+) -> dict[str, Load]:
     """Loads on the ship by name: each thruster, wind, wave drift, line.
 
     Parameters
@@ -80,29 +88,45 @@ def loads(motion: Motion, inputs: Inputs, model: ShipModel, like: Alike | None =
     dict of str to tuple of three arrays
         X, Y, N. [N, N, N.m]
     """
-    parts, found = model.parts, {}
+    parts = model.parts
+    found = {}
     u_c, v_c = _body_current(motion.psi, inputs.time, model)
-    u_r, v_r, r = motion.u - u_c, motion.v - v_c, motion.r
+    u_r = motion.u - u_c
+    v_r = motion.v - v_c
+    r = motion.r
     same = _alike(model, *like) if like else {}
 
     def kept(name, load):
         return _kept_at_hull(name, load, u_r, inputs, model)
 
-    for name in [name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))]:
+    for name in [
+        name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))
+    ]:
         found[name] = same.get(name) or kept(name, thruster_loads(name, inputs, u_r, v_r, r, model))
     for name in model.third_party:
-        found[name] = same.get(name) or kept(name, _third_party_loads(name, motion, inputs, (u_r, v_r), model))
+        found[name] = same.get(name) or kept(
+            name, _third_party_loads(name, motion, inputs, (u_r, v_r), model)
+        )
     if inputs.wind_speed is not None:
         found["wind"] = same.get("wind") or _wind_loads(motion, inputs, model)
     if parts["hull_form"].acts:
-        found["hull_form"] = same.get("hull_form") or cross_flow_form(v_r, r, parts["hull"], parts["hull_form"])
+        found["hull_form"] = same.get("hull_form") or cross_flow_form(
+            v_r, r, parts["hull"], parts["hull_form"]
+        )
     water = parts["water"]
     if np.any(water.drift_north) or np.any(water.drift_east):
-        shape = {name: getattr(water, f"drift_{name}") for name in ("surge_share", "sway_power", "yaw_arm")}
+        shape = {
+            name: getattr(water, f"drift_{name}")
+            for name in ("surge_share", "sway_power", "yaw_arm")
+        }
         swell = swell_of(inputs.time, model.span, water)
-        found["drift_force"] = drift_force(motion.psi, swell * water.drift_north, swell * water.drift_east, **shape)
+        found["drift_force"] = drift_force(
+            motion.psi, swell * water.drift_north, swell * water.drift_east, **shape
+        )
     if np.any(water.tow_north) or np.any(water.tow_east):
-        found["earth_force"] = earth_force(motion.psi, water.tow_north, water.tow_east, x=water.tow_x)
+        found["earth_force"] = earth_force(
+            motion.psi, water.tow_north, water.tow_east, x=water.tow_x
+        )
     return found
 
 
@@ -118,7 +142,8 @@ def _alike(model: ShipModel, other: ShipModel, found: dict[str, Load]) -> dict[s
 
 
 def _same_current(model: ShipModel, other: ShipModel) -> bool:
-    one, two = model.parts["water"], other.parts["water"]
+    one = model.parts["water"]
+    two = other.parts["water"]
     return one is two or all(getattr(one, name) == getattr(two, name) for name in _CURRENT)
 
 
@@ -132,7 +157,11 @@ def _kept_at_hull(name: str, load: Load, u_r: Arithmetic, inputs: Inputs, model:
 
 
 def _third_party_loads(
-    name: str, motion: Motion, inputs: Inputs, through: tuple[Arithmetic, Arithmetic], model: ShipModel
+    name: str,
+    motion: Motion,
+    inputs: Inputs,
+    through: tuple[Arithmetic, Arithmetic],
+    model: ShipModel,
 ) -> Load:
     """Load of a third-party FMU by its surrogate, at a velocity through the water."""
     given = motion._asdict() | dict(zip(("u_r", "v_r"), through, strict=True))
@@ -142,22 +171,30 @@ def _third_party_loads(
 
 def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
     parameters = model.parts["wind"]
-    speed, direction = inputs.wind_speed, inputs.wind_from
+    speed = inputs.wind_speed
+    direction = inputs.wind_from
     if speed is None or direction is None:
         raise ValueError("the log has no wind")
     if model.wind_is_true:
-        north, east = -speed * cos(direction), -speed * sin(direction)
+        north = -speed * cos(direction)
+        east = -speed * sin(direction)
         speed, direction = wind.apparent_wind(motion.psi, motion.u, motion.v, north, east)
     angle = wrap(direction - parameters.apparent_wind_offset)
     found = wind.wind_loads(speed, angle, wind=replace(parameters, apparent_wind_offset=0.0))
     form = model.parts["wind_form"]
     if not form.acts:
         return found
-    return tuple(load * factor for load, factor in zip(found, wind_factors(angle, form), strict=True))
+    return tuple(
+        load * factor for load, factor in zip(found, wind_factors(angle, form), strict=True)
+    )
 
 
 def motion_rates(
-    motion: Motion, inputs: Inputs, model: ShipModel, extra: Load = (0.0, 0.0, 0.0), like: Alike | None = None
+    motion: Motion,
+    inputs: Inputs,
+    model: ShipModel,
+    extra: Load = (0.0, 0.0, 0.0),
+    like: Alike | None = None,
 ) -> Motion:
     """Rates of position, heading and velocity over ground.
 
@@ -180,15 +217,23 @@ def motion_rates(
     return Motion(north, east, motion.r, *_accelerations(motion, inputs, model, extra, like))
 
 
-def _accelerations(motion: Motion, inputs: Inputs, model: ShipModel, extra: Load, like: Alike | None) -> Load:
+def _accelerations(
+    motion: Motion, inputs: Inputs, model: ShipModel, extra: Load, like: Alike | None
+) -> Load:
     """Rates of the velocity over ground."""
-    X, Y, N = (sum(axis) for axis in zip(extra, *loads(motion, inputs, model, like).values(), strict=True))
+    X, Y, N = (
+        sum(axis) for axis in zip(extra, *loads(motion, inputs, model, like).values(), strict=True)
+    )
     u_c, v_c = _body_current(motion.psi, inputs.time, model)
-    u_dot, v_dot, r_dot = accelerations(motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"])
+    u_dot, v_dot, r_dot = accelerations(
+        motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"]
+    )
     return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
 
 
-def rate_difference(one: ShipModel, other: ShipModel, motion: Motion, inputs: Inputs, like: Alike) -> Load:
+def rate_difference(
+    one: ShipModel, other: ShipModel, motion: Motion, inputs: Inputs, like: Alike
+) -> Load:
     """Accelerations of one ship minus those of another in the same motion with the same inputs.
 
     Parameters
@@ -206,7 +251,9 @@ def rate_difference(one: ShipModel, other: ShipModel, motion: Motion, inputs: In
     """
     hull = one.parts["hull"]
     if hull is not other.parts["hull"] or not _same_current(one, other):
-        rates = (_accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (one, other))
+        rates = (
+            _accelerations(motion, inputs, model, (0.0, 0.0, 0.0), like) for model in (one, other)
+        )
         return tuple(a - b for a, b in zip(*rates, strict=True))
     mine, theirs = (loads(motion, inputs, model, like) for model in (one, other))
     pairs = [(mine[name], theirs[name]) for name in mine if mine[name] is not theirs[name]]

@@ -12,7 +12,8 @@ __all__ = ["Water", "piecewise_linear_basis", "share_of", "swell_of", "water_of"
 
 _NEUTRAL = "neutral"
 _SWELLS = 8
-_DRIFT_ARM, _OF_LENGTH = -1.5, 33.9  # m, of a research vessel by VERES
+_DRIFT_ARM = -1.5  # m, of a research vessel by VERES
+_OF_LENGTH = 33.9
 
 
 def _swell(k: int) -> Any:
@@ -31,15 +32,27 @@ class Water:
     east_start: float = quantity(0.0, "m/s", "varying current towards east, first row", _NEUTRAL)
     north_end: float = quantity(0.0, "m/s", "varying current towards north, last row", _NEUTRAL)
     east_end: float = quantity(0.0, "m/s", "varying current towards east, last row", _NEUTRAL)
-    trend_north: float = quantity(0.0, "m/s", "what a current towards north grows by from first to last row", _NEUTRAL)
-    trend_east: float = quantity(0.0, "m/s", "what a current towards east grows by from first to last row", _NEUTRAL)
+    trend_north: float = quantity(
+        0.0, "m/s", "what a current towards north grows by from first to last row", _NEUTRAL
+    )
+    trend_east: float = quantity(
+        0.0, "m/s", "what a current towards east grows by from first to last row", _NEUTRAL
+    )
     drift_north: float = quantity(0.0, "N", "mean wave drift on the beam, towards north", _NEUTRAL)
     drift_east: float = quantity(0.0, "N", "mean wave drift on the beam, towards east", _NEUTRAL)
     drift_surge_share: float = quantity(
-        1.0 / 3.0, "1", "wave drift in surge over that on the beam", "VERES, 33.9 m hull", tolerance=0.1
+        1.0 / 3.0,
+        "1",
+        "wave drift in surge over that on the beam",
+        "VERES, 33.9 m hull",
+        tolerance=0.1,
     )
     drift_sway_power: float = quantity(
-        2.0, "1", "power of the sine in the sway of the drift", "short waves; VERES, 33.9 m hull: 1.7", tolerance=0.6
+        2.0,
+        "1",
+        "power of the sine in the sway of the drift",
+        "short waves; VERES, 33.9 m hull: 1.7",
+        tolerance=0.6,
     )
     drift_yaw_arm: float = required(
         "m", "yaw moment of the drift at quartering over the force on the beam", share=1.0 / 3.0
@@ -62,7 +75,9 @@ def water_of(length: float) -> Water:
 
     A line would be made fast at her stern, assumed, to half a metre.
     """
-    return Water(tow_x=-0.5 * (round(length) or length), drift_yaw_arm=_DRIFT_ARM * length / _OF_LENGTH)
+    return Water(
+        tow_x=-0.5 * (round(length) or length), drift_yaw_arm=_DRIFT_ARM * length / _OF_LENGTH
+    )
 
 
 def share_of(time: Arithmetic, span: tuple[float, float]) -> Arithmetic:
@@ -100,5 +115,8 @@ def swell_of(time: Arithmetic, span: tuple[float, float], water: Water) -> Arith
     if not np.any(swells):
         return 1.0
     return 1.0 + sum(
-        swell * hat for swell, hat in zip(swells, piecewise_linear_basis(share_of(time, span), _SWELLS), strict=True)
+        swell * hat
+        for swell, hat in zip(
+            swells, piecewise_linear_basis(share_of(time, span), _SWELLS), strict=True
+        )
     )

@@ -68,7 +68,12 @@ class HullForm(_LoadDeviation):
 
 def _harmonics() -> list[tuple[str, int, str]]:
     """Name, order and function of each harmonic of the wind's angle."""
-    return [(f"{f}_{k}" if k else "mean", k, f) for k in _HARMONICS for f in ("cos", "sin") if k or f == "cos"]
+    return [
+        (f"{f}_{k}" if k else "mean", k, f)
+        for k in _HARMONICS
+        for f in ("cos", "sin")
+        if k or f == "cos"
+    ]
 
 
 def _round(axis: str, name: str) -> tuple[str, type, float]:
@@ -95,7 +100,9 @@ class ThrusterForm(_LoadDeviation):
     """Thrust that a thruster loses at the hull beyond the model's, by where it pushes to, whoever made it."""
 
     across: float = _lost("by one that pushes athwartships; goes with the squared sine")
-    to_starboard: float = _lost("by one that pushes to starboard, gained to port; goes with the sine")
+    to_starboard: float = _lost(
+        "by one that pushes to starboard, gained to port; goes with the sine"
+    )
     astern: float = _lost("by one that pushes astern; none ahead, half of it athwartships")
     under_way: float = _lost(f"at Froude number {FROUDE_UNDER_WAY}; goes with the speed")
 
@@ -105,23 +112,39 @@ def form_of(thruster: str) -> str:
     return f"{thruster}.form"
 
 
-ALONG = {1: 0.15, 2: 0.15, 3: 0.10}  # of the drag coefficient, by degree; assumed: sections of ships differ by +-30 %
+ALONG = {
+    1: 0.15,
+    2: 0.15,
+    3: 0.10,
+}  # of the drag coefficient, by degree; assumed: sections of ships differ by +-30 %
 CROSS_FLOW_LEVEL = 0.09  # of all sections together: the mean of five independent ones of +-30 %
 LEVEL = 0.12  # of resistance and of other damping as a whole; assumed
-ROUND = {0: 0.05, 1: 0.05, 2: 0.045}  # of the wind load, by order; Blendermann 1994: +-15 % between similar ships
+ROUND = {
+    0: 0.05,
+    1: 0.05,
+    2: 0.045,
+}  # of the wind load, by order; Blendermann 1994: +-15 % between similar ships
 WIND_LEVEL = 0.05  # of X, Y and N alike
 ADDED_MASS = 0.15  # water that remembers is, in slow motion, an added mass; assumed
 LIFT = 0.2  # of its size and of its arm; assumed
 LINEAR = 0.2  # linear damping over the quadratic one at these speeds; assumed
-FROUDE_AHEAD, FROUDE_ACROSS = 0.06, 0.018
-LOST = {"across": 0.06, "to_starboard": 0.03, "astern": 0.05}  # of a unit that turns; Dang and Laheij 2004: to 10 %
+FROUDE_AHEAD = 0.06
+FROUDE_ACROSS = 0.018
+LOST = {
+    "across": 0.06,
+    "to_starboard": 0.03,
+    "astern": 0.05,
+}  # of a unit that turns; Dang and Laheij 2004: to 10 %
 DEDUCTION = 0.03  # of the thrust of any thruster but a tunnel's, whatever its direction: thrust deduction; assumed
 UNDER_WAY = 0.1  # of the thrust, at FROUDE_UNDER_WAY: wake and thrust deduction; assumed
 SPEED_LOSS = 0.1  # s2/m2 on a ship of 33.9 m, of a tunnel's thrust; half of (1/2.2)^2
-_OF_LENGTH, _GRAVITY = 33.9, 9.81
+_OF_LENGTH = 33.9
+_GRAVITY = 9.81
 
 
-def form_sizes(parts: Mapping[str, Any], vessel: str, drives: Mapping[str, tuple[str, ...]]) -> dict[str, float]:
+def form_sizes(
+    parts: Mapping[str, Any], vessel: str, drives: Mapping[str, tuple[str, ...]]
+) -> dict[str, float]:
     """How far each number of a ship's form may be off, of scale 1.
 
     Parameters
@@ -140,7 +163,11 @@ def form_sizes(parts: Mapping[str, Any], vessel: str, drives: Mapping[str, tuple
     """
     hull = parts["hull"]
     found = {f"hull_form.cross_flow_{degree}": size for degree, size in ALONG.items()}
-    found |= {f"wind_form.{axis}_{name}": ROUND[order] for axis in "XYN" for name, order, _ in _harmonics()}
+    found |= {
+        f"wind_form.{axis}_{name}": ROUND[order]
+        for axis in "XYN"
+        for name, order, _ in _harmonics()
+    }
     found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
     found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
     for name in drives:
@@ -149,7 +176,10 @@ def form_sizes(parts: Mapping[str, Any], vessel: str, drives: Mapping[str, tuple
             continue
         found[f"{name}.thrust_loss"] = DEDUCTION
         lost = LOST if "azimuth" in drives[name] else {}
-        found |= {f"{form_of(name)}.{where}": size for where, size in (lost | {"under_way": UNDER_WAY}).items()}
+        found |= {
+            f"{form_of(name)}.{where}": size
+            for where, size in (lost | {"under_way": UNDER_WAY}).items()
+        }
     return found
 
 
@@ -169,12 +199,21 @@ def form_functions(
         By function and ``place.name``: mean over the hull or round the circle of the squared share of the model's
         function that the number makes, over the squared number. [1 over the number's unit squared]
     """
-    level, hull = abs(parts["hull"].cross_flow_drag), f"{vessel}."
-    found = {"drag across the hull, along her length": {f"hull_form.cross_flow_{k}": 1 / (2 * k + 1) for k in _DEGREES}}
+    level = abs(parts["hull"].cross_flow_drag)
+    hull = f"{vessel}."
+    found = {
+        "drag across the hull, along her length": {
+            f"hull_form.cross_flow_{k}": 1 / (2 * k + 1) for k in _DEGREES
+        }
+    }
     if level:
-        found["drag across the hull, along her length"] |= {f"{hull}cross_flow_drag": 1.0 / level**2}
+        found["drag across the hull, along her length"] |= {
+            f"{hull}cross_flow_drag": 1.0 / level**2
+        }
     found["wind load over the angle"] = {f"{hull}wind_load_scale": 1.0} | {
-        f"wind_form.{axis}_{name}": (0.5 if order else 1.0) / 3.0 for axis in "XYN" for name, order, _ in _harmonics()
+        f"wind_form.{axis}_{name}": (0.5 if order else 1.0) / 3.0
+        for axis in "XYN"
+        for name, order, _ in _harmonics()
     }
     for name in drives:
         if "azimuth" in drives[name]:
@@ -186,13 +225,18 @@ def form_functions(
 
 def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     """Of the numbers that the hull has: coefficients by a share of their size, linear damping by the quadratic one."""
-    found = {name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")}
+    found = {
+        name: ADDED_MASS * abs(getattr(hull, name)) for name in ("A11", "A22", "A26", "A62", "A66")
+    }
     found |= {name: LIFT * abs(getattr(hull, name)) for name in ("lift", "lift_x")}
     coefficients = [item.name for item in fields(hull) if item.name[:2] in ("X_", "Y_", "N_")]
     found |= {name: LEVEL * abs(getattr(hull, name)) for name in coefficients}
     found["cross_flow_drag"] = CROSS_FLOW_LEVEL * abs(hull.cross_flow_drag)
-    speed, side = (froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS))
-    half, strength = 0.5 * hull.length, _strength(hull)
+    speed, side = (
+        froude * np.sqrt(_GRAVITY * hull.length) for froude in (FROUDE_AHEAD, FROUDE_ACROSS)
+    )
+    half = 0.5 * hull.length
+    strength = _strength(hull)
     found["X_u"] += LINEAR * speed * abs(hull.X_uu)
     found["Y_v"] += LINEAR * side * strength * hull.length
     found["N_r"] += LINEAR * side / half * strength * half**4 / 2.0
@@ -223,13 +267,16 @@ def cross_flow_form(v_r: Arithmetic, r: Arithmetic, hull: HullParameters, form: 
     tuple of three, like v_r
         X, Y, N. [N, N, N.m]
     """
-    half, Y, N = 0.5 * hull.length, 0.0 * v_r, 0.0 * v_r
+    half = 0.5 * hull.length
+    Y = 0.0 * v_r
+    N = 0.0 * v_r
     strength = _strength(hull) * half
     for place, weight, shapes in zip(_PLACES, _WEIGHTS, _SHAPES, strict=True):
         share = sum(getattr(form, f"cross_flow_{k}") * shapes[k] for k in _DEGREES)
         flow = v_r + place * half * r
         load = -strength * weight * share * abs(flow) * flow
-        Y, N = Y + load, N + place * half * load
+        Y = Y + load
+        N = N + place * half * load
     return 0.0 * v_r, Y, N
 
 
@@ -258,7 +305,9 @@ def wind_factors(wind_from: Arithmetic, form: object) -> Load:
     return tuple(factors)
 
 
-def thrust_kept(rpm: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, length: float, form: ThrusterForm) -> Arithmetic:
+def thrust_kept(
+    rpm: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, length: float, form: ThrusterForm
+) -> Arithmetic:
     """Factor on the model's load of a thruster, by where it pushes to and how fast the ship goes.
 
     Parameters
@@ -277,7 +326,12 @@ def thrust_kept(rpm: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, length: f
         [1]
     """
     way = np.sign(rpm)
-    ahead, starboard = way * cos(azimuth), way * sin(azimuth)
-    lost = form.across * starboard * starboard + form.to_starboard * starboard + 0.5 * form.astern * (1.0 - ahead)
+    ahead = way * cos(azimuth)
+    starboard = way * sin(azimuth)
+    lost = (
+        form.across * starboard * starboard
+        + form.to_starboard * starboard
+        + 0.5 * form.astern * (1.0 - ahead)
+    )
     fast = FROUDE_UNDER_WAY * np.sqrt(_GRAVITY * length)
     return 1.0 - lost - form.under_way * abs(u_r) / fast

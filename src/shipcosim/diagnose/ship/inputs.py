@@ -22,14 +22,27 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 
-__all__ = ["CHANNELS", "Inputs", "Record", "averaged", "first_motion", "rate_of", "record_of", "with_inputs_of"]
+__all__ = [
+    "CHANNELS",
+    "Inputs",
+    "Record",
+    "averaged",
+    "first_motion",
+    "rate_of",
+    "record_of",
+    "with_inputs_of",
+]
 
 _SHORTEST = 18.0  # s over the root of the length in m: 105 s for 33.9 m, 20 s for 1.2 m
 _FEWEST_ROWS = 60
 _ONE_STEP = 0.2  # s over the root of the length in m: 1 s on a ship of 25 m
-_RATE_OF_A_STEP = 1.0  # 1, of the fastest answer times the step: Runge-Kutta of fourth order diverges beyond 2.8
+_RATE_OF_A_STEP = (
+    1.0  # 1, of the fastest answer times the step: Runge-Kutta of fourth order diverges beyond 2.8
+)
 _MOST_STEPS = 64  # from row to row; a model or a log that asks for more is wrong
-_LATE = 10.0  # s before and after a hole between stretches, within which a late channel is not known
+_LATE = (
+    10.0  # s before and after a hole between stretches, within which a late channel is not known
+)
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
@@ -100,7 +113,9 @@ class Record:
 
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
-        rows = self.step * max(1.0 / (_ONE_STEP * np.sqrt(model.parts["hull"].length)), self.rate / _RATE_OF_A_STEP)
+        rows = self.step * max(
+            1.0 / (_ONE_STEP * np.sqrt(model.parts["hull"].length)), self.rate / _RATE_OF_A_STEP
+        )
         return 2 ** int(np.ceil(np.log2(min(max(rows, 1.0), _MOST_STEPS)) - 1e-9))
 
     def inputs(self, model: ShipModel, share: float = 0.0, steps: slice = slice(None)) -> Inputs:
@@ -110,9 +125,17 @@ class Record:
         """
         lags = model.parts["instruments"]
         late = share * self.step - lags.navigation_lag
-        behind, late_wind = self._places(late + lags.thruster_lag, steps), self._places(late + lags.wind_lag, steps)
-        units = {name: (_between(pair[0], *behind), _between(pair[1], *behind)) for name, pair in self.units.items()}
-        wind = (None, None) if self.wind is None else (_between(series, *late_wind) for series in self.wind)
+        behind = self._places(late + lags.thruster_lag, steps)
+        late_wind = self._places(late + lags.wind_lag, steps)
+        units = {
+            name: (_between(pair[0], *behind), _between(pair[1], *behind))
+            for name, pair in self.units.items()
+        }
+        wind = (
+            (None, None)
+            if self.wind is None
+            else (_between(series, *late_wind) for series in self.wind)
+        )
         return Inputs(self.time[:-1][steps] + share * self.step, units, *wind)
 
     def _places(self, seconds: float, steps: slice) -> tuple[np.ndarray, np.ndarray]:
@@ -147,12 +170,16 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     ShipcosimError
         Too little to diagnose.
     """
-    rows, time = log.sizes["time"], log["time"].values.astype(float)
+    rows = log.sizes["time"]
+    time = log["time"].values.astype(float)
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
-        found, right = f"no channel {', '.join(missing)}.", "A diagnosis needs north, east and heading."
+        found = f"no channel {', '.join(missing)}."
+        right = "A diagnosis needs north, east and heading."
         raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
-    measured = np.stack([_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1)
+    measured = np.stack(
+        [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
+    )
     measured[:, 2] = unwrap_series(measured[:, 2])
     _check_third_party(log, model)
     record = _driven(log, model, measured)
@@ -186,7 +213,10 @@ def with_inputs_of(record: Record, log: xarray.Dataset, model: ShipModel) -> Rec
 
 def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Record:
     """The record of every row of a log, with what was measured of the ship."""
-    rows, time, remarks, units = log.sizes["time"], log["time"].values.astype(float), [], {}
+    rows = log.sizes["time"]
+    time = log["time"].values.astype(float)
+    remarks = []
+    units = {}
     known = np.ones(rows, bool)
     for name in model.thrusters:
         units[name], whole = _unit(log, name, model, rows, remarks)
@@ -200,7 +230,8 @@ def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Reco
 
 def _near_holes(time: np.ndarray) -> np.ndarray:
     """Rows beside the holes between stretches, (n,) bool array."""
-    inner, late = [rows.stop for rows in stretches_of(time)[:-1]], int(np.ceil(_LATE / (time[1] - time[0])))
+    inner = [rows.stop for rows in stretches_of(time)[:-1]]
+    late = int(np.ceil(_LATE / (time[1] - time[0])))
     found = np.zeros(time.size, bool)
     for row in inner:
         found[max(row - late, 0) : row + late] = True
@@ -209,12 +240,16 @@ def _near_holes(time: np.ndarray) -> np.ndarray:
 
 def _about_stretches(time: np.ndarray) -> list[str]:
     """What of a long log is used."""
-    parts, step = stretches_of(time), time[1] - time[0]
+    parts = stretches_of(time)
+    step = time[1] - time[0]
     if len(parts) == 1:
         return []
-    used, span = time.size * step / 60.0, (time[-1] - time[0]) / 3600.0
+    used = time.size * step / 60.0
+    span = (time[-1] - time[0]) / 3600.0
     what = f"{len(parts)} stretches, {used:.0f} min together, spread evenly over its rows"
-    return [f"Of this log of {span:.1f} h {what}, are held against the ship; all of it was checked for faults."]
+    return [
+        f"Of this log of {span:.1f} h {what}, are held against the ship; all of it was checked for faults."
+    ]
 
 
 def _thinned_for(model: ShipModel, record: Record) -> Record:
@@ -230,11 +265,16 @@ def _thinned_for(model: ShipModel, record: Record) -> Record:
 
 def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None:
     """Raise ShipcosimError for a log that is too short for what its ship does, or has too few rows."""
-    rows, span = log.sizes["time"], float(log["time"][-1] - log["time"][0])
+    rows = log.sizes["time"]
+    span = float(log["time"][-1] - log["time"][0])
     least = _SHORTEST * np.sqrt(model.parts["hull"].length)
     if span < least or rows < _FEWEST_ROWS:
-        slowest = max((time for time in response_times(model, motion) if np.isfinite(time)), default=np.inf)
-        answer = f"whose slowest answer takes {slowest:.2g} s" if slowest < 1e4 else "that hardly moves"
+        slowest = max(
+            (time for time in response_times(model, motion) if np.isfinite(time)), default=np.inf
+        )
+        answer = (
+            f"whose slowest answer takes {slowest:.2g} s" if slowest < 1e4 else "that hardly moves"
+        )
         found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
         right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
         raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
@@ -244,7 +284,9 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
     """The record with every so many rows averaged into one; of speeds, which push by their square, as that."""
     if rows == 1:
         return record
-    used = np.concatenate([np.arange(one.start, one.stop - (one.stop - one.start) % rows) for one in record.stretches])
+    used = np.concatenate(
+        [np.arange(one.start, one.stop - (one.stop - one.start) % rows) for one in record.stretches]
+    )
 
     def mean(series):
         whole = series[used].reshape(used.size // rows, rows, *series.shape[1:])
@@ -256,7 +298,10 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
         return np.sign(push) * np.sqrt(np.abs(push))
 
     pushes = {name: mean if "thrust" in model.drives(name) else of_squares for name in record.units}
-    units = {name: (pushes[name](drive), mean(direction)) for name, (drive, direction) in record.units.items()}
+    units = {
+        name: (pushes[name](drive), mean(direction))
+        for name, (drive, direction) in record.units.items()
+    }
     wind = None if record.wind is None else (of_squares(record.wind[0]), mean(record.wind[1]))
     known = mean(record.known.astype(float)) == 1.0
     return Record(mean(record.time), mean(record.measured), units, wind, known, record.remarks)
@@ -268,7 +313,8 @@ def _column(log: xarray.Dataset, role: str, rows: int) -> np.ndarray:
 
 def _unit(log, name, model, rows, remarks):
     """Speed or thrust of a thruster and its direction, and where they are known."""
-    speed, direction = _column(log, f"{name}_rpm", rows) / 60.0, _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
+    speed = _column(log, f"{name}_rpm", rows) / 60.0
+    direction = _column(log, f"{name}_azimuth", rows) * np.pi / 180.0
     if "thrust" in model.drives(name):
         speed = _column(log, f"{name}_thrust", rows)
     elif f"{name}_rpm" not in log:
@@ -285,10 +331,15 @@ def _unit(log, name, model, rows, remarks):
 
 def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
     """Raise ShipcosimError where the log lacks what drives a third-party FMU: nobody knows its load then."""
-    drives = [(name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives]
-    where, remedy = str(log.attrs.get("source", "log")), "Log it under this name, or name its column in a channel file."
+    drives = [
+        (name, f"{name}_{kind}") for name, one in model.third_party.items() for kind in one.drives
+    ]
+    where = str(log.attrs.get("source", "log"))
+    remedy = "Log it under this name, or name its column in a channel file."
     lacking = [
-        Problem(where, f"no channel {role}, which drives '{name}'.", remedy) for name, role in drives if role not in log
+        Problem(where, f"no channel {role}, which drives '{name}'.", remedy)
+        for name, role in drives
+        if role not in log
     ]
     lacking += [
         Problem(
@@ -305,7 +356,11 @@ def _check_third_party(log: xarray.Dataset, model: ShipModel) -> None:
 
 def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
     """What the user should know of a third-party FMU."""
-    idle = f" What the log does not tell keeps its start value: {', '.join(one.idle)}." if one.idle else ""
+    idle = (
+        f" What the log does not tell keeps its start value: {', '.join(one.idle)}."
+        if one.idle
+        else ""
+    )
     text = f"'{name}' is a third-party FMU ({one.component.fmu.model_name}), known by its co-simulation along the log."
     return f"{text}{idle} No manoeuvre can be prescribed with it."
 
@@ -313,11 +368,16 @@ def _about_third_party(name: str, one: ThirdPartyFmu) -> str:
 def _wind(log, rows, remarks):
     for speed, direction in (("wind_speed", "wind_from"), ("true_wind_speed", "true_wind_from")):
         if speed in log and direction in log:
-            pair = _column(log, speed, rows), unwrap_series(_column(log, direction, rows) * np.pi / 180.0)
+            pair = (
+                _column(log, speed, rows),
+                unwrap_series(_column(log, direction, rows) * np.pi / 180.0),
+            )
             whole = np.isfinite(pair[0]) & np.isfinite(pair[1])
             if whole.any():
                 return (averaged(pair[0]), averaged(pair[1])), whole
-    remarks.append("No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart.")
+    remarks.append(
+        "No wind in the log: forces of the wind, of waves, of a current and of a line cannot be told apart."
+    )
     return None, np.ones(rows, bool)
 
 
@@ -354,18 +414,24 @@ def first_motion(record: Record, model: ShipModel, smooth: float = 4.0) -> Motio
     for one, into in zip(flat, out, strict=True):
         for channel in range(6):
             whole = np.isfinite(one[:, channel])
-            into[:, channel] = np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else np.nan
+            into[:, channel] = (
+                np.interp(rows, rows[whole], one[whole, channel]) if whole.any() else np.nan
+            )
             for part in record.stretches if whole.any() else ():
                 into[part, channel] = gaussian_filter(into[part, channel], width, ends="held")
     x, y, psi, u, v, r = np.moveaxis(out.reshape(record.measured.shape), -1, 0)
     if np.isnan(r).any():
         r = rate_of(psi, record)
     if np.isnan(u).any() or np.isnan(v).any():
-        north, east = rate_of(x, record), rate_of(y, record)
-        u, v = np.cos(psi) * north + np.sin(psi) * east, np.cos(psi) * east - np.sin(psi) * north
+        north = rate_of(x, record)
+        east = rate_of(y, record)
+        u = np.cos(psi) * north + np.sin(psi) * east
+        v = np.cos(psi) * east - np.sin(psi) * north
     return Motion(x, y, psi, u, v, r)
 
 
 def rate_of(series: np.ndarray, record: Record) -> np.ndarray:
     """Rate of a series over the rows of a record, (..., n) arrays. [per s]"""
-    return np.concatenate([np.gradient(series[..., rows], record.step, axis=-1) for rows in record.stretches], axis=-1)
+    return np.concatenate(
+        [np.gradient(series[..., rows], record.step, axis=-1) for rows in record.stretches], axis=-1
+    )

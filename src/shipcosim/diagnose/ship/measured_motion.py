@@ -25,7 +25,9 @@ def readings(motion: Motion, model: ShipModel) -> Motion:
     Motion
     """
     own = model.parts["instruments"]
-    return Motion(*instruments.readings(*motion, **own.errors))._replace(psi=motion.psi + own.heading_bias)
+    return Motion(*instruments.readings(*motion, **own.errors))._replace(
+        psi=motion.psi + own.heading_bias
+    )
 
 
 def true_motion(seen: Motion, model: ShipModel) -> Motion:
@@ -41,4 +43,6 @@ def true_motion(seen: Motion, model: ShipModel) -> Motion:
     Motion
     """
     own = model.parts["instruments"]
-    return Motion(*instruments.true_motion(*seen, **own.errors))._replace(psi=seen.psi - own.heading_bias)
+    return Motion(*instruments.true_motion(*seen, **own.errors))._replace(
+        psi=seen.psi - own.heading_bias
+    )

@@ -80,7 +80,11 @@ class ShipModel:
     def numbers(self) -> list[str]:
         """Every number that a cause can change, ``place.name``."""
         places = {part: self.vessel if part in ("hull", "wind") else part for part in self.parts}
-        return [f"{places[part]}.{item.name}" for part, values in self.parts.items() for item in fields(values)]
+        return [
+            f"{places[part]}.{item.name}"
+            for part, values in self.parts.items()
+            for item in fields(values)
+        ]
 
     @property
     def uncertainties(self) -> dict[str, float]:
@@ -93,12 +97,16 @@ class ShipModel:
     @property
     def form_sizes(self) -> dict[str, float]:
         """How far each number of her form may be off, of scale 1: standard deviation by ``place.name``."""
-        return form_sizes(self.parts, self.vessel, {name: self.drives(name) for name in self.thrusters})
+        return form_sizes(
+            self.parts, self.vessel, {name: self.drives(name) for name in self.thrusters}
+        )
 
     @property
     def form_functions(self) -> dict[str, dict[str, float]]:
         """Functions of her form in words, each with its numbers and how much one adds to its mean square."""
-        return form_functions(self.parts, self.vessel, {name: self.drives(name) for name in self.thrusters})
+        return form_functions(
+            self.parts, self.vessel, {name: self.drives(name) for name in self.thrusters}
+        )
 
     @property
     def referenced(self) -> set[str]:
@@ -162,7 +170,9 @@ class ShipModel:
             part, name = self._where(path)
             changes.setdefault(part, {})[name] = value
         return replace(
-            self, parts=self.parts | {part: replace(self.parts[part], **new) for part, new in changes.items()}
+            self,
+            parts=self.parts
+            | {part: replace(self.parts[part], **new) for part, new in changes.items()},
         )
 
     def _where(self, path: str) -> tuple[str, str]:

@@ -50,13 +50,20 @@ def ship_model_of(system: System) -> ShipModel:
         if kind is None:
             third_party[name] = third_party_fmu_of(system, name, ship.name)
         parts[name] = _values(system.components[name], kind) if kind else part_of(third_party[name])
-    if problems := list(filter(None, (problem_of(system, name, ship.name, one) for name, one in third_party.items()))):
+    if problems := list(
+        filter(
+            None, (problem_of(system, name, ship.name, one) for name, one in third_party.items())
+        )
+    ):
         raise ShipcosimError(problems)
-    ours, water = [name for name in parts if isinstance(parts[name], OWN_THRUSTERS)], water_of(parts["hull"].length)
+    ours = [name for name in parts if isinstance(parts[name], OWN_THRUSTERS)]
+    water = water_of(parts["hull"].length)
     neighbours = neighbours_of(system, parts)
     parts = neighbours_placed(parts, neighbours) | {"water": water, "instruments": Instruments()}
     driven = [*ours, *(name for name, one in third_party.items() if one.drives)]
-    parts |= {"hull_form": HullForm(), "wind_form": WindForm()} | {form_of(name): ThrusterForm() for name in driven}
+    parts |= {"hull_form": HullForm(), "wind_form": WindForm()} | {
+        form_of(name): ThrusterForm() for name in driven
+    }
     found = {"wiring": wiring_of(system, ship.name, ours), "third_party": third_party}
     found |= {"fixed": fixed_of(system, parts), "neighbours": neighbours}
     return ShipModel(parts, ship.name, tolerances_of(system, parts, ship.name), **found)
@@ -79,7 +86,11 @@ def _vessel(system: System) -> Component:
 
 def _loading(system: System, ship: str) -> list[str]:
     """Components that put a load on the ship."""
-    sources = {c.source[0] for c in system.connections if c.target[0] == ship and c.target[1].startswith("tau_")}
+    sources = {
+        c.source[0]
+        for c in system.connections
+        if c.target[0] == ship and c.target[1].startswith("tau_")
+    }
     return [name for name in system.components if name in sources]
 
 
@@ -107,9 +118,16 @@ def _missing(component: Component, kind: type) -> list[str]:
 def _left_out(system: System, ship: Component) -> Iterator[Problem]:
     """Problems of a ship and of thrusters of ours: parameters that nothing gives, or that the FMU does not know."""
     for component in system.components.values():
-        kinds = (HullParameters, WindParameters) if component is ship else filter(None, [_thruster_kind(component)])
-        kinds, where = list(kinds), f"{system.file}: {component.name}"
-        if names := [item.name for kind in kinds for item in fields(kind) if item.name in component.left_out]:
+        kinds = (
+            (HullParameters, WindParameters)
+            if component is ship
+            else filter(None, [_thruster_kind(component)])
+        )
+        kinds = list(kinds)
+        where = f"{system.file}: {component.name}"
+        if names := [
+            item.name for kind in kinds for item in fields(kind) if item.name in component.left_out
+        ]:
             found = f"parameters left out, which have no value of their own: {', '.join(names)}."
             yield Problem(where, found, "Give them, as a ship's parameter set does.")
         if names := [name for kind in kinds for name in _missing(component, kind)]:

@@ -46,7 +46,10 @@ class Kernel:
 
     def rate(self, series: np.ndarray, order: int = 1) -> np.ndarray:
         """Its derivative of an order, averaged alike. [per s]"""
-        return gaussian_filter(series, self.width / self.step, order=order, ends="held") / self.step**order
+        return (
+            gaussian_filter(series, self.width / self.step, order=order, ends="held")
+            / self.step**order
+        )
 
     def clear_of(self, bad: np.ndarray) -> np.ndarray:
         """Rows as far from bad ones, and from both ends, as the kernel reaches."""
@@ -72,7 +75,9 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
     -------
     tuple of Motion, (n,) bool array
     """
-    rows, columns, bad = np.arange(record.time.size), [], np.zeros(record.time.size, bool)
+    rows = np.arange(record.time.size)
+    columns = []
+    bad = np.zeros(record.time.size, bool)
     for channel in range(6):
         series = record.measured[:, channel]
         whole = np.isfinite(series)

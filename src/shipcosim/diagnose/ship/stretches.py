@@ -54,7 +54,9 @@ def in_stretches(log: xarray.Dataset, length: float) -> xarray.Dataset:
     most = MOST_ROWS * rows_averaged(length, time[1] - time[0])
     if time.size <= most:
         return log
-    rows = np.flatnonzero(np.any([np.isfinite(channel.values) for channel in log.data_vars.values()], axis=0))
+    rows = np.flatnonzero(
+        np.any([np.isfinite(channel.values) for channel in log.data_vars.values()], axis=0)
+    )
     part = most // STRETCHES
     if rows.size > most:
         first = np.linspace(0, rows.size - part, STRETCHES).round().astype(int)

@@ -43,10 +43,13 @@ class QuadraticThrust(NamedTuple):
 
     def loads(self, rpm: Arithmetic, azimuth: Arithmetic) -> tuple[Load, Load, Load]:
         """Loads on the ship [N, N, N.m], and their derivatives by speed [rpm] and direction [rad]."""
-        c, s = np.cos(self.axis + azimuth), np.sin(self.axis + azimuth)
+        c = np.cos(self.axis + azimuth)
+        s = np.sin(self.axis + azimuth)
         share = np.where(rpm >= 0.0, self.ahead, self.astern)
-        along, across = (c, s, self.x * s - self.y * c), (-s, c, self.x * c + self.y * s)
-        thrust, slope = share * rpm * np.abs(rpm), 2.0 * share * np.abs(rpm)
+        along = (c, s, self.x * s - self.y * c)
+        across = (-s, c, self.x * c + self.y * s)
+        thrust = share * rpm * np.abs(rpm)
+        slope = 2.0 * share * np.abs(rpm)
         return _times(thrust, along), _times(slope, along), _times(thrust, across)
 
 
@@ -85,9 +88,13 @@ class Surrogate:
     thrust: QuadraticThrust
     rpm_max: float
     rows: np.ndarray
-    met: dict[bytes, tuple[list[np.ndarray], np.ndarray]] = field(default_factory=dict, init=False, repr=False)
+    met: dict[bytes, tuple[list[np.ndarray], np.ndarray]] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
-    def loads(self, time: np.ndarray, given: Mapping[str, Arithmetic], part: ThirdPartyPart) -> Load:
+    def loads(
+        self, time: np.ndarray, given: Mapping[str, Arithmetic], part: ThirdPartyPart
+    ) -> Load:
         """Loads on the ship.
 
         Parameters
@@ -104,7 +111,10 @@ class Surrogate:
             X, Y, N. [N, N, N.m]
         """
         about, rest = self._at(time)
-        told = {name: given[name] + sign * getattr(part, off) for name, off, sign in _offsets(given, part)}
+        told = {
+            name: given[name] + sign * getattr(part, off)
+            for name, off, sign in _offsets(given, part)
+        }
         given = {**given, **told}
         found = list(rest[0])
         off = [given[name] - value for name, value in zip(self.about, about, strict=True)]

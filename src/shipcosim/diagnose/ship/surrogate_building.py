@@ -15,7 +15,13 @@ import numpy as np
 
 from shipcosim.cosim import RunOptions, simulate
 from shipcosim.diagnose.ship.surrogate import QuadraticThrust, Surrogate, without_holes
-from shipcosim.diagnose.ship.third_party_fmu import DRIVES, MOTION, ThirdPartyFmu, drives_of, number_of
+from shipcosim.diagnose.ship.third_party_fmu import (
+    DRIVES,
+    MOTION,
+    ThirdPartyFmu,
+    drives_of,
+    number_of,
+)
 from shipcosim.models.core.motion import Motion
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
@@ -30,13 +36,21 @@ if TYPE_CHECKING:
 __all__ = ["surrogates_of", "with_surrogates"]
 
 _AXES = ("X", "Y", "N")
-_CHANGE = {"x": 0.1, "y": 0.1, "psi": 2e-3, "azimuth": 2e-3, "r": 1e-3}  # m, rad, rad/s: changes for derivatives
+_CHANGE = {
+    "x": 0.1,
+    "y": 0.1,
+    "psi": 2e-3,
+    "azimuth": 2e-3,
+    "r": 1e-3,
+}  # m, rad, rad/s: changes for derivatives
 _CHANGE |= dict.fromkeys(("u", "v", "u_r", "v_r"), 0.01)  # m/s
 _CHANGE_OF_DRIVE = 2e-3  # of the largest speed or thrust
 _CHANGE_OF_PARAMETER = 0.1  # of a tolerance
 _LEAD = 30.0  # s, in which an FMU settles at what the log begins with
 _MOST_STEPS = 250_000  # of all FMUs together
-_NEAR = 0.05  # of the largest speed, and in rad: for other inputs than these another surrogate is made
+_NEAR = (
+    0.05  # of the largest speed, and in rad: for other inputs than these another surrogate is made
+)
 
 
 def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipModel:
@@ -64,8 +78,11 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
         if one.surrogate is None or not _fits(one.surrogate, record, units.get(name, {}))
     }
     surrogates = surrogates_of(new, record.time, units, motion) if new else {}
-    third_party = model.third_party | {name: replace(new[name], surrogate=one) for name, one in surrogates.items()}
-    parts, tolerances = dict(model.parts), dict(model.tolerances)
+    third_party = model.third_party | {
+        name: replace(new[name], surrogate=one) for name, one in surrogates.items()
+    }
+    parts = dict(model.parts)
+    tolerances = dict(model.tolerances)
     for name, one in third_party.items():
         if "rpm" in one.drives:
             parts[name] = replace(parts[name], rpm_max=one.built_surrogate.rpm_max)
@@ -77,7 +94,10 @@ def _fits(surrogate: Surrogate, record: Record, units: Mapping[str, np.ndarray])
     """True if a surrogate was built for these times and similar inputs."""
     inside = surrogate.rows[0] <= record.time[0] and record.time[-1] <= surrogate.rows[-1] + 1e-6
     clock = without_holes(surrogate.rows, record.time)
-    near = {kind: _NEAR * max(np.abs(surrogate.about.get(kind, 0.0)).max(), 1.0) for kind in ("rpm", "thrust")}
+    near = {
+        kind: _NEAR * max(np.abs(surrogate.about.get(kind, 0.0)).max(), 1.0)
+        for kind in ("rpm", "thrust")
+    }
     near["azimuth"] = _NEAR
     return inside and all(
         np.sqrt(np.mean((units[kind] - np.interp(clock, surrogate.time, values)) ** 2)) < near[kind]
@@ -112,8 +132,13 @@ def surrogates_of(
     given = {name: {**moved, **units.get(name, {})} for name in third_party}
     runs = [run for name, one in third_party.items() for run in _runs(name, one, given[name])]
     clock = without_holes(time, time)
-    fine = _fine(clock, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0))
-    fed = {name: {q: np.interp(fine, clock, values) for q, values in each.items()} for name, each in given.items()}
+    fine = _fine(
+        clock, len(runs), max((one.step or 0.0 for one in third_party.values()), default=0.0)
+    )
+    fed = {
+        name: {q: np.interp(fine, clock, values) for q, values in each.items()}
+        for name, each in given.items()
+    }
     table = _simulated(runs, third_party, fed, fine)
     return {
         name: _surrogate(one, [run for run in runs if run.of == name], table, fine, fed[name], time)
@@ -144,7 +169,8 @@ def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Ite
 
 def _fine(time: np.ndarray, runs: int, step: float) -> np.ndarray:
     """Times of the run: a quarter of the rows' step or the system's own, coarser where there are many copies."""
-    row, span = time[1] - time[0], time[-1] - time[0]
+    row = time[1] - time[0]
+    span = time[-1] - time[0]
     wanted = max(0.25 * row, step, min(row, runs * span / _MOST_STEPS))
     h = step * max(int(wanted / step + 1e-6), 1) if step else wanted
     return time[0] + h * np.arange(int(np.ceil(span / h - 1e-6)) + 1)
@@ -158,7 +184,11 @@ def _simulated(
 ) -> xarray.Dataset:
     """Table of a co-simulation of all copies, settled beforehand; rows are those of the times and one more."""
     h = fine[1] - fine[0]
-    lead, components, connections, inputs, columns = int(np.ceil(_LEAD / h)), {}, [], {}, {}
+    lead = int(np.ceil(_LEAD / h))
+    components = {}
+    connections = []
+    inputs = {}
+    columns = {}
     for run in runs:
         one = third_party[run.of]
         start = dict(one.component.start)
@@ -169,13 +199,21 @@ def _simulated(
         for link in one.links:
             place = f"{run.of} {link.quantity}"
             off = link.factor * run.by if link.quantity == run.quantity else 0.0
-            connections.append(Connection((None, place), (run.name, link.variable), link.factor, link.offset + off))
+            connections.append(
+                Connection((None, place), (run.name, link.variable), link.factor, link.offset + off)
+            )
             inputs[place] = Signal(place, "Real")
-            columns[place] = np.concatenate([np.full(lead, fed[run.of][link.quantity][0]), fed[run.of][link.quantity]])
+            columns[place] = np.concatenate(
+                [np.full(lead, fed[run.of][link.quantity][0]), fed[run.of][link.quantity]]
+            )
     clock = h * np.arange(lead + fine.size + 1)
-    table = make_table(clock, [(name, np.append(values, values[-1]), "", "") for name, values in columns.items()])
+    table = make_table(
+        clock, [(name, np.append(values, values[-1]), "", "") for name, values in columns.items()]
+    )
     system = System("parts alone", "parts alone", components, tuple(connections), inputs)
-    found = simulate(system, Scenario(stop_time=float(clock[-1]), step_size=float(h)), RunOptions(inputs=table))
+    found = simulate(
+        system, Scenario(stop_time=float(clock[-1]), step_size=float(h)), RunOptions(inputs=table)
+    )
     return found.isel(time=slice(lead + 1, None))  # what a step makes of a row is there at its end
 
 
@@ -191,10 +229,18 @@ def _surrogate(
     base, *others = (_on_ship(one, run.name, table) for run in runs)
     quantities = [run.quantity for run in runs if run.quantity]
     nominal = {n: number_of(one.component, v) for n, v in one.parameters.items()}
-    rest = np.stack([base, *((other - base) / run.by for other, run in zip(others, runs[1:], strict=True))])
-    about, thrust, most = {q: fed[q] for q in quantities}, QuadraticThrust(), 1.0
+    rest = np.stack(
+        [base, *((other - base) / run.by for other, run in zip(others, runs[1:], strict=True))]
+    )
+    about = {q: fed[q] for q in quantities}
+    thrust = QuadraticThrust()
+    most = 1.0
     if "rpm" in about:
-        top = next(one.component.fmu.variables[x.variable].maximum for x in one.links if x.quantity == "rpm")
+        top = next(
+            one.component.fmu.variables[x.variable].maximum
+            for x in one.links
+            if x.quantity == "rpm"
+        )
         factor = next(link.factor for link in one.links if link.quantity == "rpm")
         logged = float(max(np.abs(fed["rpm"]).max(), 1.0))
         most = max(abs(top / factor), logged) if top and np.isfinite(top) and top < 1e6 else logged
@@ -215,7 +261,9 @@ def _on_ship(one: ThirdPartyFmu, name: str, table: xarray.Dataset) -> np.ndarray
     return found
 
 
-def fitted_thrust(load: np.ndarray, rpm: np.ndarray, azimuth: np.ndarray, turns: bool) -> QuadraticThrust:
+def fitted_thrust(
+    load: np.ndarray, rpm: np.ndarray, azimuth: np.ndarray, turns: bool
+) -> QuadraticThrust:
     """The quadratic law of thrust that fits loads best.
 
     Parameters
@@ -240,7 +288,9 @@ def fitted_thrust(load: np.ndarray, rpm: np.ndarray, azimuth: np.ndarray, turns:
     along = np.cos(axis + azimuth) * load[0] + np.sin(axis + azimuth) * load[1]
     both = along @ square / scale
     ways = [square * where for where in (rpm > 0.0, rpm < 0.0)]
-    ahead, astern = (max(along @ way / (way @ way), 0.0) if way @ way > 0.01 * scale else both for way in ways)
+    ahead, astern = (
+        max(along @ way / (way @ way), 0.0) if way @ way > 0.01 * scale else both for way in ways
+    )
     if both <= 0.0 or min(ahead, astern) <= 0.0:
         return QuadraticThrust()
     levers = np.stack([load[1], -load[0]], axis=-1)

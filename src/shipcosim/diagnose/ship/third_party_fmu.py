@@ -33,7 +33,11 @@ DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
 """What a log says of a thruster, and in which unit it is handed on."""
 MOTION = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r")
 """Outputs of the ship that a log tells."""
-_UNITS = {"rpm": ("rpm", "rad/s", "rev/s", "rev/min"), "thrust": ("N", "kN"), "azimuth": ("rad", "deg")}
+_UNITS = {
+    "rpm": ("rpm", "rad/s", "rev/s", "rev/min"),
+    "thrust": ("N", "kN"),
+    "azimuth": ("rad", "deg"),
+}
 _KNOWN = 0.02  # of the thrust, where nobody says more (assumed)
 
 
@@ -118,13 +122,19 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
     ThirdPartyFmu
         Without links where nothing that a log has feeds it; `problem_of` says so.
     """
-    component, into = system.components[name], {}
+    component = system.components[name]
+    into = {}
     for connection in system.connections:
         if connection.target[0] == name:
             into.setdefault(connection.target[1], []).append(connection)
-    links, idle, unclear, drives = [], [], [], {kind: [] for kind in DRIVES}
+    links = []
+    idle = []
+    unclear = []
+    drives = {kind: [] for kind in DRIVES}
     for variable, feeding in into.items():
-        if all(c.source[0] == ship and c.source[1] in MOTION and c.mapping is None for c in feeding):
+        if all(
+            c.source[0] == ship and c.source[1] in MOTION and c.mapping is None for c in feeding
+        ):
             links += [Link(c.source[1], variable, c.factor, c.offset) for c in feeding]
         elif kind := _kind(system, feeding[0]):
             drives[kind].append(feeding[0])
@@ -144,7 +154,9 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
         if c.source[0] == name and c.target[0] == ship and c.target[1].startswith("tau_")
     )
     step = max(filter(None, (system.experiment.step_size, component.step_size)), default=None)
-    return ThirdPartyFmu(component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step)
+    return ThirdPartyFmu(
+        component, tuple(links), loads, _parameters(component), tuple(idle), tuple(unclear), step
+    )
 
 
 def _kind(system: System, connection: Connection) -> str | None:
@@ -161,7 +173,8 @@ def _kind(system: System, connection: Connection) -> str | None:
 
 def _unit(system: System, connection: Connection) -> str | None:
     """Unit in which a log would feed it: that of the system's input, else of the variable."""
-    (source, given), (name, variable) = connection.source, connection.target
+    (source, given) = connection.source
+    (name, variable) = connection.target
     own = None if name is None else system.components[name].fmu.variables[variable].unit
     return (system.inputs[given].unit or own) if source is None else own
 
@@ -172,7 +185,12 @@ def _drive(system: System, kind: str, connection: Connection) -> Link:
     per, offset = (1.0, 0.0) if unit in (None, "", "1") else conversion(DRIVES[kind], unit)
     if connection.source[0] is not None:
         return Link(kind, connection.target[1], per, offset)
-    return Link(kind, connection.target[1], connection.factor * per, connection.factor * offset + connection.offset)
+    return Link(
+        kind,
+        connection.target[1],
+        connection.factor * per,
+        connection.factor * offset + connection.offset,
+    )
 
 
 def _parameters(component: Component) -> dict[str, str]:
@@ -180,16 +198,24 @@ def _parameters(component: Component) -> dict[str, str]:
     found = {}
     for variable in component.tolerances:
         known = component.fmu.variables.get(variable)
-        scalar = known is not None and isinstance(component.start_value(variable), float) and not known.dimensions
+        scalar = (
+            known is not None
+            and isinstance(component.start_value(variable), float)
+            and not known.dimensions
+        )
         if scalar and variable not in _numbers(DRIVES):
             name = re.sub(r"\W", "_", variable)
-            found[name if name.isidentifier() and not keyword.iskeyword(name) else f"_{name}"] = variable
+            found[name if name.isidentifier() and not keyword.iskeyword(name) else f"_{name}"] = (
+                variable
+            )
     return found
 
 
 def _numbers(drives: Collection[str]) -> dict[str, Any]:
     """Numbers that any thruster has, whoever made it: its loss, and offsets of what drives it."""
-    loss = quantity(0.0, "1", "share of its load that is missing", "neutral", tolerance=_KNOWN, maximum=1.0)
+    loss = quantity(
+        0.0, "1", "share of its load that is missing", "neutral", tolerance=_KNOWN, maximum=1.0
+    )
     offset = quantity(0.0, "rpm", "given speed minus the real one", "neutral")
     most = quantity(1.0, "rpm", "largest speed", "the FMU's, else the log's", minimum=1e-6)
     turned = quantity(0.0, "rad", "real direction minus the given one", "neutral", tolerance=0.0035)
@@ -209,12 +235,16 @@ def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
     -------
     ThirdPartyPart
     """
-    component, numbers = third_party.component, _numbers(third_party.drives)
+    component = third_party.component
+    numbers = _numbers(third_party.drives)
     for name, variable in third_party.parameters.items():
-        about, tolerance = component.fmu.variables[variable], component.tolerances[variable]
+        about = component.fmu.variables[variable]
+        tolerance = component.tolerances[variable]
         text = about.description or variable
         value = component.start_value(variable)
-        numbers[name] = quantity(value, about.unit or "1", text, "the system's", tolerance=tolerance)
+        numbers[name] = quantity(
+            value, about.unit or "1", text, "the system's", tolerance=tolerance
+        )
     listed = [(name, float, one) for name, one in numbers.items()]
     return make_dataclass("ThirdPartyPartOf", listed, bases=(ThirdPartyPart,), frozen=True)()
 
@@ -223,7 +253,11 @@ def problem_of(system: System, name: str, ship: str, one: ThirdPartyFmu) -> Prob
     """What to say of a third-party FMU whose load no log tells; None where it does."""
     if one.links and not one.unclear:
         return None
-    why = f"any of {', '.join(one.unclear)} could be what drives it" if one.unclear else "nothing of a log feeds it"
+    why = (
+        f"any of {', '.join(one.unclear)} could be what drives it"
+        if one.unclear
+        else "nothing of a log feeds it"
+    )
     found = f"'{name}' ({one.component.fmu.model_name}) puts a load on '{ship}', and {why}."
     remedy = (
         f"Feed its speed by an input of the system named '{name}_rpm', its direction by '{name}_azimuth' (in rpm or "

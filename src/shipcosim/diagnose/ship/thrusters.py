@@ -71,12 +71,17 @@ def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
     """
     unit = model.parts[name]
     if name in model.third_party:
-        surrogate, pointed = model.third_party[name].built_surrogate, "azimuth" in model.drives(name)
-        b, most = surrogate.thrust, surrogate.rpm_max / 60.0
-        return DpThruster(b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, most)
+        surrogate = model.third_party[name].built_surrogate
+        pointed = "azimuth" in model.drives(name)
+        b = surrogate.thrust
+        most = surrogate.rpm_max / 60.0
+        return DpThruster(
+            b.x, b.y, b.axis, pointed, False, 3600.0 * b.ahead, 3600.0 * b.astern, most
+        )
     if isinstance(unit, AzimuthParameters):
         turns = name not in model.fixed
-        axis, (ahead, astern) = model.fixed.get(name, 0.0), unit.bollard[:2]
+        axis = model.fixed.get(name, 0.0)
+        (ahead, astern) = unit.bollard[:2]
         return DpThruster(unit.x, unit.y, axis, turns, turns, ahead, astern, unit.rpm_max / 60.0)
     thrust = 3600.0 * unit.thrust_coefficient
     return DpThruster(unit.x, 0.0, 0.5 * np.pi, False, False, thrust, thrust, unit.rpm_max / 60.0)
@@ -102,7 +107,9 @@ def thruster_loads(
     """
     if model.wiring is None:
         return _loads_of(name, inputs.units, u_r, v_r, r, model)
-    units = inputs.units | {other: model.wiring.driven(other, inputs.units) for other in model.wiring.drives}
+    units = inputs.units | {
+        other: model.wiring.driven(other, inputs.units) for other in model.wiring.drives
+    }
     return model.wiring.loaded(name, _loads_of(name, units, u_r, v_r, r, model))
 
 
@@ -114,7 +121,8 @@ def _loads_of(
     r: Arithmetic,
     model: ShipModel,
 ) -> Load:
-    unit, (n, azimuth) = model.parts[name], units[name]
+    unit = model.parts[name]
+    (n, azimuth) = units[name]
     if isinstance(unit, TunnelParameters):
         *_, surge, sway, yaw = tunnel_loads(tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
         return surge, sway, yaw
@@ -141,12 +149,21 @@ def neighbours_of(system: System, parts: Mapping[str, Any]) -> dict[str, str]:
     dict of str to str
     """
     units = [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]
-    wired = {(c.target[0], c.source[0]) for c in system.connections if c.target[1].startswith("neighbour_")}
+    wired = {
+        (c.target[0], c.source[0])
+        for c in system.connections
+        if c.target[1].startswith("neighbour_")
+    }
     found = {}
     for name in units:
-        here, others = parts[name], [other for other in units if other != name]
+        here = parts[name]
+        others = [other for other in units if other != name]
         near = sorted(
-            others, key=lambda o: ((name, o) not in wired, abs(parts[o].x - here.x) + abs(parts[o].y - here.y))
+            others,
+            key=lambda o: (
+                (name, o) not in wired,
+                abs(parts[o].x - here.x) + abs(parts[o].y - here.y),
+            ),
         )
         found |= {name: near[0]} if near else {}
     return found
@@ -157,7 +174,9 @@ def neighbours_placed(parts: Mapping[str, Any], neighbours: Mapping[str, str]) -
     placed = dict(parts)
     for name, other in neighbours.items():
         if parts[name].neighbour_x == parts[name].neighbour_y == 0.0:
-            placed[name] = replace(parts[name], neighbour_x=parts[other].x, neighbour_y=parts[other].y)
+            placed[name] = replace(
+                parts[name], neighbour_x=parts[other].x, neighbour_y=parts[other].y
+            )
     return placed
 
 
@@ -174,10 +193,15 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     dict of str to float
         [rad]
     """
-    fed, found = {connection.target for connection in system.connections}, {}
+    fed = {connection.target for connection in system.connections}
+    found = {}
     for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:
         replays = bool(system.components[name].start_value("replay"))
-        kinds = ("rpm_in", "azimuth_in", "azimuth_in") if replays else ("thrust_cmd", "azimuth_cmd", "azimuth_start")
+        kinds = (
+            ("rpm_in", "azimuth_in", "azimuth_in")
+            if replays
+            else ("thrust_cmd", "azimuth_cmd", "azimuth_start")
+        )
         speed, direction, start = kinds
         turned = (name, direction) in fed or (name, speed) not in fed
         if not turned or parts[name].azimuth_rate == 0.0:

@@ -79,7 +79,10 @@ def fastest_rate(ship: ShipModel, motion: Motion) -> float:
     float
         Of the three velocities the largest rate of decay, exceeded in 1 % of the rows: a few may be faulty. [1/s]
     """
-    return max((float(np.percentile(rate, 99.0)) for rate in _rates(ship, motion) if rate.size), default=0.0)
+    return max(
+        (float(np.percentile(rate, 99.0)) for rate in _rates(ship, motion) if rate.size),
+        default=0.0,
+    )
 
 
 def _rates(ship: ShipModel, motion: Motion) -> list[np.ndarray]:

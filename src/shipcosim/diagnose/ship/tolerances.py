@@ -47,7 +47,9 @@ def _assumed(values: Any, item: Field, value: float) -> float:
     """Tolerance of a number of which nobody says how well it is known: its own, or a share of its size."""
     about = item.metadata
     if about["tolerance"]:
-        return about["tolerance"] * (abs(value / item.default) if item.default not in (0.0, MISSING) else 1.0)
+        return about["tolerance"] * (
+            abs(value / item.default) if item.default not in (0.0, MISSING) else 1.0
+        )
     if about["share"]:
         return about["share"] * (values.rpm_max if item.name == "rpm_offset" else abs(value))
     return _COEFFICIENT * abs(value) if item.name[:2] in ("X_", "Y_", "N_") else 0.0

@@ -28,7 +28,9 @@ _FREQUENCY = 0.5  # rad/s times the root of length in m over gravity, of the con
 _DAMPING = 0.8
 _INTEGRAL = 0.1  # of the frequency
 _ACROSS = 0.2  # how readily a unit turns, against how readily it changes its speed
-_ANSWER = 4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
+_ANSWER = (
+    4.0  # s, until the thrusters of a ship of 33.9 m do as told; others by the root of their length
+)
 
 
 def kept_on_track(
@@ -64,14 +66,18 @@ def kept_on_track(
     tuple of Motion, dict of str to tuple of two arrays
         Motion, and speed and direction by thruster; (m, n) arrays.
     """
-    h, n = record.step, record.time.size
+    h = record.step
+    n = record.time.size
     parts = record.substeps(ships)
     inputs = [record.inputs(ships, (i + 0.5) / parts) for i in range(parts)]
     ship = Motion(*(np.zeros(count) + value[..., 0] for value in track))
     shares = dp.shares({name: azimuth for name, (_, azimuth) in record.units.items()}, held or {})
     shares = np.moveaxis(shares, -3, 0)
-    told, integral, rates = np.zeros((shares.shape[-2], count)), np.zeros((3, count)), Motion(*np.zeros((6, count)))
-    rows, units = [], {name: [] for name in ships.thrusters}
+    told = np.zeros((shares.shape[-2], count))
+    integral = np.zeros((3, count))
+    rates = Motion(*np.zeros((6, count)))
+    rows = []
+    units = {name: [] for name in ships.thrusters}
     for k in range(n):
         rows.append(ship)
         load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
@@ -85,11 +91,15 @@ def kept_on_track(
                 now = dp.speeds(told, record, k + (i + 0.5) / parts) if parts > 1 else speeds
                 ship, rates = _moved(ship, rates, _at(part, k, now), ships, h / parts, dp)
             if jolts is not None:
-                ship = ship._replace(u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2])
+                ship = ship._replace(
+                    u=ship.u + jolts[k][0], v=ship.v + jolts[k][1], r=ship.r + jolts[k][2]
+                )
             ship = dp.bounded(ship)
             if k < n - 1 and record.is_last[k]:
                 ship = Motion(*(np.zeros(count) + value[..., k + 1] for value in track))
-                told, integral, rates = 0.0 * told, 0.0 * integral, Motion(*np.zeros((6, count)))
+                told = 0.0 * told
+                integral = 0.0 * integral
+                rates = Motion(*np.zeros((6, count)))
     motion = Motion(*(np.stack(series, axis=-1) for series in zip(*rows, strict=True)))
     series = {}
     for name, pairs in units.items():
@@ -110,7 +120,11 @@ def _between(series, row):
 
 def _at(inputs, k, units):
     """What drives the ships over a step: the wind of the record, and thrusters as they are told."""
-    wind = (None, None) if inputs.wind_speed is None else (inputs.wind_speed[..., k], inputs.wind_from[..., k])
+    wind = (
+        (None, None)
+        if inputs.wind_speed is None
+        else (inputs.wind_speed[..., k], inputs.wind_from[..., k])
+    )
     return Inputs(inputs.time[k], units, *wind)
 
 
@@ -137,22 +151,33 @@ class DpController:
     def __init__(self, model: ShipModel, h: float, fixed: Collection[str] = ()) -> None:
         hull = model.parts["hull"]
         self.thrusters = {name: dp_thruster_of(model, name) for name in model.thrusters}
-        self.h, self.model, self.fixed = h, model, fixed
+        self.h = h
+        self.model = model
+        self.fixed = fixed
         self.frequency = _FREQUENCY * np.sqrt(9.81 / hull.length) / 3.0
         self.delay = _ANSWER * np.sqrt(hull.length / 33.9)
-        self.mass = np.array([hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66])
+        self.mass = np.array(
+            [hull.mass + hull.A11, hull.mass + hull.A22, hull.inertia_yaw + hull.A66]
+        )
         self.most = 0.05 * self.mass * np.array([1.0, 1.0, 4.0 / hull.length])
 
     def bounded(self, ship: Motion) -> Motion:
         """The ships no faster than any ship is: one that cannot be steered so gets lost, not infinite."""
         most = np.sqrt(9.81 * self.model.parts["hull"].length)
-        u, v, r = (np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.model.parts["hull"].length))
+        u, v, r = (
+            np.clip(value, -most, most)
+            for value in (ship.u, ship.v, ship.r * self.model.parts["hull"].length)
+        )
         return ship._replace(u=u, v=v, r=r / self.model.parts["hull"].length)
 
-    def load(self, ship: Motion, want: Motion, integral: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def load(
+        self, ship: Motion, want: Motion, integral: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Load that brings the ships back to the track, in their body frames; and the integral action."""
-        c, s = np.cos(ship.psi), np.sin(ship.psi)
-        dx, dy = want.x - ship.x, want.y - ship.y
+        c = np.cos(ship.psi)
+        s = np.sin(ship.psi)
+        dx = want.x - ship.x
+        dy = want.y - ship.y
         error = np.stack([c * dx + s * dy, c * dy - s * dx, want.psi - ship.psi])
         rate = np.stack([want.u - ship.u, want.v - ship.v, want.r - ship.r])
         w = self.frequency
@@ -164,7 +189,9 @@ class DpController:
         """Forces that the controller adds a step later, of first order towards those of a load; (k, m) array. [N]"""
         return told + min(self.h / self.delay, 1.0) * (_times(shares, load) - told)
 
-    def shares(self, azimuths: Mapping[str, np.ndarray], held: Mapping[str, np.ndarray]) -> np.ndarray:
+    def shares(
+        self, azimuths: Mapping[str, np.ndarray], held: Mapping[str, np.ndarray]
+    ) -> np.ndarray:
         """What each thruster takes of a load on the ship, along and, where it turns, across its axis.
 
         Parameters
@@ -179,12 +206,14 @@ class DpController:
         (..., k, 3) array
             For k forces, in the order of the thrusters.
         """
-        columns, eases = [], []
+        columns = []
+        eases = []
         for name, unit in self.thrusters.items():
             angle = unit.axis + (azimuths[name] if unit.pointed else 0.0 * azimuths[name])
             alone = held.get(name, False) if unit.ahead else True
             for i in range(self._forces(name)):
-                c, s = np.cos(angle + 0.5 * np.pi * i), np.sin(angle + 0.5 * np.pi * i)
+                c = np.cos(angle + 0.5 * np.pi * i)
+                s = np.sin(angle + 0.5 * np.pi * i)
                 columns.append(np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
                 eases.append(np.where(alone, 0.0, _ACROSS if i else 1.0)[..., None] + np.zeros(3))
         scale = np.array([1.0, 1.0, 4.0 / self.model.parts["hull"].length])
@@ -204,29 +233,39 @@ class DpController:
 
     def _by_thruster(self, forces: np.ndarray) -> dict[str, np.ndarray]:
         """Forces along and across the axis of each thruster."""
-        found, place = {}, 0
+        found = {}
+        place = 0
         for name in self.thrusters:
             own = forces[place : place + self._forces(name)]
             found[name] = own if len(own) > 1 else np.concatenate([own, np.zeros_like(own)])
             place += len(own)
         return found
 
-    def speeds(self, told: np.ndarray, record: Record, k: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def speeds(
+        self, told: np.ndarray, record: Record, k: float
+    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         """Speed and direction of each thruster: those of the record, changed by what the controller adds.
 
         The row may be a broken number, for a time between two.
         """
         found = {}
         for name, (along, across) in self._by_thruster(told).items():
-            unit, (n, azimuth) = self.thrusters[name], (_between(series, k) for series in record.units[name])
+            unit = self.thrusters[name]
+            (n, azimuth) = (_between(series, k) for series in record.units[name])
             if not unit.ahead:
                 found[name] = n + 0.0 * along, azimuth + 0.0 * along
                 continue
-            size, turn = self.force(name, n) + along, 0.0
+            size = self.force(name, n) + along
+            turn = 0.0
             if unit.turns:
                 # a unit that hardly pushes cannot be told by its direction: it keeps it
-                turn = np.clip(across / np.maximum(np.abs(size), 0.02 * self.force(name, unit.most)), -0.5, 0.5)
-            found[name] = np.clip(self.speed(name, size), -unit.most, unit.most), azimuth + turn * np.sign(size)
+                turn = np.clip(
+                    across / np.maximum(np.abs(size), 0.02 * self.force(name, unit.most)), -0.5, 0.5
+                )
+            found[name] = (
+                np.clip(self.speed(name, size), -unit.most, unit.most),
+                azimuth + turn * np.sign(size),
+            )
         return found
 
     def force(self, name: str, n: Arithmetic) -> np.ndarray:
@@ -237,7 +276,9 @@ class DpController:
     def speed(self, name: str, force: Arithmetic) -> np.ndarray:
         """Speed at which a thruster has that thrust at the bollard. [rev/s]"""
         unit = self.thrusters[name]
-        return np.sign(force) * np.sqrt(np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern))
+        return np.sign(force) * np.sqrt(
+            np.abs(force) / np.where(force >= 0, unit.ahead, unit.astern)
+        )
 
 
 def _times(shares: np.ndarray, load: np.ndarray) -> np.ndarray:

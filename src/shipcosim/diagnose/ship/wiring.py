@@ -44,11 +44,14 @@ class Wiring:
         if name not in self.loads:
             return load
         surge, sway, yaw = (
-            sum(share * axis for share, axis in zip(row, load, strict=True)) for row in self.loads[name]
+            sum(share * axis for share, axis in zip(row, load, strict=True))
+            for row in self.loads[name]
         )
         return surge, sway, yaw
 
-    def driven(self, name: str, units: Mapping[str, tuple[Arithmetic, Arithmetic]]) -> tuple[Arithmetic, Arithmetic]:
+    def driven(
+        self, name: str, units: Mapping[str, tuple[Arithmetic, Arithmetic]]
+    ) -> tuple[Arithmetic, Arithmetic]:
         """Speed and direction that a thruster gets, of those logged by thruster."""
         logged = [self.drives.get(name, {}).get(kind, (name, 1.0)) for kind in _DRIVES]
         speed, direction = (factor * units[source][i] for i, (source, factor) in enumerate(logged))
@@ -69,7 +72,9 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
     Wiring or None
         None where all is as named.
     """
-    loads, drives, odd = {}, {}, {}
+    loads = {}
+    drives = {}
+    odd = {}
     for name in thrusters:
         matrix = _matrix(system, vessel, name)
         if not np.allclose(matrix, np.eye(3), rtol=1e-9, atol=1e-12):
@@ -78,15 +83,23 @@ def wiring_of(system: System, vessel: str, thrusters: Sequence[str]) -> Wiring |
         drives[name] = _driven(system, name, thrusters)
         for kind, (source, factor) in drives[name].items():
             if source != name or abs(factor - 1.0) > 1e-9:
-                what = f"{factor:g} times {source}_{kind}" if abs(factor - 1.0) > 1e-9 else f"{source}_{kind}"
-                odd[name] = "; ".join(filter(None, (odd.get(name), f"its {kind} comes from {what}")))
+                what = (
+                    f"{factor:g} times {source}_{kind}"
+                    if abs(factor - 1.0) > 1e-9
+                    else f"{source}_{kind}"
+                )
+                odd[name] = "; ".join(
+                    filter(None, (odd.get(name), f"its {kind} comes from {what}"))
+                )
     return Wiring(loads, drives, odd) if odd else None
 
 
 def put_right(wiring: Wiring, name: str) -> Wiring | None:
     """The wiring with one thruster's as its connectors' names say; None where nothing odd is left."""
     rest = {other: told for other, told in wiring.odd.items() if other != name}
-    loads, drives = ({k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives))
+    loads, drives = (
+        {k: v for k, v in part.items() if k != name} for part in (wiring.loads, wiring.drives)
+    )
     return replace(wiring, loads=loads, drives=drives, odd=rest) if rest else None
 
 
@@ -94,8 +107,14 @@ def _matrix(system: System, vessel: str, name: str) -> np.ndarray:
     """Share of each axis of a thruster's load in each axis of the ship's."""
     matrix = np.zeros((3, 3))
     for connection in system.connections:
-        (source, output), (target, slot) = connection.source, connection.target
-        if source == name and target == vessel and output.startswith("tau_") and slot.startswith("tau_"):
+        (source, output) = connection.source
+        (target, slot) = connection.target
+        if (
+            source == name
+            and target == vessel
+            and output.startswith("tau_")
+            and slot.startswith("tau_")
+        ):
             matrix[_AXES.index(slot[4]), _AXES.index(output[4])] += connection.factor
     return matrix
 
@@ -104,7 +123,11 @@ def _told(matrix: np.ndarray) -> str:
     """A matrix in words: ``X: Y, Y: -1 Y, N: nothing``."""
     rows = []
     for axis, row in zip(_AXES, matrix, strict=True):
-        terms = [name if share == 1.0 else f"{share:g} {name}" for share, name in zip(row, _AXES, strict=True) if share]
+        terms = [
+            name if share == 1.0 else f"{share:g} {name}"
+            for share, name in zip(row, _AXES, strict=True)
+            if share
+        ]
         rows.append(f"{axis}: {' + '.join(terms) or 'nothing'}")
     return ", ".join(rows)
 
@@ -113,9 +136,16 @@ def _driven(system: System, name: str, thrusters: Sequence[str]) -> dict[str, tu
     """Whose logged speed and direction a thruster gets from the system's inputs, and by which factor."""
     found = {}
     for connection in system.connections:
-        (source, given), (target, variable) = connection.source, connection.target
+        (source, given) = connection.source
+        (target, variable) = connection.target
         other, _, kind = given.rpartition("_")
-        if source is None and target == name and variable == f"{kind}_in" and kind in _DRIVES and other in thrusters:
+        if (
+            source is None
+            and target == name
+            and variable == f"{kind}_in"
+            and kind in _DRIVES
+            and other in thrusters
+        ):
             unit = system.components[name].fmu.variables[variable].unit
             plain, _ = conversion(system.inputs[given].unit, unit)
             found[kind] = other, connection.factor / plain

@@ -53,7 +53,8 @@ def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
     is_named : bool
         Whether causes of the physics are named; else predictions are made with the plain model alone.
     """
-    problem, fit = log.problem, log.fit if is_named else without_causes(log.fits)
+    problem = log.problem
+    fit = log.fit if is_named else without_causes(log.fits)
     found = log.explained.identification.comparison
     plain = found.given(problem.model) if found and found.findings else None
     comparison = compare(problem, fit, plain=plain)
@@ -75,9 +76,16 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
         ``"other headings"``: all but the quarter circle with the most predictions in it of those that leave half of
         the rows. ``"free drift"``: all but the rows without thrust. What the log has none of is left out.
     """
-    rows, found = starts(record), {}
-    sectors = [without_headings(record, middle) for middle in np.radians(np.arange(0.0, 360.0, 30.0))]
-    tries = [(sorted_by(train, rows, record)[1].size, train) for train in sectors if train.mean() >= LEAST_TRAINED]
+    rows = starts(record)
+    found = {}
+    sectors = [
+        without_headings(record, middle) for middle in np.radians(np.arange(0.0, 360.0, 30.0))
+    ]
+    tries = [
+        (sorted_by(train, rows, record)[1].size, train)
+        for train in sectors
+        if train.mean() >= LEAST_TRAINED
+    ]
     most = max(tries, key=lambda one: one[0], default=(0, None))
     if most[0]:
         found["other headings"] = most[1]
@@ -87,7 +95,9 @@ def rows_without_condition(record: Record) -> dict[str, np.ndarray]:
     return found
 
 
-def compare_held_out(problem: IdentificationProblem, fit: Fit, plain: ShipModel | None = None) -> dict[str, Comparison]:
+def compare_held_out(
+    problem: IdentificationProblem, fit: Fit, plain: ShipModel | None = None
+) -> dict[str, Comparison]:
     """Comparisons on conditions that nothing was fitted on, wherever in the log they are.
 
     Parameters
@@ -114,4 +124,6 @@ def compare_held_out(problem: IdentificationProblem, fit: Fit, plain: ShipModel 
 def _only(comparison, which):
     """The comparison on some of its segments."""
     some = np.flatnonzero(which)
-    return replace(comparison, errors=comparison.errors.isel(segment=some), rows=comparison.rows[some])
+    return replace(
+        comparison, errors=comparison.errors.isel(segment=some), rows=comparison.rows[some]
+    )

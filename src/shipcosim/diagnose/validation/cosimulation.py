@@ -79,13 +79,20 @@ def simulated(
     """
     count = min(most, comparison.rows.size)
     some = np.linspace(0, comparison.rows.size - 1, count).round().astype(int)
-    rows, errors = comparison.rows[some], comparison.errors.isel(segment=some).copy(deep=True)
-    replays, done, apart = {"plain": plain}, 0, np.zeros((2, len(HORIZONS), count))
+    rows = comparison.rows[some]
+    errors = comparison.errors.isel(segment=some).copy(deep=True)
+    replays = {"plain": plain}
+    done = 0
+    apart = np.zeros((2, len(HORIZONS), count))
     if comparison.fit.hypotheses and extended is not None:
         replays["extended"] = extended
     for number, (model, one) in enumerate(replays.items()):
         predictor = comparison.predictors[model]
-        each = None if progress is None else lambda n, _, done=done: progress(done + n, count * len(replays))
+        each = (
+            None
+            if progress is None
+            else lambda n, _, done=done: progress(done + n, count * len(replays))
+        )
         found = replayed(one, predictor, rows, progress=each)
         done += count
         horizons = in_rows(predictor.record)
@@ -139,11 +146,19 @@ def replayed(
     ShipcosimError
         If the system has no inputs for what the log says of its thrusters.
     """
-    ship, record = predictor.model.vessel, predictor.record
+    ship = predictor.model.vessel
+    record = predictor.record
     lag = predictor.original.parts["instruments"].navigation_lag
     table, states = driving_table(one.system, predictor, step_size, lag)
-    states |= {f"{ship}.{name}_start": value[rows] for name, value in zip(_STATE, predictor.motion, strict=True)}
-    signals = [one.signals[role] for role in _SHOWN] if one.signals else [f"{ship}.{name}" for name in _STATE]
+    states |= {
+        f"{ship}.{name}_start": value[rows]
+        for name, value in zip(_STATE, predictor.motion, strict=True)
+    }
+    signals = (
+        [one.signals[role] for role in _SHOWN]
+        if one.signals
+        else [f"{ship}.{name}" for name in _STATE]
+    )
     late = lag if one.signals else 0.0
     found = replay(
         one.system,
@@ -156,7 +171,8 @@ def replayed(
         progress=progress,
     )
     ends = late + record.step * np.array(in_rows(record))
-    time, channels = found["time"].values, [found[name].values for name in signals]
+    time = found["time"].values
+    channels = [found[name].values for name in signals]
     channels[2] = np.unwrap(channels[2], axis=1)
     motion = Motion(*(np.array([_at(series, time, end) for end in ends]) for series in channels))
     return motion if one.signals else readings(motion, predictor.model)
@@ -197,11 +213,16 @@ def driving_table(
     ShipcosimError
         With every variable of a thruster that no input feeds, although the log changes it.
     """
-    record, model = predictor.record, predictor.model
-    columns, states, problems = [], {}, []
+    record = predictor.record
+    model = predictor.model
+    columns = []
+    states = {}
+    problems = []
     for name, (speed, direction) in record.units.items():
         states |= {} if name in model.third_party else {f"{name}.replay": True}
-        series = {kind: (values, DRIVES[kind]) for kind, values in drives_of(speed, direction).items()}
+        series = {
+            kind: (values, DRIVES[kind]) for kind, values in drives_of(speed, direction).items()
+        }
         for variable, kind in _driven(model, name):
             values, unit = series[kind]
             fed = _input(system, name, variable)
@@ -211,13 +232,18 @@ def driving_table(
                 states[f"{name}.{variable}"] = values[0]
             else:
                 found = f"no input of the system feeds '{name}.{variable}', which the log has."
-                problems.append(Problem(system.file, found, "Connect an input of the system to it."))
+                problems.append(
+                    Problem(system.file, found, "Connect an input of the system to it.")
+                )
     if problems:
         raise ShipcosimError(problems)
     weather, calm = _weather(system, model.vessel, record)
-    columns, last = columns + weather, record.time[-1] + record.step
+    columns = columns + weather
+    last = record.time[-1] + record.step
     time = np.append(record.time, last) - lag - INPUT_DELAY * step_size
-    table = make_table(time, [(name, np.append(values, values[-1]), *more) for name, values, *more in columns])
+    table = make_table(
+        time, [(name, np.append(values, values[-1]), *more) for name, values, *more in columns]
+    )
     for column in table.data_vars.values():
         column.attrs["interpolation"] = "linear"
     return table, states | calm
@@ -228,7 +254,9 @@ def _driven(model, name):
     if name not in model.third_party:
         return [(f"{kind}_in", kind) for kind in model.drives(name)]
     return [
-        (link.variable, link.quantity) for link in model.third_party[name].links if link.quantity in model.drives(name)
+        (link.variable, link.quantity)
+        for link in model.third_party[name].links
+        if link.quantity in model.drives(name)
     ]
 
 

@@ -21,7 +21,15 @@ from shipcosim.diagnose.inference.predictions import (
 )
 from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.ship.measured_motion import readings
-from shipcosim.diagnose.validation.split import HORIZONS, conditions, first_rows, in_rows, sorted_by, starts, trained
+from shipcosim.diagnose.validation.split import (
+    HORIZONS,
+    conditions,
+    first_rows,
+    in_rows,
+    sorted_by,
+    starts,
+    trained,
+)
 from shipcosim.diagnose.validation.thresholds import BLOCK, FADES
 from shipcosim.models.core.motion import Motion
 
@@ -31,9 +39,16 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
 MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
-_HELD = {"plain": "bias_observer", "extended": "extended_observer", "calibrated": None, "floor": None}
+_HELD = {
+    "plain": "bias_observer",
+    "extended": "extended_observer",
+    "calibrated": None,
+    "floor": None,
+}
 CHANNELS = {"position": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
-_EARTH = tuple(("earth", time) for time in (10.0, 40.0, 160.0))  # s, within which an observer learns a force
+_EARTH = tuple(
+    ("earth", time) for time in (10.0, 40.0, 160.0)
+)  # s, within which an observer learns a force
 _BOTH = _EARTH + tuple(("body", time) for _, time in _EARTH)
 
 
@@ -124,7 +139,9 @@ def compare(
     if inside.size == 0 or rows.size == 0 or record.time[rows[-1]] - record.time[rows[0]] < BLOCK:
         return None
     if part is None:
-        part = fitted(trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1)
+        part = fitted(
+            trained(problem, train), fit.hypotheses, fit.values, rounds=3 if fit.hypotheses else 1
+        )
     linear = linearise(fit.motion, record, fit.model, [])
     seen = reference(linear, fit.motion, problem.noise, record, fit.model)
     extended = problem.model.with_values(part.values)
@@ -137,19 +154,27 @@ def compare(
     models = _observed(problem, linear, fit.motion, seen, ship_models)
     if not fit.hypotheses and plain is None:
         models["extended"] = models["plain"]
-    found, observers, predictors = {}, {}, {}
+    found = {}
+    observers = {}
+    predictors = {}
     for name, held in _HELD.items():
         judged = _judged(models[name], inside[::2], rows, seen, held is not None)
         for label, (errors, observer, _) in zip((name, held), judged, strict=False):
             found[label], observers[label] = errors, observer
         predictors[name] = models[name].predictor(judged[0][-1], ship_models[name])
     variables = {
-        channel: (("model", "horizon", "segment"), np.stack([found[one][channel] for one in MODELS]), {"units": unit})
+        channel: (
+            ("model", "horizon", "segment"),
+            np.stack([found[one][channel] for one in MODELS]),
+            {"units": unit},
+        )
         for channel, unit in CHANNELS.items()
     }
     coordinates = {"model": list(MODELS), "horizon": list(HORIZONS)}
     coordinates |= conditions(record, seen, rows, train, problem.model)
-    return Comparison(xarray.Dataset(variables, coordinates), part, train, rows, seen, observers, predictors)
+    return Comparison(
+        xarray.Dataset(variables, coordinates), part, train, rows, seen, observers, predictors
+    )
 
 
 def _judged(model, inside, rows, seen, holds):
@@ -160,19 +185,27 @@ def _judged(model, inside, rows, seen, holds):
     list of tuple of dict, tuple and int
         Errors by channel, the observer as in `Comparison`, its number.
     """
-    missed, found = model.missed(np.concatenate([inside, rows]), seen, holds), []
+    missed = model.missed(np.concatenate([inside, rows]), seen, holds)
+    found = []
     tuning = (missed["position"][-1, ..., : len(inside)] ** 2).mean(-1)
     for some in (slice(0, 1), slice(1, None)) if holds else (slice(0, 1),):
         fade, number = np.unravel_index(tuning[some].argmin(), tuning[some].shape)
-        errors = {channel: values[:, some][:, fade, number, len(inside) :] for channel, values in missed.items()}
-        found.append((errors, (*model.choices[number], FADES[fade] if some.start else None), number))
+        errors = {
+            channel: values[:, some][:, fade, number, len(inside) :]
+            for channel, values in missed.items()
+        }
+        found.append(
+            (errors, (*model.choices[number], FADES[fade] if some.start else None), number)
+        )
     return found
 
 
 def calibrated(fit: Fit) -> ShipModel:
     """The ship model of a fit with every known number where the log would have it, within its tolerance."""
     changes = zip(fit.columns, fit.left, strict=True)
-    moved = [(path, size * share) for column, share in changes for path, size in column.changes.items()]
+    moved = [
+        (path, size * share) for column, share in changes for path, size in column.changes.items()
+    ]
     return fit.model.with_values({path: fit.model.get(path) + by for path, by in moved})
 
 
@@ -187,7 +220,12 @@ class _Model:
 
     def predictor(self, number, original):
         """The model with what one of its observers knew."""
-        return Predictor(self.record, self.model, original, Motion(*(value[number] for value in self.known.motion)))
+        return Predictor(
+            self.record,
+            self.model,
+            original,
+            Motion(*(value[number] for value in self.known.motion)),
+        )
 
     def missed(self, rows, seen, holds):
         """Errors of predictions from some rows, without a force and where it `holds` one by each of `FADES`.
@@ -200,25 +238,41 @@ class _Model:
         force = shares[..., None] * self.known.force[:, rows] if holds else None
         earth = np.array([frame == "earth" for frame, _ in self.choices])[:, None]
         horizons = in_rows(self.record)
-        found = predicted(motion, rows, self.record, self.model, horizons, force, earth=earth, fades=fades)
-        return missing(readings(found, self.model), seen, (rows + np.array(horizons)[:, None])[:, None, None])
+        found = predicted(
+            motion, rows, self.record, self.model, horizons, force, earth=earth, fades=fades
+        )
+        return missing(
+            readings(found, self.model), seen, (rows + np.array(horizons)[:, None])[:, None, None]
+        )
 
 
 def _observed(problem, about_fit, motion, seen, ship_models):
     """Each ship model with its observers, all run over the log at once."""
     record = problem.record
     about = {name: problem.motion if name == "plain" else motion for name in ship_models}
-    linear = {name: restarted(about_fit, motion, record, model) for name, model in ship_models.items()}
+    linear = {
+        name: restarted(about_fit, motion, record, model) for name, model in ship_models.items()
+    }
     linear["plain"] = problem.base_of([]).whole()
     choices = {"plain": _BOTH, "extended": _BOTH, "calibrated": _EARTH[1:2], "floor": _EARTH[1:2]}
     each = [(name, frame, time) for name in ship_models for frame, time in choices[name]]
     problems = [
-        earth_fixed(linear[name], about[name], ship_models[name]) if frame == "earth" else linear[name]
+        earth_fixed(linear[name], about[name], ship_models[name])
+        if frame == "earth"
+        else linear[name]
         for name, frame, _ in each
     ]
     walks = np.stack([problem.noise.jolt / time for _, _, time in each])
-    noise = replace(problem.noise, jolt=np.broadcast_to(problem.noise.jolt, walks.shape), walk=walks)
-    known = observed(problems, noise, record, [about[n] for n, _, _ in each], [ship_models[n] for n, _, _ in each])
+    noise = replace(
+        problem.noise, jolt=np.broadcast_to(problem.noise.jolt, walks.shape), walk=walks
+    )
+    known = observed(
+        problems,
+        noise,
+        record,
+        [about[n] for n, _, _ in each],
+        [ship_models[n] for n, _, _ in each],
+    )
     found = {}
     for name, model in ship_models.items():
         mine = [i for i, (owner, _, _) in enumerate(each) if owner == name]
@@ -267,7 +321,8 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
     dict
         ``share_of_explainable`` and ``ci95`` are None where nothing was to explain, the second with too few blocks.
     """
-    squares, times = _squares(errors), errors["start_time"].values
+    squares = _squares(errors)
+    times = errors["start_time"].values
     before, rival, after, floor = _roots(squares.mean(1))
     share = share_explained(before, after, floor)
     drawn = share_explained(*_roots(_resampled(squares, times, seed))[[0, 2, 3]])
@@ -286,7 +341,9 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
 
 def beyond_observer(errors: xarray.Dataset) -> float:
     """Share of what the bias observer leaves of the explainable error that the cause takes away beside one; or NaN."""
-    rival, after = (rms(errors, "position", model) for model in ("bias_observer", "extended_observer"))
+    rival, after = (
+        rms(errors, "position", model) for model in ("bias_observer", "extended_observer")
+    )
     return float(share_explained(rival, after, min(rms(errors, "position", "floor"), after)))
 
 
@@ -318,7 +375,8 @@ def by_condition(
         By value and model; and ``"segments"``, how many there are.
     """
     return {
-        value: {model: rms(part, channel, model, horizon) for model in MODELS} | {"segments": part.sizes["segment"]}
+        value: {model: rms(part, channel, model, horizon) for model in MODELS}
+        | {"segments": part.sizes["segment"]}
         for value, part in parts(errors, names).items()
     }
 
@@ -337,12 +395,21 @@ def parts(errors: xarray.Dataset, names: str = "regime") -> dict[Any, xarray.Dat
     dict of value to xarray.Dataset
     """
     values = errors[names].values
-    return {value.item(): errors.isel(segment=np.flatnonzero(values == value)) for value in np.unique(values)}
+    return {
+        value.item(): errors.isel(segment=np.flatnonzero(values == value))
+        for value in np.unique(values)
+    }
 
 
 def _squares(errors):
     """Squares of position errors after the longest horizon: plain, bias observer, extended, floor; (4, s) array."""
-    return errors["position"].isel(horizon=-1).sel(model=["plain", "bias_observer", "extended", "floor"]).values ** 2
+    return (
+        errors["position"]
+        .isel(horizon=-1)
+        .sel(model=["plain", "bias_observer", "extended", "floor"])
+        .values
+        ** 2
+    )
 
 
 def _roots(means):
@@ -351,7 +418,9 @@ def _roots(means):
     return np.stack([before, rival, after, np.minimum(floor, after)])
 
 
-def share_explained(before: np.ndarray | float, after: np.ndarray | float, floor: np.ndarray | float) -> np.ndarray:
+def share_explained(
+    before: np.ndarray | float, after: np.ndarray | float, floor: np.ndarray | float
+) -> np.ndarray:
     """Share of the explainable error that is gone: (before - after) / (before - floor), NaN where that is little."""
     worth = np.subtract(before, floor)
     some = worth > 0.05 * before
@@ -367,7 +436,11 @@ def _resampled(squares, times, seed):
     """Mean squares of draws of blocks, (models, draws) array."""
     block = _blocks(times)
     blocks = block.max() + 1
-    sums = np.stack([np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))])
-    draws = np.random.default_rng(seed).multinomial(blocks, np.full(blocks, 1.0 / blocks), size=DRAWS)
+    sums = np.stack(
+        [np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))]
+    )
+    draws = np.random.default_rng(seed).multinomial(
+        blocks, np.full(blocks, 1.0 / blocks), size=DRAWS
+    )
     drawn = sums @ draws.T
     return drawn[:-1] / drawn[-1]

@@ -50,7 +50,10 @@ def missing_forces(problem: IdentificationProblem, fit: Fit | None) -> MissingFo
     extended = None if fit is None else missing_force(problem, fit.model, fit.motion)
     angles = [name for name in ("heading", "wind_from") if name in plain]
     return MissingForce(
-        plain, extended, {name: by_sector(plain, name) for name in angles}, tuple(problem.model.azimuths)
+        plain,
+        extended,
+        {name: by_sector(plain, name) for name in angles},
+        tuple(problem.model.azimuths),
     )
 
 
@@ -78,12 +81,19 @@ def by_sector(force: xarray.Dataset, angle: str) -> xarray.Dataset:
         groups = [values[(sector == k) & np.isfinite(values)] for k in range(SECTORS)]
         mean = [g.mean() if g.size >= FEWEST_SECTOR_ROWS else np.nan for g in groups]
         spread = [g.std() if g.size >= FEWEST_SECTOR_ROWS else 0.0 for g in groups]
-        columns |= {name: ("sector", mean, {"units": "N"}), f"{name}_std": ("sector", spread, {"units": "N"})}
+        columns |= {
+            name: ("sector", mean, {"units": "N"}),
+            f"{name}_std": ("sector", spread, {"units": "N"}),
+        }
     return xarray.Dataset(columns, {"sector": (np.arange(SECTORS) + 0.5) * width})
 
 
 def missing_force(
-    problem: IdentificationProblem, model: ShipModel, motion: Motion, *, learning: float = FORCE_TIME
+    problem: IdentificationProblem,
+    model: ShipModel,
+    motion: Motion,
+    *,
+    learning: float = FORCE_TIME,
 ) -> xarray.Dataset:
     """Reconstruct what a ship model lacks: the smoothed acceleration that nothing explains, times mass and added mass.
 
@@ -113,7 +123,9 @@ def missing_force(
     return _in_frames(force.T, motion, record, model)
 
 
-def _in_frames(force: np.ndarray, motion: Motion, record: Record, model: ShipModel) -> xarray.Dataset:
+def _in_frames(
+    force: np.ndarray, motion: Motion, record: Record, model: ShipModel
+) -> xarray.Dataset:
     """Table of a force, (3, n) array in body axes, and of what it may depend on."""
     surge, sway, yaw = force
     north, east = to_ned(motion.psi, surge, sway)
@@ -128,13 +140,27 @@ def _in_frames(force: np.ndarray, motion: Motion, record: Record, model: ShipMod
         unit = dp_thruster_of(model, name)
         direction = unit.axis + (record.units[name][1] if unit.pointed else np.zeros(surge.size))
         along, across = to_body(direction, surge, sway)
-        columns[f"{name}_along"] = along, "N", f"missing force in the direction of positive thrust of {name}"
-        columns[f"{name}_across"] = across, "N", f"missing force clockwise of positive thrust of {name}"
+        columns[f"{name}_along"] = (
+            along,
+            "N",
+            f"missing force in the direction of positive thrust of {name}",
+        )
+        columns[f"{name}_across"] = (
+            across,
+            "N",
+            f"missing force clockwise of positive thrust of {name}",
+        )
     columns["heading"] = np.degrees(motion.psi) % 360.0, "deg", "heading"
     columns["speed"] = np.hypot(motion.u, motion.v), "m/s", "speed over ground"
     if record.wind is not None:
         bow = motion.psi if model.wind_is_true else 0.0
-        columns["wind_from"] = np.degrees(record.wind[1] - bow) % 360.0, "deg", "direction of the wind from the bow"
+        columns["wind_from"] = (
+            np.degrees(record.wind[1] - bow) % 360.0,
+            "deg",
+            "direction of the wind from the bow",
+        )
     about = {"units": "s", "long_name": "time"}
-    variables = {n: ("time", v, {"units": u, "long_name": text}) for n, (v, u, text) in columns.items()}
+    variables = {
+        n: ("time", v, {"units": u, "long_name": text}) for n, (v, u, text) in columns.items()
+    }
     return xarray.Dataset(variables, {"time": ("time", record.time, about)})

@@ -62,7 +62,8 @@ def with_cosimulation(
     beyond_doubt = found.comparison.findings if found.comparison else ()
     if (log.comparison.fit.hypotheses or beyond_doubt) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
-    run, count = partial(_cosimulated, extended, found.causes, beyond_doubt), 1 + len(log.held_out)
+    run = partial(_cosimulated, extended, found.causes, beyond_doubt)
+    count = 1 + len(log.held_out)
     say = progress or (lambda *_: None)
     try:
         errors = run(lambda done, of: say(done, count * of), log.comparison, MOST)
@@ -71,7 +72,9 @@ def with_cosimulation(
             for k, (name, one) in enumerate(log.held_out.items(), start=1)
         }
     except ShipcosimError as error:
-        first = {(p.found, p.remedy): p for p in reversed(error.problems)}  # that of many segments is said once
+        first = {
+            (p.found, p.remedy): p for p in reversed(error.problems)
+        }  # that of many segments is said once
         said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in reversed(first.values()))
         remarks = tuple(f"The system was not co-simulated: {text}" for text in said)
         return SimulatedLog(log.comparison.errors, in_array_form, False, remarks)
@@ -80,7 +83,8 @@ def with_cosimulation(
 
 def _cosimulated(extended, causes, beyond_doubt, progress, comparison, most):
     """Errors of one comparison, by the given system and by the one extended by what the comparison was fitted with."""
-    fitted, findings = None, [*beyond_doubt, *findings_of(comparison.fit)]
+    fitted = None
+    findings = [*beyond_doubt, *findings_of(comparison.fit)]
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         if findings:
             about = {"span": comparison.fit.model.span}
@@ -97,7 +101,9 @@ def findings_of(fit: Fit) -> list[Finding]:
             hypothesis.component,
             parameters={
                 of.name: ParameterEstimate(
-                    fit.values[of.paths[0]] * of.factor, abs(fit.std[of.paths[0]] * of.factor), of.unit
+                    fit.values[of.paths[0]] * of.factor,
+                    abs(fit.std[of.paths[0]] * of.factor),
+                    of.unit,
                 )
                 for of in hypothesis.parameters
             },

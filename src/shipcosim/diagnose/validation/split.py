@@ -52,7 +52,11 @@ def without_headings(record: Record, middle: float, width: float = np.pi / 2.0) 
 def is_idle(record: Record) -> np.ndarray:
     """Rows on which no thruster turns, (n,) bool array."""
     speeds = [np.abs(n) for n, _ in record.units.values() if np.any(n)]
-    return np.all([n < IDLE * n.max() for n in speeds], axis=0) if speeds else np.ones(record.time.size, bool)
+    return (
+        np.all([n < IDLE * n.max() for n in speeds], axis=0)
+        if speeds
+        else np.ones(record.time.size, bool)
+    )
 
 
 def in_rows(record: Record) -> list[int]:
@@ -72,8 +76,11 @@ def starts(record: Record) -> np.ndarray:
     (s,) array of int
         After observers have settled, where all that drives the ship is known and position and heading are measured.
     """
-    horizons, h = in_rows(record), record.step
-    rows = np.arange(round(SETTLED / h), record.time.size - horizons[-1], max(1, round(START_STEP / h)))
+    horizons = in_rows(record)
+    h = record.step
+    rows = np.arange(
+        round(SETTLED / h), record.time.size - horizons[-1], max(1, round(START_STEP / h))
+    )
     lost = np.concatenate([[0], np.cumsum(~record.known)])
     measured = np.isfinite(record.measured[:, :3]).all(-1)
     near = np.convolve(measured, np.ones(2 * round(MEASURED_WITHIN / h) + 1), "same") > 0.0
@@ -118,7 +125,9 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
     IdentificationProblem
     """
     n = np.flatnonzero(train)[-1] + 1
-    train, record, base = train[:n], problem.record, problem.linear
+    train = train[:n]
+    record = problem.record
+    base = problem.linear
     steps = train[:-1] & train[1:]
     cut = replace(
         record,
@@ -130,13 +139,19 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
     )
 
     def part(rows):
-        linear, used = base.part(rows), train[rows, None]
+        linear = base.part(rows)
+        used = train[rows, None]
         driven = linear.driven[: len(steps[rows])] * steps[rows, None, None]
-        seen, transition = linear.seen * used[..., None], linear.transition[: len(driven)]
-        return linear._replace(transition=transition, driven=driven, seen=seen, whole=linear.whole & used)
+        seen = linear.seen * used[..., None]
+        transition = linear.transition[: len(driven)]
+        return linear._replace(
+            transition=transition, driven=driven, seen=seen, whole=linear.whole & used
+        )
 
     linear = InParts(n, base.columns, part)
-    return replace(problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear)
+    return replace(
+        problem, record=cut, motion=Motion(*(value[:n] for value in problem.motion)), base=linear
+    )
 
 
 def conditions(
@@ -167,18 +182,28 @@ def conditions(
     turn = np.ptp(seen.psi[spans], axis=1)
     idle = is_idle(record)[spans].all(1)
     regime = np.select(
-        [idle, turn > TURNING, way > MOVING * HORIZONS[-1]], ["drifting", "turning", "moving"], "holding"
+        [idle, turn > TURNING, way > MOVING * HORIZONS[-1]],
+        ["drifting", "turning", "moving"],
+        "holding",
     )
     heading = np.degrees(seen.psi[rows]) % 360.0
     used = np.bincount(np.degrees(seen.psi[train]).astype(int) % 360, minlength=360) > 0
     near = np.convolve(np.concatenate([used[-15:], used, used[:15]]), np.ones(31), "valid") > 0.0
     found = {
-        "start_time": ("segment", record.time[rows], {"units": "s", "long_name": "where the prediction starts"}),
+        "start_time": (
+            "segment",
+            record.time[rows],
+            {"units": "s", "long_name": "where the prediction starts"},
+        ),
         "regime": ("segment", regime),
         "start_heading": ("segment", heading, {"units": "deg"}),
         "heading_known": ("segment", near[heading.astype(int) % 360]),
     }
     if record.wind is not None:
         bow = seen.psi[rows] if model.wind_is_true else 0.0
-        found["wind_from"] = ("segment", np.degrees(record.wind[1][rows] - bow) % 360.0, {"units": "deg"})
+        found["wind_from"] = (
+            "segment",
+            np.degrees(record.wind[1][rows] - bow) % 360.0,
+            {"units": "deg"},
+        )
     return found

@@ -102,7 +102,9 @@ def prediction_errors(
     )
 
 
-def condition_errors(condition: str, errors: xarray.Dataset, is_named: bool = False) -> ConditionErrors:
+def condition_errors(
+    condition: str, errors: xarray.Dataset, is_named: bool = False
+) -> ConditionErrors:
     """Summary of the errors under one condition."""
     finite = errors[list(CHANNELS)].where(np.isfinite(errors[list(CHANNELS)]))
     squares = (finite**2).mean("segment")

@@ -59,7 +59,8 @@ WEATHER_RATE = 1e3
 
 TIME_CONSTANTS = 10.0
 """Length of a prediction in the craft's slowest time constant. Assumed."""
-SHORTEST_HORIZON, LONGEST_HORIZON = 10.0, 60.0
+SHORTEST_HORIZON = 10.0
+LONGEST_HORIZON = 60.0
 """Bounds of that length. [s] Assumed."""
 LEAST_SHARE = 0.24
 """Share of a log that a prediction takes at most."""

@@ -83,7 +83,8 @@ def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool = False) -> Tracks
     Tracks or None
         None where no stretch of the log is whole.
     """
-    record, model = log.problem.record, log.problem.model
+    record = log.problem.record
+    model = log.problem.model
     comparison = log.explained.identification.comparison
     models = {"before": comparison.given(model) if comparison else model}
     if is_named or has_crude:
@@ -155,10 +156,19 @@ def tracks_by_systems(
         If a system has no inputs for what the log says of its thrusters, or a run fails.
     """
     rows, _ = _segments(record, horizon)
-    rows = rows if most is None else rows[np.unique(np.linspace(0, rows.size - 1, most).round().astype(int))]
-    found, total = {}, rows.size * len(systems)
+    rows = (
+        rows
+        if most is None
+        else rows[np.unique(np.linspace(0, rows.size - 1, most).round().astype(int))]
+    )
+    found = {}
+    total = rows.size * len(systems)
     for number, (name, one) in enumerate(systems.items()):
-        each = None if progress is None else lambda n, _, done=number: progress(done * rows.size + n, total)
+        each = (
+            None
+            if progress is None
+            else lambda n, _, done=number: progress(done * rows.size + n, total)
+        )
         found[name] = _cosimulated(record, model, one, rows, horizon, each)
     return Tracks(horizon, _measured(record), found)
 
@@ -171,17 +181,33 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     own = model.with_values({f"instruments.{key}": value for key, value in errors.items()})
     start = true_motion(Motion(*(value[rows] for value in seen)), own)
     table, states = driving_table(one.system, Predictor(driven, neutral, own, start), STEP, lag)
-    states |= {f"{model.vessel}.{key}_start": value for key, value in zip(Motion._fields, start, strict=True)}
+    states |= {
+        f"{model.vessel}.{key}_start": value
+        for key, value in zip(Motion._fields, start, strict=True)
+    }
     signals = [one.signals[role] for role in CHANNELS] if one.signals else _own_signals(model)
     duration = STEP * np.ceil((horizon + lag) / STEP - 1e-6)
     starts = record.time[rows] - lag
-    run = replay(one.system, table, starts, duration, states=states, step_size=STEP, signals=signals, progress=progress)
+    run = replay(
+        one.system,
+        table,
+        starts,
+        duration,
+        states=states,
+        step_size=STEP,
+        signals=signals,
+        progress=progress,
+    )
     time = run["time"].values
     channels = [run[signal].values for signal in signals]
     channels[2] = np.unwrap(channels[2], axis=1)
-    channels[2] += 2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
+    channels[2] += (
+        2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
+    )
     kept = slice(int(round(lag / STEP)), None)
-    return _dataset([values[:, kept] for values in channels], time[kept] - time[kept][0], record.time[rows])
+    return _dataset(
+        [values[:, kept] for values in channels], time[kept] - time[kept][0], record.time[rows]
+    )
 
 
 def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
@@ -202,7 +228,8 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
     """Rows at which predictions start, one after another where the log is whole, and how many rows each has."""
     count = max(int(horizon / record.step + 1e-6), 1)
     whole = np.isfinite(record.measured[:, :3]).sum(axis=-1) == 3
-    rows, row = [], 0
+    rows = []
+    row = 0
     while row + count + 1 < record.time.size:
         if whole[row] and record.known[row : row + count].all():
             rows.append(row)
@@ -211,7 +238,9 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
             row += 1
     if not rows:
         found = f"no {horizon:g} s of the log have a position and heading, and everything that drives her throughout."
-        raise ShipcosimError(Problem("replay", found, "Ask for shorter predictions, or for a longer log."))
+        raise ShipcosimError(
+            Problem("replay", found, "Ask for shorter predictions, or for a longer log.")
+        )
     return np.array(rows), count
 
 
@@ -237,7 +266,10 @@ def _dataset(channels: list[np.ndarray], time: np.ndarray, starts: np.ndarray) -
     }
     return xarray.Dataset(
         columns,
-        coords={"time": ("time", time[thin], {"units": "s"}), "start_time": ("segment", starts, {"units": "s"})},
+        coords={
+            "time": ("time", time[thin], {"units": "s"}),
+            "start_time": ("segment", starts, {"units": "s"}),
+        },
     )
 
 
@@ -251,15 +283,23 @@ def errors_of(tracks: Tracks, shares: tuple[float, ...] = (1.0 / 6.0, 0.5, 1.0))
         ``after`` [s]; NaN where the log has nothing.
     """
     names = list(tracks.predicted)
-    after = [_nearest(next(iter(tracks.predicted.values()))["time"].values, s * tracks.horizon) for s in shares]
-    found = {name: np.full((len(names), len(after)), np.nan) for name in ("position", *CHANNELS[2:])}
+    after = [
+        _nearest(next(iter(tracks.predicted.values()))["time"].values, s * tracks.horizon)
+        for s in shares
+    ]
+    found = {
+        name: np.full((len(names), len(after)), np.nan) for name in ("position", *CHANNELS[2:])
+    }
     for i, name in enumerate(names):
         for j, end in enumerate(after):
             for channel, value in _missed(tracks, tracks.predicted[name], end).items():
                 found[channel][i, j] = value
     units = {"position": "m"} | {role: ROLES[role].unit for role in CHANNELS[2:]}
     return xarray.Dataset(
-        {name: (("simulation", "after"), values, {"units": units[name]}) for name, values in found.items()},
+        {
+            name: (("simulation", "after"), values, {"units": units[name]})
+            for name, values in found.items()
+        },
         coords={"simulation": names, "after": ("after", after, {"units": "s"})},
     )
 
@@ -283,7 +323,10 @@ def _nearest(times: np.ndarray, time: float) -> float:
 def _missed(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, float]:
     """Root mean squares over the predictions of one simulation."""
     whole = _misses(tracks, one, end)
-    return {name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan for name, v in whole.items()}
+    return {
+        name: float(np.sqrt(np.nanmean(v**2))) if np.isfinite(v).any() else np.nan
+        for name, v in whole.items()
+    }
 
 
 def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.ndarray]:

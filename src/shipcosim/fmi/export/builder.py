@@ -79,7 +79,9 @@ def fmu_class(source: Path | str) -> Iterator[tuple[type[Fmu], Path, Bundle]]:
         yield _fmu_class(module, script), script, bundled
 
 
-def build_all(root: Path | str, names: Iterable[str] = (), out: Path | str = "build/fmus") -> list[Path]:
+def build_all(
+    root: Path | str, names: Iterable[str] = (), out: Path | str = "build/fmus"
+) -> list[Path]:
     """Build the FMUs of a folder that has one folder per FMU.
 
     Parameters
@@ -102,16 +104,25 @@ def build_all(root: Path | str, names: Iterable[str] = (), out: Path | str = "bu
         With the problems of all of them; those without problems are built nevertheless.
     """
     root = Path(root)
-    known = sorted(folder.name for folder in root.glob("*") if (folder / f"{folder.name}.py").is_file())
+    known = sorted(
+        folder.name for folder in root.glob("*") if (folder / f"{folder.name}.py").is_file()
+    )
     problems = [
-        Problem(str(root), f"has no FMU '{name}'.", suggestion(name, known)) for name in names if name not in known
+        Problem(str(root), f"has no FMU '{name}'.", suggestion(name, known))
+        for name in names
+        if name not in known
     ]
-    built, stems = [], {}
+    built = []
+    stems = {}
     for name in sorted(set(names or known) & set(known)):
         other = stems.setdefault(name.lower(), name)
         if other != name:
             problems.append(
-                Problem(str(root / name), f"has the file name of {other} where case does not count.", "Rename one.")
+                Problem(
+                    str(root / name),
+                    f"has the file name of {other} where case does not count.",
+                    "Rename one.",
+                )
             )
             continue
         try:
@@ -127,11 +138,19 @@ def _script(source: Path) -> Path:
     script = source / f"{source.resolve().name}.py" if source.is_dir() else source
     if not script.is_file():
         raise ShipcosimError(
-            Problem(str(source), f"there is no {script.name}.", "An FMU is a folder NAME with NAME.py in it.")
+            Problem(
+                str(source),
+                f"there is no {script.name}.",
+                "An FMU is a folder NAME with NAME.py in it.",
+            )
         )
     if not (script.stem.isidentifier() and script.stem.isascii()):
         raise ShipcosimError(
-            Problem(str(script), "cannot name an FMU.", "Use letters, digits and '_'; no digit at the start.")
+            Problem(
+                str(script),
+                "cannot name an FMU.",
+                "Use letters, digits and '_'; no digit at the start.",
+            )
         )
     return script
 
@@ -162,10 +181,20 @@ def _import(bundled: Bundle, folder: str) -> ModuleType:
         return importlib.import_module(f"{bundled.package}.{bundled.script}")
     except Exception as error:
         frames = [
-            frame for frame in traceback.extract_tb(error.__traceback__) if Path(frame.filename).is_relative_to(code)
+            frame
+            for frame in traceback.extract_tb(error.__traceback__)
+            if Path(frame.filename).is_relative_to(code)
         ]
-        frames = [frame for frame in frames if not Path(frame.filename).is_relative_to(code / "shipcosim" / "fmi")]
-        where = f"{Path(frames[-1].filename).relative_to(code)}, line {frames[-1].lineno}" if frames else bundled.script
+        frames = [
+            frame
+            for frame in frames
+            if not Path(frame.filename).is_relative_to(code / "shipcosim" / "fmi")
+        ]
+        where = (
+            f"{Path(frames[-1].filename).relative_to(code)}, line {frames[-1].lineno}"
+            if frames
+            else bundled.script
+        )
         raise ShipcosimError(
             Problem(where, f"{type(error).__name__}: {error}".replace(f"{bundled.package}.", ""))
         ) from error
@@ -173,16 +202,24 @@ def _import(bundled: Bundle, folder: str) -> ModuleType:
 
 def _fmu_class(module: ModuleType, script: Path) -> type[Fmu]:
     """The one class of the script that is an FMU and no base of another."""
-    own = [item for item in vars(module).values() if isinstance(item, type) and item.__module__ == module.__name__]
+    own = [
+        item
+        for item in vars(module).values()
+        if isinstance(item, type) and item.__module__ == module.__name__
+    ]
     own = [cls for cls in own if any(base.__name__ == "Fmi2Slave" for base in cls.__mro__)]
-    leaves = [cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)]
+    leaves = [
+        cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)
+    ]
     if len(leaves) != 1:
         found = (
             f"has {len(leaves)} FMUs ({', '.join(cls.__name__ for cls in leaves)})."
             if leaves
             else "has no class that is an Fmu."
         )
-        raise ShipcosimError(Problem(str(script), found, "One file holds one FMU: class Name(Fmu)."))
+        raise ShipcosimError(
+            Problem(str(script), found, "One file holds one FMU: class Name(Fmu).")
+        )
     _check_class(leaves[0], script)
     return leaves[0]
 
@@ -191,11 +228,15 @@ def _check_class(cls: type[Fmu], script: Path) -> None:
     problems = []
     if not any(variable.causality == "output" for variable in cls.variables):
         problems.append("has no output: name = Output(unit, description).")
-    if not any("step" in vars(base) for base in cls.__mro__ if base.__name__ not in ("Fmu", "Fmi2Slave")):
+    if not any(
+        "step" in vars(base) for base in cls.__mro__ if base.__name__ not in ("Fmu", "Fmi2Slave")
+    ):
         problems.append("has no step(self, t, h).")
     problems += _never_read(cls, script)
     if problems:
-        raise ShipcosimError([Problem(f"{script}, class {cls.__name__}", problem) for problem in problems])
+        raise ShipcosimError(
+            [Problem(f"{script}, class {cls.__name__}", problem) for problem in problems]
+        )
     try:
         instance = cls()
         for group in cls.groups:
@@ -208,7 +249,9 @@ def _check_class(cls: type[Fmu], script: Path) -> None:
 
 def _never_read(cls: type[Fmu], script: Path) -> list[str]:
     """Attributes that the script sets but neither declares nor reads: outputs that were forgotten or misspelt."""
-    nodes = [node for node in ast.walk(ast.parse(script.read_bytes())) if isinstance(node, ast.Attribute)]
+    nodes = [
+        node for node in ast.walk(ast.parse(script.read_bytes())) if isinstance(node, ast.Attribute)
+    ]
     nodes = [node for node in nodes if isinstance(node.value, ast.Name) and node.value.id == "self"]
     read = {node.attr for node in nodes if isinstance(node.ctx, ast.Load)} | set(dir(cls))
     read |= {variable.name for variable in cls.variables}
@@ -235,14 +278,20 @@ def _description(cls: type[Fmu], script: Path, files: dict[str, bytes]) -> bytes
 
 def _binaries(identifier: str) -> dict[str, bytes]:
     """Our loader under the name that FMI asks for, beside it pythonfmu's binary, which it loads, and its licence."""
-    folder = Path(str(importlib.metadata.distribution("pythonfmu").locate_file("pythonfmu"))) / "resources" / "binaries"
+    folder = (
+        Path(str(importlib.metadata.distribution("pythonfmu").locate_file("pythonfmu")))
+        / "resources"
+        / "binaries"
+    )
     files = {}
     for platform, suffix in SUFFIXES.items():
         files[f"binaries/{platform}/{identifier}{suffix}"] = loader_for(platform).read_bytes()
         for path in (folder / platform).glob(f"*{suffix}"):
             files[f"binaries/{platform}/{path.name}"] = path.read_bytes()
     licence = importlib.metadata.distribution("pythonfmu").read_text("licenses/LICENSE")
-    return files | {"documentation/licenses/pythonfmu.txt": (licence or "MIT, NTNU-IHB/PythonFMU").encode()}
+    return files | {
+        "documentation/licenses/pythonfmu.txt": (licence or "MIT, NTNU-IHB/PythonFMU").encode()
+    }
 
 
 def documentation(script: Path) -> dict[str, bytes]:
@@ -253,7 +302,9 @@ def documentation(script: Path) -> dict[str, bytes]:
         if path.is_file():
             files[f"documentation/{name}"] = path.read_bytes().replace(b"\r\n", b"\n")
     text = files.get("documentation/README.md", b"").decode(errors="replace")
-    files["documentation/index.html"] = PAGE.format(title=script.stem, text=html.escape(text)).encode()
+    files["documentation/index.html"] = PAGE.format(
+        title=script.stem, text=html.escape(text)
+    ).encode()
     return files
 
 
@@ -263,7 +314,8 @@ def write_archive(path: Path, files: dict[str, bytes]) -> Path:
     with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as archive:
         for name, data in sorted(files.items()):
             info = zipfile.ZipInfo(name, EPOCH)
-            info.create_system, info.external_attr = 3, 0o644 << 16
+            info.create_system = 3
+            info.external_attr = 0o644 << 16
             archive.writestr(info, data)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

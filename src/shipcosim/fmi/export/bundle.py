@@ -68,7 +68,8 @@ def bundle(script: Path) -> Bundle:
     ShipcosimError
         A file cannot be read or parsed, or imports what neither Python, NumPy nor the FMU has.
     """
-    modules, weights = _collect(script), _weights(script.parent)
+    modules = _collect(script)
+    weights = _weights(script.parent)
     digest = hashlib.sha256()
     contents = {module.archive_path: module.source for module in modules.values()} | weights
     for path, content in contents.items():
@@ -119,7 +120,13 @@ def entry_module(bundled: Bundle, cls: str) -> bytes:
     code = [path for path in sorted(bundled.files) if path.endswith(".py")]
     paths = (path.removesuffix(".py").removesuffix("/__init__") for path in code)
     modules = ", ".join(path.replace("/", ".") for path in paths)
-    text = ENTRY.format(package=bundled.package, script=bundled.script, entry=bundled.entry, modules=modules, cls=cls)
+    text = ENTRY.format(
+        package=bundled.package,
+        script=bundled.script,
+        entry=bundled.entry,
+        modules=modules,
+        cls=cls,
+    )
     return text.encode()
 
 
@@ -131,7 +138,9 @@ def _weights(folder: Path) -> dict[str, bytes]:
 
 def _collect(script: Path) -> dict[str, Module]:
     """All modules that the script reaches by imports, sorted by name."""
-    found, waiting, problems = {}, [(script.stem, script)], []
+    found = {}
+    waiting = [(script.stem, script)]
+    problems = []
     while waiting:
         name, path = waiting.pop()
         if name in found:
@@ -150,7 +159,9 @@ def _collect(script: Path) -> dict[str, Module]:
                 where = f"{path}, line {statement.lineno}"
                 problems.append(
                     Problem(
-                        where, f"imports {needed}.", "An FMU has Python, NumPy, shipcosim.models and files beside it."
+                        where,
+                        f"imports {needed}.",
+                        "An FMU has Python, NumPy, shipcosim.models and files beside it.",
                     )
                 )
     if problems:
@@ -178,11 +189,15 @@ def _locate(name: str, folder: Path) -> list[tuple[str, Path]]:
 
     For "shipcosim.models.core.maths" that is three; what is a name inside a module rather than a module is left out.
     """
-    parts, found = name.split("."), []
+    parts = name.split(".")
+    found = []
     base = SHIPCOSIM.parent if parts[0] == "shipcosim" else folder
     for length in range(1, len(parts) + 1):
         stem = base.joinpath(*parts[:length])
-        path = next((p for p in (stem / "__init__.py", stem.with_name(f"{stem.name}.py")) if p.is_file()), None)
+        path = next(
+            (p for p in (stem / "__init__.py", stem.with_name(f"{stem.name}.py")) if p.is_file()),
+            None,
+        )
         if path is None:
             break
         found.append((".".join(parts[:length]), path))
@@ -227,11 +242,17 @@ def _renamed(module: Module, package: str, modules: Mapping[str, Module]) -> byt
     for _, node in sorted(statements.items(), reverse=True):
         if isinstance(node, ast.ImportFrom) and node.level:
             continue
-        first, last = node.lineno - 1, (node.end_lineno or node.lineno) - 1
-        before, after = lines[first][: node.col_offset], lines[last][node.end_col_offset :]
-        old = b"".join([*lines[first:last], lines[last][: node.end_col_offset]])[node.col_offset :].decode()
+        first = node.lineno - 1
+        last = (node.end_lineno or node.lineno) - 1
+        before = lines[first][: node.col_offset]
+        after = lines[last][node.end_col_offset :]
+        old = b"".join([*lines[first:last], lines[last][: node.end_col_offset]])[
+            node.col_offset :
+        ].decode()
         new = (
-            _renamed_from(old, package) if isinstance(node, ast.ImportFrom) else _renamed_import(node, package, modules)
+            _renamed_from(old, package)
+            if isinstance(node, ast.ImportFrom)
+            else _renamed_import(node, package, modules)
         )
         lines[first : last + 1] = [before + new.encode() + after]
     return b"".join(lines)
@@ -250,5 +271,7 @@ def _renamed_import(node: ast.Import, package: str, modules: Mapping[str, Module
         elif alias.asname:
             names.append(f"{package}.{alias.name} as {alias.asname}")
         else:
-            names += [f"{package}.{alias.name}"] * (root != alias.name) + [f"{package}.{root} as {root}"]
+            names += [f"{package}.{alias.name}"] * (root != alias.name) + [
+                f"{package}.{root} as {root}"
+            ]
     return f"import {', '.join(names)}" + " \\\n" * ((node.end_lineno or node.lineno) - node.lineno)

@@ -78,7 +78,9 @@ def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
     categories = xml.SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         xml.SubElement(categories, "Category", name=name, description=text)
-    xml.SubElement(root, "DefaultExperiment", startTime="0.0", stepSize=repr(float(cls.default_step_size)))
+    xml.SubElement(
+        root, "DefaultExperiment", startTime="0.0", stepSize=repr(float(cls.default_step_size))
+    )
     listed = xml.SubElement(root, "ModelVariables")
     for reference, variable in enumerate(cls.variables):
         listed.append(_scalar_variable(reference, variable))
@@ -108,8 +110,16 @@ def table_of_variables(cls: type[Fmu]) -> str:
     rows = ["| variable | kind | type | unit | start | meaning |", "|---|---|---|---|---|---|"]
     for v in cls.variables:
         kind = f"tunable {v.causality}" if v.tunable else v.causality
-        start = "required" if v.required else "" if v.causality == "output" or v.start == "" else _shown(v.start)
-        rows.append(f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {_full_text(v).replace('|', '&#124;')} |")
+        start = (
+            "required"
+            if v.required
+            else ""
+            if v.causality == "output" or v.start == ""
+            else _shown(v.start)
+        )
+        rows.append(
+            f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {_full_text(v).replace('|', '&#124;')} |"
+        )
     return "\n".join(rows) + "\n"
 
 
@@ -152,7 +162,9 @@ def _type_definitions(root, units):
         definitions = xml.SubElement(root, "TypeDefinitions")
         for unit in named:
             simple = xml.SubElement(definitions, "SimpleType", name=QUANTITIES[unit])
-            xml.SubElement(simple, "Real", dict(quantity=QUANTITIES[unit], unit=unit) | _displayed(unit))
+            xml.SubElement(
+                simple, "Real", dict(quantity=QUANTITIES[unit], unit=unit) | _displayed(unit)
+            )
 
 
 def _displayed(unit: str) -> dict[str, str]:
@@ -193,7 +205,9 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
 
 
 def _full_text(variable: Variable) -> str:
-    return f"{variable.description} ({variable.origin})" if variable.origin else variable.description
+    return (
+        f"{variable.description} ({variable.origin})" if variable.origin else variable.description
+    )
 
 
 def _variability(variable: Variable) -> str:
@@ -203,12 +217,20 @@ def _variability(variable: Variable) -> str:
 
 
 def _text(value):
-    return str(value).lower() if isinstance(value, bool) else value if isinstance(value, str) else repr(value)
+    return (
+        str(value).lower()
+        if isinstance(value, bool)
+        else value
+        if isinstance(value, str)
+        else repr(value)
+    )
 
 
 def _structure(root, variables):
     structure = xml.SubElement(root, "ModelStructure")
-    indices = [str(index) for index, variable in enumerate(variables, 1) if variable.causality == "output"]
+    indices = [
+        str(index) for index, variable in enumerate(variables, 1) if variable.causality == "output"
+    ]
     for kind in ("Outputs", "InitialUnknowns") if indices else ():
         unknowns = xml.SubElement(structure, kind)
         for index in indices:

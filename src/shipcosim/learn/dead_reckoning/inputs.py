@@ -5,12 +5,15 @@ import numpy as np
 from shipcosim.learn.dead_reckoning.worlds import Record
 from shipcosim.models.prediction.velocity_network import FEATURES, HISTORY, UNITS
 
-NEIGHBOURS, MOST = 3, 1500
+NEIGHBOURS = 3
+MOST = 1500
 """Neighbours that count, and the most samples that are taken, evenly spaced."""
 OF_AXIS = {
     "surge": ("heading", "wind angle", "wind speed", "main power", "main command", "main action"),
     "sway": ("heading", "wind angle", "wind speed")
-    + tuple(f"{place} {what}" for place in ("bow", "stern") for what in ("power", "command", "action")),
+    + tuple(
+        f"{place} {what}" for place in ("bow", "stern") for what in ("power", "command", "action")
+    ),
 }
 """What paper II considers of each velocity, Table III."""
 
@@ -36,13 +39,18 @@ def mutual_information(x: np.ndarray, y: np.ndarray) -> float:
     rng = np.random.default_rng(1)
     taken = slice(None, None, max(1, -(-len(x) // MOST)))
     spread = [one[taken] / (one.std() or 1.0) for one in (x, y)]
-    apart = [abs(one[:, None] - one[None]) for one in (v + 1e-8 * rng.normal(size=v.shape) for v in spread)]
+    apart = [
+        abs(one[:, None] - one[None])
+        for one in (v + 1e-8 * rng.normal(size=v.shape) for v in spread)
+    ]
     farther = np.maximum(*apart)
     np.fill_diagonal(farther, np.inf)
     radius = np.partition(farther, NEIGHBOURS - 1, axis=1)[:, NEIGHBOURS - 1]
     near = [(one < radius[:, None]).sum(axis=1) for one in apart]  # itself among them
     n = len(radius)
-    return max(0.0, float(_digamma(NEIGHBOURS) + _digamma(n) - sum(np.mean(_digamma(k)) for k in near)))
+    return max(
+        0.0, float(_digamma(NEIGHBOURS) + _digamma(n) - sum(np.mean(_digamma(k)) for k in near))
+    )
 
 
 def _digamma(n):
@@ -73,14 +81,19 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
     found = {}
     for axis, velocity in (("surge", m["u"]), ("sway", m["v"])):
         lagged = {
-            name: np.mean([_lagged(signals[name], velocity, lag) for lag in (1, HISTORY // 2, HISTORY)])
+            name: np.mean(
+                [_lagged(signals[name], velocity, lag) for lag in (1, HISTORY // 2, HISTORY)]
+            )
             for name in OF_AXIS[axis]
         }
-        least, most = min(lagged.values()), max(lagged.values())
+        least = min(lagged.values())
+        most = max(lagged.values())
         found[axis] = {name: float((one - least) / (most - least)) for name, one in lagged.items()}
     return found
 
 
 def _lagged(signal, velocity, lag):
     """Mutual information of a signal with the velocity so many samples later."""
-    return mutual_information(signal[:, HISTORY - lag : -lag].ravel(), velocity[:, HISTORY:].ravel())
+    return mutual_information(
+        signal[:, HISTORY - lag : -lag].ravel(), velocity[:, HISTORY:].ravel()
+    )

@@ -34,7 +34,13 @@ KNOWN = {
 GAINS = {
     **{"position_by_position": 0.06, "position_by_velocity": 0.2, "velocity_by_position": 0.002},
     **{"velocity_by_velocity": 0.06, "load_by_position": 1e-5, "load_by_velocity": 5e-4},
-    **{"position_in_sea": 1.0, "velocity_in_sea": 1.0, "load_in_sea": 1.0, "load_time": 100.0, "mean_time": 200.0},
+    **{
+        "position_in_sea": 1.0,
+        "velocity_in_sea": 1.0,
+        "load_in_sea": 1.0,
+        "load_time": 100.0,
+        "mean_time": 200.0,
+    },
 }
 """Gains at the start: chosen by hand, for poles at some 5 to 60 s."""
 SIGNED = ("wind_surge_1", "wind_surge_3", "wind_sway_1", "wind_sway_3")
@@ -115,7 +121,8 @@ def design_of(change: np.ndarray) -> FilterNumbers:
     """
     found = {}
     for position, name in enumerate(FilterNumbers._fields):
-        one, at_start = change[..., position], (KNOWN | GAINS)[name]
+        one = change[..., position]
+        at_start = (KNOWN | GAINS)[name]
         found[name] = at_start + one * abs(at_start) if name in SIGNED else at_start * np.exp(one)
     return FilterNumbers(**found)
 
@@ -136,21 +143,29 @@ def residuals(record: Record, change: np.ndarray) -> np.ndarray:
         Errors north and east, compressed beyond some metres, over the root of how many there are, then the changes
         over their standard deviations. [m, 1]
     """
-    design, m, errors = design_of(change[..., None, :]), record.measured, []
+    design = design_of(change[..., None, :])
+    m = record.measured
+    errors = []
     for k, state in enumerate(reckoned(record, motion_filter, design)):
         if m["valid"][0, k] < 0.5:
-            north, east = state.x - m["second_x"][:, k], state.y - m["second_y"][:, k]
-            shrunk = (1.0 + (north * north + east * east) / ROBUST**2) ** -0.25  # the cost grows as the distance
+            north = state.x - m["second_x"][:, k]
+            east = state.y - m["second_y"][:, k]
+            shrunk = (
+                1.0 + (north * north + east * east) / ROBUST**2
+            ) ** -0.25  # the cost grows as the distance
             errors += [shrunk * north, shrunk * east]
     found = np.concatenate(errors, axis=1)
     spread = np.array([WEIGHT[name] for name in FilterNumbers._fields])
     return np.concatenate([found / np.sqrt(found.shape[1] / 2), PRIOR * change / spread], axis=1)
 
 
-ROBUST, PRIOR = 1.0, 0.05  # m; 1, assumed: 400 outages worth of metres against one prior
+ROBUST = 1.0  # m; 1, assumed: 400 outages worth of metres against one prior
+PRIOR = 0.05
 
 
-def fitted(record: Record, progress: Progress, iterations: int = 20) -> tuple[FilterNumbers, list[dict[str, float]]]:
+def fitted(
+    record: Record, progress: Progress, iterations: int = 20
+) -> tuple[FilterNumbers, list[dict[str, float]]]:
     """Numbers of the filter learned from records.
 
     Parameters
@@ -171,27 +186,37 @@ def fitted(record: Record, progress: Progress, iterations: int = 20) -> tuple[Fi
     ----------
     Marquardt, An algorithm for least-squares estimation of nonlinear parameters, J. SIAM 11, 1963.
     """
-    return _descended(lambda change: residuals(record, change), len(FilterNumbers._fields), progress, iterations)
+    return _descended(
+        lambda change: residuals(record, change), len(FilterNumbers._fields), progress, iterations
+    )
 
 
 def _descended(
     of: Callable[[np.ndarray], np.ndarray], size: int, progress: Progress, iterations: int
 ) -> tuple[FilterNumbers, list[dict[str, float]]]:
     """Levenberg and Marquardt's method with slopes by finite differences, all in one call."""
-    change, damping, history = np.zeros(size), 1e-2, []
+    change = np.zeros(size)
+    damping = 1e-2
+    history = []
     for number in range(1, iterations + 1):
         found = of(np.concatenate([change[None], change + 1e-4 * np.eye(size)]))
-        now, slopes = found[0], (found[1:] - found[0]) / 1e-4
-        cost, gradient, normal = float(now @ now), slopes @ now, slopes @ slopes.T
+        now = found[0]
+        slopes = (found[1:] - found[0]) / 1e-4
+        cost = float(now @ now)
+        gradient = slopes @ now
+        normal = slopes @ slopes.T
         history.append({"cost": cost})
         dampings = damping * np.array([0.1, 1.0, 10.0, 100.0, 1000.0])
-        steps = [np.linalg.solve(normal + one * np.diag(np.diag(normal)), gradient) for one in dampings]
+        steps = [
+            np.linalg.solve(normal + one * np.diag(np.diag(normal)), gradient) for one in dampings
+        ]
         tried = np.clip(change - np.array(steps), -4.0, 4.0)
         costs = (of(tried) ** 2).sum(axis=1)
         best = int(np.argmin(costs))
         progress(number, iterations)
         if not costs[best] < cost * (1.0 - 1e-4):
             break
-        change, damping = tried[best], float(np.clip(dampings[best], 1e-6, 1e3))
+        change = tried[best]
+        damping = float(np.clip(dampings[best], 1e-6, 1e3))
     progress(iterations, iterations)
     return design_of(change), history

@@ -16,14 +16,16 @@ from shipcosim.learn.networks import Recurrent, arrays_of
 from shipcosim.learn.training import Progress, Schedule, fit, repeatable
 from shipcosim.models.prediction import velocity_network as law
 
-FULL_POWER, FULL_COMMAND = np.array([1.2e6, 0.9e6, 3.0e6]), np.array([204.0, 276.0, 28.7])
+FULL_POWER = np.array([1.2e6, 0.9e6, 3.0e6])
+FULL_COMMAND = np.array([204.0, 276.0, 28.7])
 """Of bow tunnel, stern tunnel, main propeller. [W, rpm, rpm, deg] As ssp/ships/osv has them; a test holds it."""
 INPUTS = {
     "surge": ("wind angle", "wind speed", "main power", "main action"),
     "sway": ("wind angle", "wind speed", "bow power", "stern power"),
 }
 """What the paper keeps, of Table III above 0.4."""
-BATCH, HELD_OUT = 64, 0.1
+BATCH = 64
+HELD_OUT = 0.1
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,9 @@ class PaperIITraining:
 
 
 RECIPES = {
-    "paper-ii": PaperIITraining("Dead reckoning of paper II: LSTM of 43 units for surge and 26 for sway"),
+    "paper-ii": PaperIITraining(
+        "Dead reckoning of paper II: LSTM of 43 units for surge and 26 for sway"
+    ),
     "paper-ii-single-layer": PaperIITraining(
         "Dead reckoning of paper II with a single layer of 55 sigmoids for surge and 93 for sway",
         recurrent=False,
@@ -73,7 +77,8 @@ class SingleLayer(torch.nn.Module):
 
     def __init__(self, inputs: int, width: int):
         super().__init__()
-        self.hidden, self.dense = torch.nn.Linear(inputs * law.HISTORY, width), torch.nn.Linear(width, 1)
+        self.hidden = torch.nn.Linear(inputs * law.HISTORY, width)
+        self.dense = torch.nn.Linear(width, 1)
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         """Standardised velocity (n, 1, 1) of histories (n, samples, inputs)."""
@@ -97,7 +102,9 @@ def features_of(record: Record) -> np.ndarray:
     return np.stack([law.features(one, FULL_POWER, FULL_COMMAND) for one in samples], axis=1)
 
 
-def trained(recipe: PaperIITraining, record: Record, progress: Progress) -> tuple[dict[str, np.ndarray], list[dict]]:
+def trained(
+    recipe: PaperIITraining, record: Record, progress: Progress
+) -> tuple[dict[str, np.ndarray], list[dict]]:
     """Networks of both velocities, trained from scratch.
 
     Parameters
@@ -114,7 +121,9 @@ def trained(recipe: PaperIITraining, record: Record, progress: Progress) -> tupl
     tuple of dict of str to array, and list of dict
         Weights as `velocity_network.design` reads them; losses by epoch, of surge and then of sway.
     """
-    features, found, epochs = features_of(record), {"full_power": FULL_POWER, "full_command": FULL_COMMAND}, []
+    features = features_of(record)
+    found = {"full_power": FULL_POWER, "full_command": FULL_COMMAND}
+    epochs = []
     for number, (axis, name) in enumerate((("surge", "u"), ("sway", "v"))):
         velocity = record.measured[name]
 
@@ -130,16 +139,26 @@ def trained(recipe: PaperIITraining, record: Record, progress: Progress) -> tupl
 def _one(recipe, number, features, velocity, names, progress):
     """Network of one velocity: its arrays by name, and its losses."""
     inputs = np.array([law.FEATURES.index(name) for name in names])
-    mean, std = features[..., inputs].mean((0, 1)), features[..., inputs].std((0, 1))
+    mean = features[..., inputs].mean((0, 1))
+    std = features[..., inputs].std((0, 1))
     scale = float(velocity.mean()), float(velocity.std())
-    x = np.lib.stride_tricks.sliding_window_view((features[..., inputs] - mean) / std, law.HISTORY, axis=1)
-    x, y = x[:, :-1].swapaxes(2, 3), ((velocity - scale[0]) / scale[1])[:, law.HISTORY :]
+    x = np.lib.stride_tricks.sliding_window_view(
+        (features[..., inputs] - mean) / std, law.HISTORY, axis=1
+    )
+    x = x[:, :-1].swapaxes(2, 3)
+    y = ((velocity - scale[0]) / scale[1])[:, law.HISTORY :]
     kept = round((1.0 - HELD_OUT) * y.shape[1])
     rng = np.random.default_rng(recipe.seed)
-    batches, held_out = _batches(x[:, :kept], y[:, :kept], rng), _batches(x[:, kept:], y[:, kept:], rng)
-    width, rate = recipe.width[number], recipe.learning_rate[number]
+    batches = _batches(x[:, :kept], y[:, :kept], rng)
+    held_out = _batches(x[:, kept:], y[:, kept:], rng)
+    width = recipe.width[number]
+    rate = recipe.learning_rate[number]
     with repeatable(recipe.seed):
-        network = Recurrent(len(names), width, 1, 1) if recipe.recurrent else SingleLayer(len(names), width)
+        network = (
+            Recurrent(len(names), width, 1, 1)
+            if recipe.recurrent
+            else SingleLayer(len(names), width)
+        )
         schedule = Schedule(recipe.seed, rate, recipe.patience, recipe.most_epochs)
 
         def losses(batch):
@@ -153,15 +172,20 @@ def _one(recipe, number, features, velocity, names, progress):
 
 def _batches(x, y, rng):
     """Mini-batches of samples in random order."""
-    x, y = x.reshape(-1, *x.shape[2:]), y.reshape(-1)
+    x = x.reshape(-1, *x.shape[2:])
+    y = y.reshape(-1)
     order = rng.permutation(len(y))
     parts = np.array_split(order, max(1, len(y) // BATCH))
-    return [(torch.from_numpy(x[part]).float(), torch.from_numpy(y[part]).float()) for part in parts]
+    return [
+        (torch.from_numpy(x[part]).float(), torch.from_numpy(y[part]).float()) for part in parts
+    ]
 
 
 def _weights(network):
     if isinstance(network, Recurrent):
-        return {name.removeprefix("net."): array for name, array in arrays_of(network, "net").items()}
+        return {
+            name.removeprefix("net."): array for name, array in arrays_of(network, "net").items()
+        }
     layers = {"hidden": network.hidden, "dense": network.dense}
     return {
         f"{name}.{key}": getattr(layer, kind).detach().numpy().copy()

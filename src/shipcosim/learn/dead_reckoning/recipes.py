@@ -22,7 +22,9 @@ UNLEARNED = {
     "last-position": "For comparison: the ship is taken to stay where she was, the mean of some ten seconds",
 }
 FILTER = "motion-filter"
-DESCRIPTION = "Our filter: equations of motion and observer, learned through drills of a minute without GNSS"
+DESCRIPTION = (
+    "Our filter: equations of motion and observer, learned through drills of a minute without GNSS"
+)
 NOTES = (
     "Drills: GNSS is masked for a minute out of two, DP rides on the filter as it is before training, and a second"
     " receiver, which DP does not see, is logged. The region is calibrated in other worlds, against the true place.",
@@ -68,7 +70,9 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
     if name in UNLEARNED:
         progress(1, 1)
         region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
-        notes = ("Its region is no more than a guess: half a metre at once, three metres after a minute.",)
+        notes = (
+            "Its region is no more than a guess: half a metre at once, three metres after a minute.",
+        )
         arrays = _arrays(design_of(name)) | region | {"region.sea_share": np.array(1.0)}
         return Trained(arrays, UNLEARNED[name], 0, {"worlds": 0}, {}, [], notes)
     return _filter(progress, size) if name == FILTER else _networks(name, progress, size)
@@ -88,17 +92,28 @@ def design_of(name: str) -> FilterNumbers:
         Numbers.
     """
     known = FilterNumbers(**KNOWN, **GAINS)
-    return known._replace(surge_time=1e-3, sway_time=1e-3, **STILL) if name == "last-position" else known
+    return (
+        known._replace(surge_time=1e-3, sway_time=1e-3, **STILL)
+        if name == "last-position"
+        else known
+    )
 
 
-STILL = {"position_by_velocity": 0.0, "velocity_by_position": 0.0, "velocity_by_velocity": 0.0, "position_in_sea": 0.0}
+STILL = {
+    "position_by_velocity": 0.0,
+    "velocity_by_position": 0.0,
+    "velocity_by_velocity": 0.0,
+    "position_in_sea": 0.0,
+}
 
 
 def _filter(progress, size):
     """Drills, numbers, region."""
     record = _recorded(size.training, size.duration, _share(progress, 0, 35), worlds.DRILLS)
     design, epochs = motion_filter.fitted(record, _share(progress, 35, 45))
-    apart = _recorded(size.calibration, size.calibrated_for, _share(progress, 45, 100), worlds.DRILLS)
+    apart = _recorded(
+        size.calibration, size.calibrated_for, _share(progress, 45, 100), worlds.DRILLS
+    )
     arrays = _arrays(design) | _region(apart, reckoned(apart, filter_law, design))
     settings = {"numbers": len(design), "robust beyond (m)": motion_filter.ROBUST}
     settings |= {"weight of the start": motion_filter.PRIOR}
@@ -112,7 +127,9 @@ def _networks(name, progress, size):
     recipe = paper_ii.RECIPES[name]
     record = _recorded(size.training, size.duration, _share(progress, 0, 40), ())
     arrays, epochs = paper_ii.trained(recipe, record, _share(progress, 40, 60))
-    apart = _recorded(size.calibration, size.calibrated_for, _share(progress, 60, 100), worlds.DRILLS)
+    apart = _recorded(
+        size.calibration, size.calibrated_for, _share(progress, 60, 100), worlds.DRILLS
+    )
     arrays |= _region(apart, reckoned(apart, network_law, network_law.design(arrays)))
     table = inputs.table(record, paper_ii.features_of(record))
     told = {
@@ -120,7 +137,9 @@ def _networks(name, progress, size):
         for axis, row in table.items()
     }
     settings = {
-        "network": "LSTM and a dense layer" if recipe.recurrent else "a layer of sigmoids and a dense layer",
+        "network": "LSTM and a dense layer"
+        if recipe.recurrent
+        else "a layer of sigmoids and a dense layer",
         "units, surge and sway": list(recipe.width),
         "learning rates": list(recipe.learning_rate),
         "inputs": {axis: list(names) for axis, names in paper_ii.INPUTS.items()},
@@ -139,8 +158,11 @@ def _recorded(seeds, duration, progress, losses):
 def _region(record: Record, states: list) -> dict[str, np.ndarray]:
     """Region by all samples without GNSS."""
     names = ("x", "y", "lost_for", "sea")
-    x, y, lost_for, sea = (np.stack([getattr(state, name) for state in states], axis=-1) for name in names)
-    error, lost = np.hypot(x - record.x, y - record.y), record.measured["valid"] < 0.5
+    x, y, lost_for, sea = (
+        np.stack([getattr(state, name) for state in states], axis=-1) for name in names
+    )
+    error = np.hypot(x - record.x, y - record.y)
+    lost = record.measured["valid"] < 0.5
     return calibrated(lost_for[lost], sea[lost], error[lost])
 
 

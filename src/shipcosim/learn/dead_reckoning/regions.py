@@ -28,12 +28,17 @@ def calibrated(lost_for: np.ndarray, sea: np.ndarray, error: np.ndarray) -> dict
     tried = [(_mean_radius(lost_for, sea, error, share), share) for share in SEA_SHARES]
     share = min(tried)[1]
     radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
-    return {"region.times": np.array(TIMES, dtype=float), "region.radii": radii, "region.sea_share": np.array(share)}
+    return {
+        "region.times": np.array(TIMES, dtype=float),
+        "region.radii": radii,
+        "region.sea_share": np.array(share),
+    }
 
 
 def _radii(lost_for, sea, error, share):
     """At each time the quantile of the errors within 2.5 s of it, over what the sea makes of them."""
-    scaled, found = error / (1.0 + share * np.sqrt(sea)), []
+    scaled = error / (1.0 + share * np.sqrt(sea))
+    found = []
     for time in TIMES:
         near = np.sort(scaled[abs(lost_for - time) < 2.5])
         found.append(near[min(len(near) - 1, int(np.ceil(COVERED * (len(near) + 1))) - 1)])

@@ -23,18 +23,31 @@ from shipcosim.cosim import simulate, system_of
 from shipcosim.learn.training import Progress
 from shipcosim.scenario import Event, Scenario
 
-SYSTEM, PARAMETERS, STEP = "osv_gnss_loss", "osv", 0.2
+SYSTEM = "osv_gnss_loss"
+PARAMETERS = "osv"
+STEP = 0.2
 SEA_STATES = ((1.0, 2.0), (2.0, 4.0), (3.0, 7.0), (4.0, 11.0))
 """Significant wave height and wind speed. [m, m/s] Paper II, Table IV."""
-TRANSITION, SETTLED, DURATION = 420.0, 600.0, 840.0
+TRANSITION = 420.0
+SETTLED = 600.0
+DURATION = 840.0
 """The wind has changed; three minutes later; the end of a condition. [s] Paper II, IV-A and IV-C."""
-TRAINING, CALIBRATION, TUNING, HELD_OUT = range(1, 13), range(200, 224), range(300, 312), range(8100, 8148)
+TRAINING = range(1, 13)
+CALIBRATION = range(200, 224)
+TUNING = range(300, 312)
+HELD_OUT = range(8100, 8148)
 """Seeds of worlds, each for one purpose."""
-SHIP: Mapping[str, float | str] = tomllib.loads(Path(__file__).with_name("true_ship.toml").read_text("utf-8"))
+SHIP: Mapping[str, float | str] = tomllib.loads(
+    Path(__file__).with_name("true_ship.toml").read_text("utf-8")
+)
 """The true ship where she differs from her parameter set, within its tolerances or in a form that it does not have."""
 SENSORS: Mapping[str, float | str] = {
     **{"sensors.period": 0.2, "sensors.position_period": 0.2, "sensors.position_drift_std": 0.1},
-    **{"sensors.position_noise_std": 0.2, "sensors.velocity_noise_std": 0.02, "sensors.heading_drift_std": "0.1 deg"},
+    **{
+        "sensors.position_noise_std": 0.2,
+        "sensors.velocity_noise_std": 0.02,
+        "sensors.heading_drift_std": "0.1 deg",
+    },
     **{"sensors.heading_noise_std": "0.1 deg", "sensors.yaw_rate_noise_std": "0.05 deg/s"},
     **{"sensors.wind_speed_noise": 0.02, "sensors.wind_from_noise_std": "1 deg"},
 }
@@ -46,10 +59,16 @@ MEASURED: Mapping[str, str] = {
     **{"wind_speed": "sensors.wind_speed_meas", "wind_from": "sensors.wind_from_meas"},
     **{f"command_{number}": f"{unit}.command" for number, unit in enumerate(UNITS, 1)},
     **{f"asked_{number}": f"allocator.thrust_cmd_{number}" for number in range(1, 7)},
-    **{"valid": "sensors.position_1_valid", "second_x": "sensors.x_2_meas", "second_y": "sensors.y_2_meas"},
+    **{
+        "valid": "sensors.position_1_valid",
+        "second_x": "sensors.x_2_meas",
+        "second_y": "sensors.y_2_meas",
+    },
 }
 """What is aboard, by our name: the signal that measures it. The second receiver is logged, and DP does not see it."""
-RECKONED: Mapping[str, str] = {name: f"reckoning.{name}" for name in ("x_hat", "y_hat", "position_region", "lost_for")}
+RECKONED: Mapping[str, str] = {
+    name: f"reckoning.{name}" for name in ("x_hat", "y_hat", "position_region", "lost_for")
+}
 """What the FMU in the loop gave."""
 DRILLS = tuple((time, time + 60.0) for time in (240.0, 360.0, 480.0, 600.0, 720.0))
 """From when to when GNSS is masked in a drill: DP rides on dead reckoning, the second receiver is logged. [s]"""
@@ -122,7 +141,9 @@ def drawn(seed: int) -> World:
     heights, speeds = zip(*SEA_STATES, strict=True)
     wind = tuple(float(np.interp(one, range(4), speeds)) for one in (before, severity))
     towards = rng.uniform(-math.pi, math.pi, 2)
-    return _world(seed, float(np.interp(severity, range(4), heights)), wind, tuple(map(float, towards)), rng)
+    return _world(
+        seed, float(np.interp(severity, range(4), heights)), wind, tuple(map(float, towards)), rng
+    )
 
 
 def tested(seed: int, sea_state: int, direction: float) -> World:
@@ -142,7 +163,10 @@ def tested(seed: int, sea_state: int, direction: float) -> World:
     World
     """
     first = sea_state == 0
-    wind = SEA_STATES[sea_state - 1][1], SEA_STATES[sea_state][1]  # -1: the last of the direction before
+    wind = (
+        SEA_STATES[sea_state - 1][1],
+        SEA_STATES[sea_state][1],
+    )  # -1: the last of the direction before
     towards = direction - math.radians(30.0) if first else direction, direction
     return _world(seed, SEA_STATES[sea_state][0], wind, towards, np.random.default_rng([26, seed]))
 
@@ -153,7 +177,8 @@ def worlds_of_test(seeds: Sequence[int]) -> list[World]:
 
 
 def _world(seed, height, wind, towards, rng):
-    current, bias = rng.uniform([0.0, -math.pi], [0.4, math.pi]), rng.uniform(-0.2, 0.2, 2)
+    current = rng.uniform([0.0, -math.pi], [0.4, math.pi])
+    bias = rng.uniform(-0.2, 0.2, 2)
     return World(
         seed,
         height,
@@ -168,7 +193,10 @@ def _world(seed, height, wind, towards, rng):
 
 
 def scenario_of(
-    world: World, duration: float = DURATION, losses: Sequence[tuple[float, float]] = (), variant: str = "kinetic"
+    world: World,
+    duration: float = DURATION,
+    losses: Sequence[tuple[float, float]] = (),
+    variant: str = "kinetic",
 ) -> Scenario:
     """The run of a world: the wind changes over seven minutes, then holds.
 
@@ -206,7 +234,10 @@ def scenario_of(
         "sensors.compass_1_offset": world.compass_error,
         "reckoning.variant": variant,
     }
-    wind = {"environment.wind_speed": world.wind_speed[1], "environment.wind_from": world.wind_from[1]}
+    wind = {
+        "environment.wind_speed": world.wind_speed[1],
+        "environment.wind_from": world.wind_from[1],
+    }
     events = [Event(time=0.0, override=wind)]
     for lost, found in losses:
         events.append(Event(time=lost, override={"sensors.position_1_lost": True}))
@@ -248,7 +279,8 @@ def recorded(
     Record
         With (worlds, duration + 1) arrays.
     """
-    tables, system = [], system_of(scenario_of(worlds[0], duration))
+    tables = []
+    system = system_of(scenario_of(worlds[0], duration))
     for number, world in enumerate(worlds, 1):
         tables.append(simulate(system, scenario_of(world, duration, losses, variant)))
         progress(number, len(worlds))
@@ -256,6 +288,8 @@ def recorded(
     def stacked(signal):
         return np.stack([table[signal].values.astype(float) for table in tables])
 
-    measured, reckoned = ({name: stacked(signal) for name, signal in names.items()} for names in (MEASURED, RECKONED))
+    measured, reckoned = (
+        {name: stacked(signal) for name, signal in names.items()} for names in (MEASURED, RECKONED)
+    )
     x, y = (stacked(f"vessel.{axis}") + stacked(f"vessel.{axis}_wave") for axis in "xy")
     return Record(measured, x, y, reckoned)

@@ -19,7 +19,8 @@ from shipcosim.models.ship.hull import HullParameters
 
 HEADING = 10.0
 """What a radian of heading counts in the loss. [m/rad]"""
-METRES, RADIANS = 5.0, 0.2
+METRES = 5.0
+RADIANS = 0.2
 """Scales of the outputs."""
 MIRROR_SIGNS = np.array(
     [1, -1, 1, 1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, -1, -1, 1, -1]
@@ -136,7 +137,9 @@ def fit(
     """
     mean, std = standard(found[0])
     x, held = (tensor(np.clip((one[0] - mean) / std, -CUT, CUT)) for one in (found, choice))
-    y, sizes, polynomials = tensor(found[1]), tensor(scale()), basis()
+    y = tensor(found[1])
+    sizes = tensor(scale())
+    polynomials = basis()
     x = torch.cat((x, (x * tensor(MIRROR_SIGNS))[..., torch.tensor(MIRROR_ORDER)]))
     y = torch.cat((y, y * tensor(np.array([1.0, -1.0, -1.0])).reshape(1, 1, 3, 1)))
 
@@ -144,7 +147,9 @@ def fit(
         return distance(sizes * given, target, polynomials)
 
     with repeatable(recipe.seed):
-        networks, epochs = fitting.fit((x, y), (held, tensor(choice[1])), loss, len(sizes), recipe, progress)
+        networks, epochs = fitting.fit(
+            (x, y), (held, tensor(choice[1])), loss, len(sizes), recipe, progress
+        )
     arrays = {"mean": mean, "std": std, "scale": scale()}
     for number, network in enumerate(networks, 1):
         arrays |= arrays_of(network, f"member{number}")
@@ -162,7 +167,8 @@ def standard(found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def given_by(trained: docking.Trained, found: np.ndarray) -> np.ndarray:
     """Outputs of the members over (m, n) features, each docking from an empty memory: (members, m, n, 3 k) array."""
-    memory, rows = docking.empty(trained, found.shape[:1]), []
+    memory = docking.empty(trained, found.shape[:1])
+    rows = []
     inputs = docking.standardised(found, trained)
     for k in range(found.shape[1]):
         given, memory = docking.outputs(inputs[:, k], memory, trained)

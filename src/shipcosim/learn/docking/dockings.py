@@ -14,22 +14,41 @@ import numpy as np
 from shipcosim.cosim import simulate, system_of
 from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
 from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
-from shipcosim.learn.true_ships import DAMPING, MEMORY, POWER, SPEEDS, STRIPS, WIND, TrueLoads, factors, sailed
+from shipcosim.learn.true_ships import (
+    DAMPING,
+    MEMORY,
+    POWER,
+    SPEEDS,
+    STRIPS,
+    WIND,
+    TrueLoads,
+    factors,
+    sailed,
+)
 from shipcosim.models.core.tables import text
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
 
-SYSTEM, PARAMETERS, PREDICTOR = "gunnerus_docking", "gunnerus-28m9", "docking_predictor"
+SYSTEM = "gunnerus_docking"
+PARAMETERS = "gunnerus-28m9"
+PREDICTOR = "docking_predictor"
 TRUE = {"vessel": "rough_vessel"}
-TRAINING, CALIBRATION, CHOICES = range(1, 69), range(200, 230), range(300, 320)
+TRAINING = range(1, 69)
+CALIBRATION = range(200, 230)
+CHOICES = range(300, 320)
 """Seeds of dockings at familiar harbours: to train on, to calibrate regions on, and to choose by."""
-HELD_OUT, HELD_OUT_UNSEEN = range(8300, 8320), range(8320, 8340)
+HELD_OUT = range(8300, 8320)
+HELD_OUT_UNSEEN = range(8320, 8340)
 """Seeds of dockings that nobody looks at before the end, at familiar and at unseen harbours."""
-SAMPLES, STEP, STOP = 1000, 0.2, 1500.0
+SAMPLES = 1000
+STEP = 0.2
+STOP = 1500.0
 """Length of a record; step and latest end of the co-simulation. [1, s, s]"""
 LOADING = 0.03
 """Most at distance 1 of the mass that a docking has more or less, over the ship's. [1]"""
-CROSS_FLOW, SPEED_LOSS, ANGLE_LOSS = 0.27, 0.1, 0.1
+CROSS_FLOW = 0.27
+SPEED_LOSS = 0.1
+ANGLE_LOSS = 0.1
 """At distance 1: cross-flow drag that stands for half of the quadratic damping in sway, loss of the tunnel's thrust
 under way, loss of azimuths athwartships. [1, s2/m2, 1]"""
 
@@ -136,7 +155,9 @@ def sail(docking: Docking, *, step_size: float = STEP) -> Record:
     table = simulate(_without_predictor(), scenario(docking, step_size=step_size))
     moored = np.flatnonzero(np.asarray(table["helmsman.stage"]) == 3)
     if not len(moored) or moored[0] < SAMPLES:
-        raise RuntimeError(f"docking {docking.seed}: lies at the berth too early or never: after {moored[:1]} s")
+        raise RuntimeError(
+            f"docking {docking.seed}: lies at the berth too early or never: after {moored[:1]} s"
+        )
     last = slice(moored[0] + 1 - SAMPLES, moored[0] + 1)
     known = {name: np.asarray(table[signal], float)[last] for name, signal in KNOWN.items()}
     truth = {name: np.asarray(table[f"vessel.{name}"], float)[last] for name in TRUTH}
@@ -144,7 +165,10 @@ def sail(docking: Docking, *, step_size: float = STEP) -> Record:
 
 
 def sail_all(
-    dockings: Iterable[Docking], *, processes: int = 2, progress: Callable[[int, int], None] | None = None
+    dockings: Iterable[Docking],
+    *,
+    processes: int = 2,
+    progress: Callable[[int, int], None] | None = None,
 ) -> list[Record]:
     """Co-simulate several dockings, in their order; those that `sail` refuses are left out.
 
@@ -186,9 +210,12 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
         Start values, by component and variable.
     """
     rng = np.random.default_rng([26, 3, 1])
-    values = {name: value + distance * off * rng.standard_normal() for name, value, off in _tolerated()}
+    values = {
+        name: value + distance * off * rng.standard_normal() for name, value, off in _tolerated()
+    }
     values["vessel.A62"] = values["vessel.A26"]
-    along, around = factors(rng, 5, STRIPS, distance), factors(rng, (8, 3), WIND, distance)
+    along = factors(rng, 5, STRIPS, distance)
+    around = factors(rng, (8, 3), WIND, distance)
     powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
     memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
     quadratic = [values[f"vessel.{name}"] for name in ("X_uu", "Y_modvv", "N_modrr")]
@@ -209,7 +236,11 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
 @lru_cache(maxsize=1)
 def _without_predictor() -> System:
     """The system without the predictor, which acts on nothing."""
-    system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], components=TRUE, stop_time=1.0, step_size=STEP))
+    system = system_of(
+        Scenario(
+            system=SYSTEM, parameters=[PARAMETERS], components=TRUE, stop_time=1.0, step_size=STEP
+        )
+    )
     components = {name: one for name, one in system.components.items() if name != PREDICTOR}
     connections = tuple(one for one in system.connections if one.target[0] != PREDICTOR)
     return replace(system, components=components, connections=connections)
@@ -218,7 +249,9 @@ def _without_predictor() -> System:
 @lru_cache(maxsize=1)
 def _tolerated() -> tuple[tuple[str, float, float], ...]:
     """Name, value and tolerance of each number of ship and thrusters that has one."""
-    system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
+    system = system_of(
+        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
+    )
     found = []
     for name in ("vessel", "port", "starboard", "tunnel"):
         component = system.components[name]
@@ -240,9 +273,13 @@ def _number(seed, rng):
 
 def _manner(rng, seed):
     """How this helmsman does it, and the length of the way, which takes some 1100 s. [as the fields say, m]"""
-    closing, place_time = rng.uniform(35.0, 70.0), rng.uniform(45.0, 80.0)
-    fast, slow = rng.uniform(4.0, 5.6), min(closing / place_time * rng.uniform(0.9, 1.4), 1.5)
-    slowing, look, reaction = rng.uniform(500.0, 1300.0), rng.uniform(2.0, 6.0), rng.uniform(0.7, 2.0)
+    closing = rng.uniform(35.0, 70.0)
+    place_time = rng.uniform(45.0, 80.0)
+    fast = rng.uniform(4.0, 5.6)
+    slow = min(closing / place_time * rng.uniform(0.9, 1.4), 1.5)
+    slowing = rng.uniform(500.0, 1300.0)
+    look = rng.uniform(2.0, 6.0)
+    reaction = rng.uniform(0.7, 2.0)
     yaw_time = 4.0 + look + reaction
     manner = {
         "transit_speed": fast,
@@ -276,7 +313,9 @@ def _weather(rng, port: Harbour, seed):
         "environment.wind_speed": rng.uniform(0.0, 10.0),
         "environment.wind_from": wind_from,
         "environment.current_speed": abs(tide),
-        "environment.current_to": port.courses[0] + (pi if tide < 0.0 else 0.0) + rng.normal(0.0, 0.2),
+        "environment.current_to": port.courses[0]
+        + (pi if tide < 0.0 else 0.0)
+        + rng.normal(0.0, 0.2),
         "environment.significant_wave_height": rng.uniform(0.0, 0.2),
         "environment.peak_period": rng.uniform(2.5, 4.0),
         "environment.waves_from": wind_from,

@@ -41,15 +41,20 @@ def fit(
     list of Recurrent, and list of dict
         Networks; losses by member and epoch.
     """
-    networks, history = [], []
+    networks = []
+    history = []
     for member in range(recipe.members):
 
         def tell(done, total, member=member):
             progress(member * total + done, recipe.members * total)
 
-        network = Recurrent(found[0].shape[-1], recipe.width, recipe.layers, outputs, recipe.dropout)
+        network = Recurrent(
+            found[0].shape[-1], recipe.width, recipe.layers, outputs, recipe.dropout
+        )
         losses = _fit_one(network, found, choice, loss, recipe, tell)
-        history += [{"member": member + 1.0, "epoch": k + 1.0, **one} for k, one in enumerate(losses)]
+        history += [
+            {"member": member + 1.0, "epoch": k + 1.0, **one} for k, one in enumerate(losses)
+        ]
         networks.append(network)
     return networks, history
 
@@ -59,9 +64,13 @@ def _fit_one(network, found, choice, loss, recipe, progress):
     x, y = found
     batches = len(x) // recipe.batch
     steps = recipe.epochs * batches
-    optimiser = torch.optim.AdamW(network.parameters(), recipe.learning_rate, weight_decay=recipe.decay)
+    optimiser = torch.optim.AdamW(
+        network.parameters(), recipe.learning_rate, weight_decay=recipe.decay
+    )
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
-    best, kept, history = np.inf, network.state_dict(), []
+    best = np.inf
+    kept = network.state_dict()
+    history = []
     for epoch in range(recipe.epochs):
         total = 0.0
         for number, rows in enumerate(torch.randperm(len(x)).split(recipe.batch)[:batches]):
@@ -73,7 +82,8 @@ def _fit_one(network, found, choice, loss, recipe, progress):
         left = left_over(network, choice, loss)
         history.append({"training": total / batches, "choices": left})
         if left < best:
-            best, kept = left, {name: value.clone() for name, value in network.state_dict().items()}
+            best = left
+            kept = {name: value.clone() for name, value in network.state_dict().items()}
     network.load_state_dict(kept)
     network.eval()
     return history

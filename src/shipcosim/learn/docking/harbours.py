@@ -11,9 +11,12 @@ from math import cos, pi, sin
 
 import numpy as np
 
-FAMILIAR, UNSEEN = range(1, 15), range(15, 19)
+FAMILIAR = range(1, 15)
+UNSEEN = range(15, 19)
 """Numbers of the harbours to train at, and of those that are never trained at."""
-_LAST, _BEFORE, _SEA = (180.0, 400.0), (400.0, 900.0), 5000.0  # m, lengths of the legs
+_LAST = (180.0, 400.0)  # m, lengths of the legs
+_BEFORE = (400.0, 900.0)
+_SEA = 5000.0
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,8 @@ class Harbour:
             North and east of each waypoint. [m]
         """
         off = self.berth_heading - self.berth_side * 0.5 * pi
-        points, left = [(stand_off * cos(off), stand_off * sin(off))], length
+        points = [(stand_off * cos(off), stand_off * sin(off))]
+        left = length
         for course, leg in zip(self.courses[::-1], self.lengths[::-1], strict=True):
             leg = min(leg, left)
             x, y = points[0]
@@ -86,7 +90,8 @@ def harbour(number: int) -> Harbour:
     Harbour
     """
     rng = np.random.default_rng([26, 3, 0, number])
-    heading, side = rng.uniform(-pi, pi), float(rng.choice((-1.0, 1.0)))
+    heading = rng.uniform(-pi, pi)
+    side = float(rng.choice((-1.0, 1.0)))
     last = heading + side * rng.uniform(0.15, 0.8)  # towards the quay
     before = last + rng.choice((-1.0, 1.0)) * rng.uniform(0.3, 1.1)
     first = before + rng.uniform(-0.7, 0.7)
@@ -108,7 +113,8 @@ def _river(rng, number, heading, side):
     """Every third harbour lies in the outlet of a river, which flows past the berth or across the way to it."""
     speed = rng.uniform(0.2, 0.45) if number % 3 == 1 else 0.0
     to = heading + rng.choice((0.0, pi)) - side * rng.uniform(0.0, 0.8)  # along the quay and off it
-    mouth, beside = rng.uniform(50.0, 250.0), rng.uniform(-40.0, 80.0)
+    mouth = rng.uniform(50.0, 250.0)
+    beside = rng.uniform(-40.0, 80.0)
     off = heading - side * 0.5 * pi
     return {
         "river_speed": speed,

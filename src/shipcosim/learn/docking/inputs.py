@@ -85,7 +85,10 @@ def replay(records: Sequence[Record], model: ShipModel) -> Replay:
         helm.predict(aboard._replace(ship=start), **laws),
         helm.predict(aboard._replace(ship=own.ship), left=own.load, **laws),
         {name: ahead(getattr(place, name)) for name in ("x", "y", "psi")},
-        {name: ahead(np.stack([record.truth[name] for record in records])) for name in ("x", "y", "psi")},
+        {
+            name: ahead(np.stack([record.truth[name] for record in records]))
+            for name in ("x", "y", "psi")
+        },
     )
 
 
@@ -100,11 +103,16 @@ def _followed(aboard, model):
     """Averages and record at every second."""
     now = at_second(aboard, 0)
     latest: helm.Start = ()
-    own, starts, owns = docking.begin(now, model.helm.position_age), [], []
+    own = docking.begin(now, model.helm.position_age)
+    starts = []
+    owns = []
     for k in range(aboard.wind_speed.shape[1]):
-        before, now = now, at_second(aboard, k)
+        before = now
+        now = at_second(aboard, k)
         if k:
-            own = docking.follow(own, before, now, hull=model.hull, wind=model.wind, helm_=model.helm)
+            own = docking.follow(
+                own, before, now, hull=model.hull, wind=model.wind, helm_=model.helm
+            )
         latest = helm.remembered(latest, now.ship)
         starts.append(helm.smoothed(latest, now.ship))
         owns.append((*own.ship, *own.load))

@@ -18,7 +18,9 @@ from shipcosim.learn.networks import arrays_of
 from shipcosim.learn.training import Progress, repeatable
 from shipcosim.models.prediction import paper_iii
 
-RATES, LAYERS, LEAST_NODES = (1e-4, 1e-1), (1, 2), 10
+RATES = (1e-4, 1e-1)
+LAYERS = (1, 2)
+LEAST_NODES = 10
 """What the paper searches in: learning rate, LSTM layers, nodes of a layer, from 10 to 500."""
 
 
@@ -44,7 +46,9 @@ class PaperIIITraining:
         Of Adam at the start, as the search leaves it; weight decay; noise added to inputs. [1]
     """
 
-    description: str = "The docking predictor of paper III: three LSTMs add the errors of the kinetic model"
+    description: str = (
+        "The docking predictor of paper III: three LSTMs add the errors of the kinetic model"
+    )
     seed: int = 3
     trials: int = 10
     trial_epochs: int = 5
@@ -68,7 +72,8 @@ def inputs_of(replay: Replay) -> np.ndarray:
 def targets(replay: Replay) -> np.ndarray:
     """Errors of the kinetic model: (m, n, 60) array, north in 1 to 30 s, then east. [m]"""
     found = [
-        replay.later[name][1:] - np.stack([motion[k] for motion in replay.kinetic]) for k, name in enumerate(("x", "y"))
+        replay.later[name][1:] - np.stack([motion[k] for motion in replay.kinetic])
+        for k, name in enumerate(("x", "y"))
     ]
     return np.moveaxis(np.concatenate(found), 0, -1)
 
@@ -87,7 +92,9 @@ def draws(recipe: PaperIIITraining) -> list[PaperIIITraining]:
         bounds = RATES, (LEAST_NODES, recipe.most_nodes)
         rate, nodes = (float(np.exp(rng.uniform(*np.log(one)))) for one in bounds)
         layers = int(rng.integers(LAYERS[0], LAYERS[1] + 1))
-        found.append(replace(recipe, learning_rate=float(f"{rate:.2g}"), width=round(nodes), layers=layers))
+        found.append(
+            replace(recipe, learning_rate=float(f"{rate:.2g}"), width=round(nodes), layers=layers)
+        )
     return found
 
 
@@ -113,14 +120,22 @@ def fit(
     dict of str to array, list of dict, list of tuples
         As `paper_iii.ensemble_of` takes them; losses by member and epoch; what was tried, with its loss.
     """
-    mean, std = found[0].mean(axis=(0, 1)), found[0].std(axis=(0, 1)) + 1e-9
-    target_mean, target_std = np.nanmean(found[1], axis=(0, 1)), np.nanstd(found[1], axis=(0, 1))
-    trained, held = ((tensor((x - mean) / std), tensor((y - target_mean) / target_std)) for x, y in (found, choice))
-    outputs, tried = len(target_mean), []
+    mean = found[0].mean(axis=(0, 1))
+    std = found[0].std(axis=(0, 1)) + 1e-9
+    target_mean = np.nanmean(found[1], axis=(0, 1))
+    target_std = np.nanstd(found[1], axis=(0, 1))
+    trained, held = (
+        (tensor((x - mean) / std), tensor((y - target_mean) / target_std))
+        for x, y in (found, choice)
+    )
+    outputs = len(target_mean)
+    tried = []
     with repeatable(recipe.seed):
         for number, one in enumerate(draws(recipe)):
             short = replace(one, members=1, epochs=recipe.trial_epochs)
-            _, epochs = fitting.fit(trained, held, squares, outputs, short, lambda done, total: None)
+            _, epochs = fitting.fit(
+                trained, held, squares, outputs, short, lambda done, total: None
+            )
             tried.append((one, min(epoch["choices"] for epoch in epochs)))
             progress(number + 1, 2 * recipe.trials)
         best = min(tried, key=lambda pair: pair[1])[0]
@@ -138,7 +153,8 @@ def fit(
 def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:
     """Errors that the ensemble expects over (m, n) inputs, each docking from an empty memory: (m, n, 60) array. [m]"""
     ensemble = paper_iii.ensemble_of(arrays)
-    memory, rows = paper_iii.empty(ensemble, found.shape[:1]), []
+    memory = paper_iii.empty(ensemble, found.shape[:1])
+    rows = []
     for k in range(found.shape[1]):
         given, memory = paper_iii.errors(found[:, k], memory, ensemble)
         rows.append(given)

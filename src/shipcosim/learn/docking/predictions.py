@@ -45,7 +45,8 @@ def by_paper_iii(replay: Replay, arrays: Mapping[str, np.ndarray]) -> Predicted:
 
 def by_ours(replay: Replay, arrays: Mapping[str, np.ndarray], hull: HullParameters) -> Predicted:
     """By our hybrid."""
-    trained, found = docking.trained_of(arrays), distance_ensemble.features(replay, hull)
+    trained = docking.trained_of(arrays)
+    found = distance_ensemble.features(replay, hull)
     given = distance_ensemble.given_by(trained, found)
     share = docking.share_of(found, given, trained)
     learned = docking.corrected(replay.own.ship, replay.ours, given)
@@ -54,15 +55,15 @@ def by_ours(replay: Replay, arrays: Mapping[str, np.ndarray], hull: HullParamete
 
 def own_record(places: Places, replay: Replay) -> tuple[np.ndarray, np.ndarray]:
     """Mean errors of predictions 10 s ahead as known aboard at every second: two (m, n) arrays. [m, rad]"""
-    ahead, ship = (
-        round(FORESIGHT),
-        Motion._make((*(replay.later[name][0] for name in ("x", "y", "psi")), *replay.start[3:])),
-    )
+    ahead = round(FORESIGHT)
+    ship = Motion._make((*(replay.later[name][0] for name in ("x", "y", "psi")), *replay.start[3:]))
     errors = np.zeros_like(ship.x[:, 0]), np.zeros_like(ship.x[:, 0])
     rows = []
     for k in range(ship.x.shape[1]):
         if k >= ahead:
-            foreseen = Motion._make((*(one[:, k - ahead] for one in places[ahead - 1]), 0.0, 0.0, 0.0))
+            foreseen = Motion._make(
+                (*(one[:, k - ahead] for one in places[ahead - 1]), 0.0, 0.0, 0.0)
+            )
             now = Motion(*(one[:, k] for one in ship))
             errors = own_errors(errors, now, foreseen, 1.0, regions=RegionParameters())
         rows.append(errors)

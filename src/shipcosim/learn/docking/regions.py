@@ -22,7 +22,8 @@ SHARE = 0.9
 
 def misses(places: Places, after: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Distances and headings by which predictions miss at `HORIZONS`: two (3, m, n) arrays. [m, rad]"""
-    position, heading = [], []
+    position = []
+    heading = []
     for horizon in HORIZONS:
         x, y, psi = places[horizon - 1]
         position.append(np.hypot(after["x"][horizon] - x, after["y"][horizon] - y))

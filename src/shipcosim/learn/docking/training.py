@@ -18,10 +18,15 @@ from shipcosim.models.prediction.helm import HelmParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters
 
-OURS, PAPER_III = distance_ensemble.DockingTraining(), paper_iii.PaperIIITraining()
+OURS = distance_ensemble.DockingTraining()
+PAPER_III = paper_iii.PaperIIITraining()
 COMPONENT = "docking_predictor"
 """Of the system, whose parameters the predictor has."""
-SETS = {"training": dockings.TRAINING, "choices": dockings.CHOICES[:12], "calibration": dockings.CALIBRATION[:16]}
+SETS = {
+    "training": dockings.TRAINING,
+    "choices": dockings.CHOICES[:12],
+    "calibration": dockings.CALIBRATION[:16],
+}
 """Seeds of the dockings by what they are for: of choices and calibration as many as sail in the time that there is."""
 SAILING = 0.7
 """Share of the progress that sailing is. [1]"""
@@ -35,14 +40,21 @@ NOTES = (
 def ship() -> ShipModel:
     """The ship as the predictor of the docking system knows her."""
     predictor = system_of(dockings.scenario(dockings.draw(1))).components[COMPONENT]
-    return ShipModel(*known_to(predictor, HullParameters, WindParameters, HelmParameters, MastParameters))
+    return ShipModel(
+        *known_to(predictor, HullParameters, WindParameters, HelmParameters, MastParameters)
+    )
 
 
 def sail(progress: Progress) -> dict[str, list[Record]]:
     """Records of all dockings to learn from, by what they are for."""
     seeds = [seed for some in SETS.values() for seed in some]
-    records = {record.seed: record for record in dockings.sail_all(map(dockings.draw, seeds), progress=progress)}
-    return {name: [records[seed] for seed in some if seed in records] for name, some in SETS.items()}
+    records = {
+        record.seed: record
+        for record in dockings.sail_all(map(dockings.draw, seeds), progress=progress)
+    }
+    return {
+        name: [records[seed] for seed in some if seed in records] for name, some in SETS.items()
+    }
 
 
 def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Trained:
@@ -67,7 +79,10 @@ def train(learn: Callable[..., Trained], recipe: Any, progress: Progress) -> Tra
 
 
 def learn_ours(
-    records: dict[str, list[Record]], model: ShipModel, recipe: distance_ensemble.DockingTraining, progress: Progress
+    records: dict[str, list[Record]],
+    model: ShipModel,
+    recipe: distance_ensemble.DockingTraining,
+    progress: Progress,
 ) -> Trained:
     """Our predictor, learned from records.
 
@@ -98,13 +113,18 @@ def learn_ours(
     arrays["widths"] = regions.calibrated(predicted, calibration)
     arrays["kinetic_widths"] = regions.calibrated(predictions.kinetic(calibration), calibration)
     names = ("members", "width", "layers", "epochs", "batch", "learning_rate", "decay", "noise")
-    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "AdamW, cosine schedule"}
+    settings = {name: getattr(recipe, name) for name in names} | {
+        "optimiser": "AdamW, cosine schedule"
+    }
     data = about(records, pairs["training"][0])
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
 
 
 def learn_paper_iii(
-    records: dict[str, list[Record]], model: ShipModel, recipe: paper_iii.PaperIIITraining, progress: Progress
+    records: dict[str, list[Record]],
+    model: ShipModel,
+    recipe: paper_iii.PaperIIITraining,
+    progress: Progress,
 ) -> Trained:
     """The networks of paper III, learned from records.
 
@@ -119,15 +139,21 @@ def learn_paper_iii(
         Weights, regions and report.
     """
     replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {name: (paper_iii.inputs_of(one), paper_iii.targets(one)) for name, one in replayed.items()}
+    pairs = {
+        name: (paper_iii.inputs_of(one), paper_iii.targets(one)) for name, one in replayed.items()
+    }
     arrays, epochs, tried = paper_iii.fit(pairs["training"], pairs["choices"], recipe, progress)
     calibration = replayed["calibration"]
     predicted = predictions.by_paper_iii(calibration, arrays)
     arrays["widths"] = regions.calibrated(predicted, calibration)
     names = ("members", "dropout", "epochs", "batch", "trial_epochs")
-    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "Adam, cosine schedule"}
+    settings = {name: getattr(recipe, name) for name in names} | {
+        "optimiser": "Adam, cosine schedule"
+    }
     for one, loss in tried:
-        settings[f"tried: {one.layers} layers of {one.width}, learning rate {one.learning_rate:g}"] = round(loss, 4)
+        settings[
+            f"tried: {one.layers} layers of {one.width}, learning rate {one.learning_rate:g}"
+        ] = round(loss, 4)
     data = about(records, pairs["training"][0])
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
 

@@ -23,7 +23,26 @@ STD = np.array(
     + [0.1, 0.1, 0.1, 1.0, 1.0]
 )
 """Standard deviations of the states where training begins: assumed. [units of `STATES`]"""
-REST = np.array([0.003, 0.0003, 0.07, 0.003, 0.1, 0.006, 0.003, 100.0, 60.0, 60.0, 1.0, 3.0, 1.6, 0.3, 0.3, 1000.0])
+REST = np.array(
+    [
+        0.003,
+        0.0003,
+        0.07,
+        0.003,
+        0.1,
+        0.006,
+        0.003,
+        100.0,
+        60.0,
+        60.0,
+        1.0,
+        3.0,
+        1.6,
+        0.3,
+        0.3,
+        1000.0,
+    ]
+)
 """The other fields of `Learned` where training begins: assumed. [their units]"""
 SCALES = np.array([[0.15, 0.15, 0.0087], [0.7, 0.7, 0.035], [2.0, 2.0, 0.07]])
 """Errors that count alike, north, east and in heading, by horizon: larger ones count in proportion. [m, m, rad]"""
@@ -83,10 +102,12 @@ def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
     Learned
         (...) arrays or tensors.
     """
-    first, second = len(COEFFICIENTS), len(COEFFICIENTS) + len(STATES)
+    first = len(COEFFICIENTS)
+    second = len(COEFFICIENTS) + len(STATES)
     std, rest = (library.asarray(one, dtype=numbers.dtype) for one in (STD, REST))
     rest = rest * library.exp(numbers[..., second:])
-    mean, std = numbers[..., :first] * std[COEFFICIENT], std * library.exp(numbers[..., first:second])
+    mean = numbers[..., :first] * std[COEFFICIENT]
+    std = std * library.exp(numbers[..., first:second])
     return Learned(mean, std, rest[..., 0:2], rest[..., 2:6], *(rest[..., k] for k in range(6, 16)))
 
 
@@ -115,7 +136,9 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTrainin
     learned = learned_of(numbers, torch)
     motions = ahead(learned, *followed(learned, sailed, STARTS, ship, torch, grid=2), ship)
     missed = errors(motions, sailed, STARTS) / torch.from_numpy(SCALES)[:, None, None, :]
-    return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (numbers * numbers).sum()
+    return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (
+        numbers * numbers
+    ).sum()
 
 
 def fit(
@@ -139,7 +162,8 @@ def fit(
     (61,) array, list of dict
         Numbers as `learned_of` takes them; loss before each step.
     """
-    at, history = torch.zeros(SIZE, dtype=torch.float64, requires_grad=True), []
+    at = torch.zeros(SIZE, dtype=torch.float64, requires_grad=True)
+    history = []
     optimiser = torch.optim.Adam([at], lr=recipe.learning_rate)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.steps)
     for done in range(1, recipe.steps + 1):

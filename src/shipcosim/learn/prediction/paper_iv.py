@@ -78,11 +78,15 @@ def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np
     """
     everything = known_of(sailed.known, ship)
     now = mapped(lambda array: array[0], everything)
-    past, inputs, targets = paper_iv.begin(now), [], []
+    past = paper_iv.begin(now)
+    inputs = []
+    targets = []
     for row in range(1, sailed.lost):
         now = mapped(lambda array, row=row: array[row], everything)
         psi, *nu = past.states[-1]
-        dot = paper_iv.model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=ship.hull, wind=ship.wind)
+        dot = paper_iv.model_acceleration(
+            psi, tuple(nu), past.wind, past.thrusters, hull=ship.hull, wind=ship.wind
+        )
         before = [np.broadcast_to(one, np.shape(psi)) for one in (*nu, *dot, *past.residual)]
         past = paper_iv.step(past, now, hull=ship.hull, wind=ship.wind)
         if row >= first:
@@ -112,17 +116,31 @@ def fit(
     """
     rng = np.random.default_rng(recipe.seed)
     chosen = rng.permutation(len(inputs))[: recipe.samples]
-    x, y = inputs[chosen], targets[chosen]
-    scales = {"input_mean": x.mean(0), "input_std": x.std(0), "output_mean": y.mean(0), "output_std": y.std(0)}
+    x = inputs[chosen]
+    y = targets[chosen]
+    scales = {
+        "input_mean": x.mean(0),
+        "input_std": x.std(0),
+        "output_mean": y.mean(0),
+        "output_std": y.std(0),
+    }
     x = torch.from_numpy((x - scales["input_mean"]) / scales["input_std"])
     y = torch.from_numpy((y - scales["output_mean"]) / scales["output_std"])
-    held, order = len(x) // 10, np.random.default_rng(recipe.seed)
+    held = len(x) // 10
+    order = np.random.default_rng(recipe.seed)
     with repeatable(recipe.seed):
-        weights = first_weights((x.shape[1], recipe.width, recipe.width, y.shape[1]), recipe.members)
-    optimiser, epochs = torch.optim.Adam(weights, lr=recipe.learning_rate), []
-    best, kept, since = np.inf, [one.detach().clone() for one in weights], 0
+        weights = first_weights(
+            (x.shape[1], recipe.width, recipe.width, y.shape[1]), recipe.members
+        )
+    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    epochs = []
+    best = np.inf
+    kept = [one.detach().clone() for one in weights]
+    since = 0
     for number in range(recipe.most_epochs):
-        for rows in np.array_split(held + order.permutation(len(x) - held), (len(x) - held) // recipe.batch or 1):
+        for rows in np.array_split(
+            held + order.permutation(len(x) - held), (len(x) - held) // recipe.batch or 1
+        ):
             optimiser.zero_grad()
             squares(weights, x[rows], y[rows]).backward()
             optimiser.step()
@@ -135,7 +153,9 @@ def fit(
         progress(number + 1, recipe.most_epochs)
         since += 1
         if found["held out"] < best:
-            best, kept, since = found["held out"], [one.detach().clone() for one in weights], 0
+            best = found["held out"]
+            kept = [one.detach().clone() for one in weights]
+            since = 0
         if since >= recipe.patience:
             break
     return arrays_of(kept) | scales, epochs

@@ -63,21 +63,25 @@ def stretches(sailed: Sailed, ship: Ship, first: int = 10, every: int = 8) -> St
     air = np.stack(air_velocity(everything), axis=-1)
     thrusters = np.stack(everything.thrusters, axis=-1)
     places = np.stack(everything.ship[:3], axis=-1)
-    past, parts = paper_iv.begin(mapped(lambda array: array[0], everything)), []
+    past = paper_iv.begin(mapped(lambda array: array[0], everything))
+    parts = []
     for row in range(1, sailed.lost - LENGTH + 1):
         now = mapped(lambda array, row=row: array[row], everything)
         past = paper_iv.step(past, now, hull=ship.hull, wind=ship.wind)
         if row >= first and (row - first) % every == 0:
             psi, *nu = (sum(one) / paper_iv.WINDOW for one in zip(*past.states, strict=True))
             start = np.stack([now.ship.x, now.ship.y, psi, *nu, *past.residual], axis=-1)
-            seconds, ends = slice(row, row + LENGTH), [row + int(horizon) for horizon in HORIZONS]
+            seconds = slice(row, row + LENGTH)
+            ends = [row + int(horizon) for horizon in HORIZONS]
             parts.append((start, air[seconds], thrusters[seconds], places[ends]))
     starts, *series = zip(*parts, strict=True)
     joined = [np.concatenate(starts), *(np.concatenate(one, axis=1) for one in series)]
     return Stretches(*map(torch.from_numpy, joined))
 
 
-def ahead(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship) -> torch.Tensor:
+def ahead(
+    weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship
+) -> torch.Tensor:
     """Predictions by each network alone, as `models.prediction.paper_iv.predict` makes them.
 
     Parameters
@@ -97,7 +101,8 @@ def ahead(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stre
         Place and heading. [m, m, rad]
     """
     mean, std, out_mean, out_std = (torch.from_numpy(scales[name]) for name in SCALE_NAMES)
-    shape, found = (len(weights[0]), len(data.first)), []
+    shape = (len(weights[0]), len(data.first))
+    found = []
     x, y, psi, *nu = (one.expand(shape) for one in data.first[:, :6].unbind(-1))
     residual = [one.expand(shape) for one in data.first[:, 6:].unbind(-1)]
     for second in range(LENGTH):
@@ -108,13 +113,18 @@ def ahead(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stre
         then = [a + paper_iv.PERIOD * (b + c) for a, b, c in zip(nu, dot, residual, strict=True)]
         u, v, r = (0.5 * (a + b) for a, b in zip(nu, then, strict=True))
         north, east = to_ned(psi + 0.5 * paper_iv.PERIOD * r, u, v)
-        x, y, psi, nu = x + paper_iv.PERIOD * north, y + paper_iv.PERIOD * east, psi + paper_iv.PERIOD * r, then
+        x = x + paper_iv.PERIOD * north
+        y = y + paper_iv.PERIOD * east
+        psi = psi + paper_iv.PERIOD * r
+        nu = then
         if second + 1 in HORIZONS:
             found.append(torch.stack([x, y, psi], dim=-1))
     return torch.stack(found)
 
 
-def loss(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship) -> torch.Tensor:
+def loss(
+    weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stretches, ship: Ship
+) -> torch.Tensor:
     """What predictions miss at 10, 30 and 60 s, nearly in proportion where it is much; as of our predictor.
 
     Parameters
@@ -129,12 +139,20 @@ def loss(weights: list[torch.Tensor], scales: dict[str, np.ndarray], data: Stret
     """
     off = ahead(weights, scales, data, ship) - data.reached[:, None]
     turned = torch.atan2(off[..., 2].sin(), off[..., 2].cos())
-    missed = torch.stack([off[..., 0], off[..., 1], turned], dim=-1) / torch.from_numpy(SCALES)[:, None, None, :]
+    missed = (
+        torch.stack([off[..., 0], off[..., 1], turned], dim=-1)
+        / torch.from_numpy(SCALES)[:, None, None, :]
+    )
     return (torch.sqrt(1.0 + missed * missed) - 1.0).mean()
 
 
 def fit(
-    scales: dict[str, np.ndarray], data: Stretches, ship: Ship, recipe: PaperIVTraining, steps: int, progress: Progress
+    scales: dict[str, np.ndarray],
+    data: Stretches,
+    ship: Ship,
+    recipe: PaperIVTraining,
+    steps: int,
+    progress: Progress,
 ) -> tuple[dict[str, np.ndarray], list[float]]:
     """Train the ensemble from the first weights of one-step training.
 
@@ -160,7 +178,8 @@ def fit(
     """
     with repeatable(recipe.seed):
         weights = first_weights((9, recipe.width, recipe.width, 3), recipe.members)
-    optimiser, history = torch.optim.Adam(weights, lr=recipe.learning_rate), []
+    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    history = []
     for step in range(steps):
         optimiser.zero_grad()
         value = loss(weights, scales, data, ship)

@@ -22,7 +22,11 @@ from shipcosim.ssp import read_system, with_values
 SHARE = 0.9
 """Of the cases that a region is to have inside. [1]"""
 UNCALIBRATED = {
-    **{f"{kind}_half_width_{horizon:.0f}": 1.0 for kind in ("position", "heading") for horizon in HORIZONS},
+    **{
+        f"{kind}_half_width_{horizon:.0f}": 1.0
+        for kind in ("position", "heading")
+        for horizon in HORIZONS
+    },
     **{"later_position_share": 1.0, "later_heading_share": 1.0},
 }
 """Regions of width 1."""
@@ -76,12 +80,16 @@ def scores(
     table = _predictions(record, fmu, settings or {})
     made = np.rint(np.asarray(table[f"{fmu}.predicted_at"])).astype(int)
     kept = np.flatnonzero((made > record.lost_at) & (np.diff(made, prepend=-1) > 0))
-    made, reached = made[kept], record.truth if by_truth else record.known
-    position, heading = np.full((len(kept), 3), np.nan), np.full((len(kept), 3), np.nan)
+    made = made[kept]
+    reached = record.truth if by_truth else record.known
+    position = np.full((len(kept), 3), np.nan)
+    heading = np.full((len(kept), 3), np.nan)
     for i, horizon in enumerate(int(h) for h in HORIZONS):
         inside = made + horizon < len(record.time)
         then = reached[made[inside] + horizon]
-        x, y, psi = (np.asarray(table[f"{fmu}.{name}_{horizon}"])[kept][inside] for name in ("x", "y", "psi"))
+        x, y, psi = (
+            np.asarray(table[f"{fmu}.{name}_{horizon}"])[kept][inside] for name in ("x", "y", "psi")
+        )
         position[inside, i], heading[inside, i] = (
             np.hypot(x - then[:, 0], y - then[:, 1]),
             abs(wrap(psi - then[:, 2])),
@@ -91,7 +99,9 @@ def scores(
     without = factors[:, 0] > 0.0
     lost_for = np.cumsum(without).astype(float)
     made_in = [values[without] for values in (lost_for, position, heading, factors)]
-    return Scores(made_in[0], made_in[1] / made_in[3][:, :1], made_in[2] / made_in[3][:, 1:], made_in[3])
+    return Scores(
+        made_in[0], made_in[1] / made_in[3][:, :1], made_in[2] / made_in[3][:, 1:], made_in[3]
+    )
 
 
 def calibrated(found: Sequence[Scores]) -> dict[str, float]:
@@ -111,7 +121,8 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
         Parameters of `models.prediction.regions.RegionParameters`. The shares of a long drift are the largest of the
         horizons.
     """
-    level, widths = min(1.0, SHARE * (1.0 + 1.0 / len(found))), {}
+    level = min(1.0, SHARE * (1.0 + 1.0 / len(found)))
+    widths = {}
     for kind in ("position", "heading"):
         later = []
         for i, horizon in enumerate(HORIZONS):
@@ -122,7 +133,9 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
     return widths
 
 
-def coverage(found: Sequence[Scores], widths: dict[str, float], *, late: bool) -> dict[str, list[tuple[float, float]]]:
+def coverage(
+    found: Sequence[Scores], widths: dict[str, float], *, late: bool
+) -> dict[str, list[tuple[float, float]]]:
     """Share of the cases that are inside calibrated regions, and the mean width of these.
 
     Parameters
@@ -143,30 +156,50 @@ def coverage(found: Sequence[Scores], widths: dict[str, float], *, late: bool) -
     for column, kind in enumerate(("position", "heading")):
         shares[kind] = []
         for i, horizon in enumerate(HORIZONS):
-            width = widths[f"{kind}_half_width_{horizon:.0f}"] * (widths[f"later_{kind}_share"] if late else 1.0)
+            width = widths[f"{kind}_half_width_{horizon:.0f}"] * (
+                widths[f"later_{kind}_share"] if late else 1.0
+            )
             chosen = [(one.lost_for >= JUST_LOST) == late for one in found]
-            values = np.concatenate([getattr(one, kind)[rows, i] for one, rows in zip(found, chosen, strict=True)])
-            factors = np.concatenate([one.factors[rows, column] for one, rows in zip(found, chosen, strict=True)])
+            values = np.concatenate(
+                [getattr(one, kind)[rows, i] for one, rows in zip(found, chosen, strict=True)]
+            )
+            factors = np.concatenate(
+                [one.factors[rows, column] for one, rows in zip(found, chosen, strict=True)]
+            )
             there = np.isfinite(values)
-            shares[kind].append((float(np.mean(values[there] <= width)), float(np.mean(width * factors[there]))))
+            shares[kind].append(
+                (float(np.mean(values[there] <= width)), float(np.mean(width * factors[there])))
+            )
     return shares
 
 
-def _quantile(found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool) -> float:
+def _quantile(
+    found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool
+) -> float:
     """Quantile of the scores of all starts early or late in the drift."""
-    values = np.concatenate([getattr(one, kind)[(one.lost_for >= JUST_LOST) == late, horizon] for one in found])
+    values = np.concatenate(
+        [getattr(one, kind)[(one.lost_for >= JUST_LOST) == late, horizon] for one in found]
+    )
     values = np.sort(values[np.isfinite(values)])
     return float(values[min(len(values), ceil(level * len(values))) - 1])
 
 
 def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | bool]):
     """Table of a predictor's outputs over a record, one row a second."""
-    nominal = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
+    nominal = system_of(
+        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
+    )
     system = read_system(library.find("fmu", fmu))
     known = system.components[fmu].fmu.variables
-    values = {name: value for name, value in nominal.components["predictor"].start.items() if name in known}
+    values = {
+        name: value
+        for name, value in nominal.components["predictor"].start.items()
+        if name in known
+    }
     values |= {**UNCALIBRATED, **settings}
     system = with_values(system, {f"{fmu}.{name}": value for name, value in values.items()})
-    columns = [(name, record.known[:, i], known[name].unit or "1", name) for i, name in enumerate(KNOWN)]
+    columns = [
+        (name, record.known[:, i], known[name].unit or "1", name) for i, name in enumerate(KNOWN)
+    ]
     scenario = Scenario(system=fmu, stop_time=float(record.time[-1]), step_size=1.0)
     return simulate(system, scenario, RunOptions(inputs=make_table(record.time, columns)))

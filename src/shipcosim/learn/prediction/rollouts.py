@@ -89,7 +89,12 @@ def stacked(records: Sequence[Any], library: Any) -> Any:
 
 
 def followed(
-    learned: own_model.Learned, sailed: Sailed, starts: Sequence[int], ship: Ship, library: Any, grid: int = 1
+    learned: own_model.Learned,
+    sailed: Sailed,
+    starts: Sequence[int],
+    ship: Ship,
+    library: Any,
+    grid: int = 1,
 ) -> tuple[own_record.Record, Known]:
     """What the records of all worlds say at some rows after the loss.
 
@@ -113,24 +118,33 @@ def followed(
     tuple of Record and Known
         With starts along their first axis, of what filters have along the second.
     """
-    lost, last = sailed.lost, sailed.lost + max(starts)
+    lost = sailed.lost
+    last = sailed.lost + max(starts)
     rows = [*range(lost % grid, lost, grid), *range(lost, last + 1)]
     everything = known_of(sailed.known, ship)
     if library is torch:
         everything = tensors(everything)
     now = mapped(lambda array: array[rows[0]], everything)
-    record, found = own_record.begin(now, learned=learned, hull=ship.hull), []
+    record = own_record.begin(now, learned=learned, hull=ship.hull)
+    found = []
     for before, row in zip(rows[:-1], rows[1:], strict=True):
         now = mapped(lambda array, row=row: array[row], everything)
-        record = own_record.step(record, now, float(row - before), learned=learned, hull=ship.hull, wind=ship.wind)
+        record = own_record.step(
+            record, now, float(row - before), learned=learned, hull=ship.hull, wind=ship.wind
+        )
         if row - lost in starts:
             found.append((record, now))
     record = stacked([one for one, _ in found], library)
-    first = {name: library.moveaxis(getattr(record, name), 1, 0) for name in ("mean", "covariance", "likelihood")}
+    first = {
+        name: library.moveaxis(getattr(record, name), 1, 0)
+        for name in ("mean", "covariance", "likelihood")
+    }
     return record._replace(**first), stacked([one for _, one in found], library)
 
 
-def ahead(learned: own_model.Learned, record: own_record.Record, known: Known, ship: Ship) -> tuple[Motion, ...]:
+def ahead(
+    learned: own_model.Learned, record: own_record.Record, known: Known, ship: Ship
+) -> tuple[Motion, ...]:
     """Motions at `HORIZONS`.
 
     Parameters
@@ -148,7 +162,13 @@ def ahead(learned: own_model.Learned, record: own_record.Record, known: Known, s
         One per horizon.
     """
     motions = own_record.predict(
-        record, known, horizons=HORIZONS, steps=drift_off.STEPS, learned=learned, hull=ship.hull, wind=ship.wind
+        record,
+        known,
+        horizons=HORIZONS,
+        steps=drift_off.STEPS,
+        learned=learned,
+        hull=ship.hull,
+        wind=ship.wind,
     )
     return tuple(own_record.mixed(record, motion) for motion in motions)
 
@@ -170,9 +190,14 @@ def errors(motions: Sequence[Motion], sailed: Sailed, starts: Sequence[int]) -> 
     (horizons, starts, worlds, 3) tensor
         North, east, heading. [m, m, rad]
     """
-    rows, found = sailed.lost + np.array(starts), []
+    rows = sailed.lost + np.array(starts)
+    found = []
     for horizon, motion in zip(HORIZONS, motions, strict=True):
-        x, y, psi = torch.from_numpy(np.moveaxis(sailed.known[rows + int(horizon), :, :3], -1, 0).copy())
+        x, y, psi = torch.from_numpy(
+            np.moveaxis(sailed.known[rows + int(horizon), :, :3], -1, 0).copy()
+        )
         turned = motion.psi - psi
-        found.append(torch.stack([motion.x - x, motion.y - y, torch.atan2(turned.sin(), turned.cos())], -1))
+        found.append(
+            torch.stack([motion.x - x, motion.y - y, torch.atan2(turned.sin(), turned.cos())], -1)
+        )
     return torch.stack(found)

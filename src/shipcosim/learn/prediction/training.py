@@ -21,7 +21,9 @@ from shipcosim.models.ship.mast import MastParameters
 OURS = drift.DriftTraining(
     "Our drift predictor of the DP ship: beliefs that her own record corrects", tuple(range(1, 25))
 )
-PAPER_IV = paper_iv.PaperIVTraining("The drift predictor of paper IV for the DP ship", tuple(range(1, 13)))
+PAPER_IV = paper_iv.PaperIVTraining(
+    "The drift predictor of paper IV for the DP ship", tuple(range(1, 13))
+)
 NOTES = (
     "Targets are the ships' own later estimates of place and heading; no true state, current or wind is used.",
     "An epoch is a step of the optimiser with all worlds.",
@@ -81,7 +83,9 @@ def sail(seeds: Sequence[int], progress: Progress) -> list[worlds.Record]:
     return worlds.sail_all([worlds.draw(seed) for seed in seeds], progress=progress)
 
 
-def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe: Any, progress: Progress) -> Trained:
+def train(
+    learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe: Any, progress: Progress
+) -> Trained:
     """Train a predictor from scratch: sail the worlds of its recipe, and learn from their records.
 
     Parameters
@@ -102,7 +106,9 @@ def train(learn: Callable[[list[worlds.Record], Any, Progress], Trained], recipe
     return learn(records, recipe, part_of(progress, SAILING, 1.0 - SAILING))
 
 
-def ours(records: Sequence[worlds.Record], recipe: drift.DriftTraining, progress: Progress) -> Trained:
+def ours(
+    records: Sequence[worlds.Record], recipe: drift.DriftTraining, progress: Progress
+) -> Trained:
     """Our predictor, learned from records of worlds.
 
     Parameters
@@ -119,15 +125,27 @@ def ours(records: Sequence[worlds.Record], recipe: drift.DriftTraining, progress
     Trained
         Weights and report.
     """
-    sailed, about = aligned(records, recipe.before), ship()
+    sailed = aligned(records, recipe.before)
+    about = ship()
     with repeatable(recipe.seed):
         numbers, epochs = drift.fit(sailed, about, recipe, progress)
     learned = drift.learned_of(recipe.kept * numbers)
     arrays = {name: np.asarray(getattr(learned, name)) for name in Learned._fields}
     arrays["limits"] = recipe.margin * limits(learned, sailed, about)
     settings = {name: getattr(recipe, name) for name in SETTINGS}
-    settings |= {"optimiser": "Adam, cosine schedule", "starts of predictions after the loss (s)": drift.STARTS}
-    return Trained(arrays, recipe.description, recipe.seed, _about(recipe.seeds, sailed.known), settings, epochs, NOTES)
+    settings |= {
+        "optimiser": "Adam, cosine schedule",
+        "starts of predictions after the loss (s)": drift.STARTS,
+    }
+    return Trained(
+        arrays,
+        recipe.description,
+        recipe.seed,
+        _about(recipe.seeds, sailed.known),
+        settings,
+        epochs,
+        NOTES,
+    )
 
 
 def limits(learned: Learned, sailed: Sailed, about: Ship) -> np.ndarray:
@@ -154,7 +172,9 @@ def limits(learned: Learned, sailed: Sailed, about: Ship) -> np.ndarray:
     return found.reshape(len(drift_off.MEASURES), -1).max(axis=1)
 
 
-def as_paper_iv(records: Sequence[worlds.Record], recipe: paper_iv.PaperIVTraining, progress: Progress) -> Trained:
+def as_paper_iv(
+    records: Sequence[worlds.Record], recipe: paper_iv.PaperIVTraining, progress: Progress
+) -> Trained:
     """The networks of paper IV, learned from records of worlds.
 
     Parameters

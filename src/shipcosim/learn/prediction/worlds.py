@@ -15,31 +15,70 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim import simulate, system_of
-from shipcosim.learn.true_ships import DAMPING, MEMORY, NOISE, POWER, SPEEDS, STRIPS, WIND, TrueLoads, factors, sailed
+from shipcosim.learn.true_ships import (
+    DAMPING,
+    MEMORY,
+    NOISE,
+    POWER,
+    SPEEDS,
+    STRIPS,
+    WIND,
+    TrueLoads,
+    factors,
+    sailed,
+)
 from shipcosim.scenario import Event, Scenario
 
-TRAINING, CALIBRATION, TUNING = range(1, 200), range(200, 300), range(300, 400)
+TRAINING = range(1, 200)
+CALIBRATION = range(200, 300)
+TUNING = range(300, 400)
 """Seeds of worlds to train on, to calibrate regions on, and to choose by."""
 HELD_OUT = range(8700, 8748)
 """Seeds of worlds that nobody looks at before the end."""
 KNOWN = (
-    *("x_hat", "y_hat", "psi_hat", "u_hat", "v_hat", "r_hat", "tau_X_bias", "tau_Y_bias", "tau_N_bias"),
-    *("tau_X_allocated", "tau_Y_allocated", "tau_N_allocated", "wind_speed_meas", "wind_from_meas", "wind_rejected"),
+    *(
+        "x_hat",
+        "y_hat",
+        "psi_hat",
+        "u_hat",
+        "v_hat",
+        "r_hat",
+        "tau_X_bias",
+        "tau_Y_bias",
+        "tau_N_bias",
+    ),
+    *(
+        "tau_X_allocated",
+        "tau_Y_allocated",
+        "tau_N_allocated",
+        "wind_speed_meas",
+        "wind_from_meas",
+        "wind_rejected",
+    ),
 )
 """Inputs of a predictor, from the observer, the allocator and the wind sensor."""
 TRUTH = ("x", "y", "psi", "u", "v", "r")
 """The low-frequency ship."""
 TOLERATED = tuple(
     f"{component}.{name}"
-    for component, names in tomllib.loads(Path(__file__).with_name("tolerated.toml").read_text("utf-8")).items()
+    for component, names in tomllib.loads(
+        Path(__file__).with_name("tolerated.toml").read_text("utf-8")
+    ).items()
     for name in names
 )
 """Numbers that are off by their tolerance in the parameter set, as a standard deviation."""
-SYSTEM, PARAMETERS = "gunnerus_dp", "gunnerus-33m9"
+SYSTEM = "gunnerus_dp"
+PARAMETERS = "gunnerus-33m9"
 NOISY = tuple(
     f"sensors.{name}"
     for name in (
-        *("position_noise_std", "position_drift_std", "velocity_noise_std", "heading_noise_std", "heading_drift_std"),
+        *(
+            "position_noise_std",
+            "position_drift_std",
+            "velocity_noise_std",
+            "heading_noise_std",
+            "heading_drift_std",
+        ),
         *("yaw_rate_noise_std", "wind_speed_noise", "wind_from_noise_std"),
     )
 )
@@ -126,7 +165,11 @@ def draw(seed: int, distance: float = 1.0) -> World:
     values, weather = _weather(rng, distance, lost_at)
     values |= _parameters(rng, distance)
     values |= _form(np.random.default_rng([26, seed, 1]), distance, values)
-    values |= {"environment.seed": seed, "sensors.seed": 20000 + seed, "predictor.prediction_period": 1e6}
+    values |= {
+        "environment.seed": seed,
+        "sensors.seed": 20000 + seed,
+        "predictor.prediction_period": 1e6,
+    }
     lost = Event(time=lost_at, override={f"{name}.failed": True for name in _THRUSTERS})
     events = sorted([*_setpoints(rng, lost_at), *weather, lost], key=lambda event: event.time)
     return World(seed, distance, lost_at, values, tuple(events))
@@ -185,7 +228,10 @@ def sail(world: World, *, step_size: float = STEP) -> Record:
 
 
 def sail_all(
-    worlds: Iterable[World], *, processes: int = 2, progress: Callable[[int, int], None] | None = None
+    worlds: Iterable[World],
+    *,
+    processes: int = 2,
+    progress: Callable[[int, int], None] | None = None,
 ) -> list[Record]:
     """Co-simulate several worlds, in their order.
 
@@ -216,7 +262,9 @@ def _source(name: str) -> str:
 @lru_cache(maxsize=1)
 def _nominal() -> dict[str, tuple[float, float]]:
     """Value and tolerance of each number of `TOLERATED`, `NOISY` and `HULL`."""
-    system = system_of(Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP))
+    system = system_of(
+        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
+    )
     found = {}
     for signal in (*TOLERATED, *NOISY, *HULL):
         name, variable = signal.split(".")
@@ -228,11 +276,18 @@ def _nominal() -> dict[str, tuple[float, float]]:
 def _parameters(rng: np.random.Generator, distance: float) -> dict[str, float]:
     """Numbers of hull, wind and thrusters off by their tolerances, errors of sensors by their share."""
     nominal = _nominal()
-    found = {name: nominal[name][0] + distance * nominal[name][1] * rng.standard_normal() for name in TOLERATED}
-    return found | {name: nominal[name][0] * (1.0 + distance * NOISE * rng.uniform(-1.0, 1.0)) for name in NOISY}
+    found = {
+        name: nominal[name][0] + distance * nominal[name][1] * rng.standard_normal()
+        for name in TOLERATED
+    }
+    return found | {
+        name: nominal[name][0] * (1.0 + distance * NOISE * rng.uniform(-1.0, 1.0)) for name in NOISY
+    }
 
 
-def _form(rng: np.random.Generator, distance: float, values: dict[str, float]) -> dict[str, float | str]:
+def _form(
+    rng: np.random.Generator, distance: float, values: dict[str, float]
+) -> dict[str, float | str]:
     """Drag along the hull, wind round her, powers of speed, linear damping and memory; `values` are her own numbers."""
     density, length, draught = (_nominal()[name][0] for name in HULL)
     cross = 0.5 * density * draught * values["vessel.cross_flow_drag"]
@@ -247,10 +302,14 @@ def _form(rng: np.random.Generator, distance: float, values: dict[str, float]) -
     }
 
 
-def _weather(rng: np.random.Generator, distance: float, lost_at: float) -> tuple[dict[str, float], list[Event]]:
+def _weather(
+    rng: np.random.Generator, distance: float, lost_at: float
+) -> tuple[dict[str, float], list[Event]]:
     """Weather in which DP holds her, and how current and wind change: at most some tens of degrees."""
-    wind, wind_from = rng.uniform(3.0, 9.0), rng.uniform(-pi, pi)
-    current, current_to = rng.uniform(0.0, 0.5), rng.uniform(-pi, pi)
+    wind = rng.uniform(3.0, 9.0)
+    wind_from = rng.uniform(-pi, pi)
+    current = rng.uniform(0.0, 0.5)
+    current_to = rng.uniform(-pi, pi)
     values = {
         "environment.wind_speed": wind,
         "environment.wind_from": wind_from,
@@ -270,7 +329,9 @@ def _weather(rng: np.random.Generator, distance: float, lost_at: float) -> tuple
         "environment.wind_from": wind_from + distance * rng.normal(0.0, 0.15),
     }
     times = rng.integers(-60, 120, 2) + int(lost_at)
-    return values, [Event(time=float(t), override=new) for t, new in zip(times, (turned, veered), strict=True)]
+    return values, [
+        Event(time=float(t), override=new) for t, new in zip(times, (turned, veered), strict=True)
+    ]
 
 
 def _setpoints(rng: np.random.Generator, lost_at: float) -> list[Event]:

@@ -42,7 +42,9 @@ class Command(NamedTuple):
     high: Arithmetic
 
 
-def solve(request: tuple, commands: list[Command], slack: tuple, start: list | None = None) -> tuple[list, tuple]:
+def solve(
+    request: tuple, commands: list[Command], slack: tuple, start: list | None = None
+) -> tuple[list, tuple]:
     """Commands that meet a request at the least price, and the multipliers of the request.
 
     Parameters
@@ -91,26 +93,40 @@ def solve(request: tuple, commands: list[Command], slack: tuple, start: list | N
 
 def _solve_floats(request, commands, slack, start):
     """`solve` of plain floats."""
-    x = [clip(value, command[5], command[6]) for value, command in zip(start, commands, strict=True)]
+    x = [
+        clip(value, command[5], command[6]) for value, command in zip(start, commands, strict=True)
+    ]
     ends = zip(x, commands, strict=True)
-    side, best = [1.0 if at == c[6] else -1.0 if at == c[5] else 0.0 for at, c in ends], list(x)
-    multipliers, freed = (0.0, 0.0, 0.0), -1
+    side = [1.0 if at == c[6] else -1.0 if at == c[5] else 0.0 for at, c in ends]
+    best = list(x)
+    multipliers = (0.0, 0.0, 0.0)
+    freed = -1
     for _ in range(ROUNDS):
         multipliers = p, q, r = _multipliers_floats(request, commands, slack, x, side)
-        share, hit, worst, dropped = 1.0, -1, 0.0, -1
+        share = 1.0
+        hit = -1
+        worst = 0.0
+        dropped = -1
         for i, (X, Y, N, ease, wanted, low, high) in enumerate(commands):
             pull = X * p + Y * q + N * r
             if side[i]:
                 loss = side[i] * ((x[i] - wanted) / ease - pull) if low < high else 0.0
                 if loss > worst and loss > _EDGE * abs(pull):
-                    worst, dropped = loss, i
+                    worst = loss
+                    dropped = i
                 continue
             best[i] = new = wanted + ease * pull
             bound = high if new > high else low
             if (new > high or new < low) and (bound - x[i]) / (new - x[i]) < share:
-                share, hit = (bound - x[i]) / (new - x[i]), i
-        x = [old if at else old + share * (new - old) for old, new, at in zip(x, best, side, strict=True)]
-        if hit >= 0 and hit == freed and share <= 0.0:  # by rounding alone: the bound it was freed from is kept
+                share = (bound - x[i]) / (new - x[i])
+                hit = i
+        x = [
+            old if at else old + share * (new - old)
+            for old, new, at in zip(x, best, side, strict=True)
+        ]
+        if (
+            hit >= 0 and hit == freed and share <= 0.0
+        ):  # by rounding alone: the bound it was freed from is kept
             break
         if hit >= 0:
             side[hit] = 1.0 if best[hit] > commands[hit][6] else -1.0
@@ -130,32 +146,54 @@ def _multipliers_floats(request, commands, slack, x, side):
     b = c = e = 0.0
     for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
         if at:
-            X0, Y0, N0 = X0 - X * value, Y0 - Y * value, N0 - N * value
+            X0 = X0 - X * value
+            Y0 = Y0 - Y * value
+            N0 = N0 - N * value
         else:
-            X0, Y0, N0 = X0 - X * wanted, Y0 - Y * wanted, N0 - N * wanted
-            p, q = ease * X, ease * Y
-            a, b, c, d, e, f = a + p * X, b + p * Y, c + p * N, d + q * Y, e + q * N, f + ease * N * N
+            X0 = X0 - X * wanted
+            Y0 = Y0 - Y * wanted
+            N0 = N0 - N * wanted
+            p = ease * X
+            q = ease * Y
+            a = a + p * X
+            b = b + p * Y
+            c = c + p * N
+            d = d + q * Y
+            e = e + q * N
+            f = f + ease * N * N
     return _three_equations(a, b, c, d, e, f, X0, Y0, N0)
 
 
 def _solve_many(request, commands, slack, start):
     """`solve` of arrays or tensors, each element by itself."""
     zero = sum(0.0 * value for command in commands for value in command) + 0.0 * request[0]
-    x = [clip(zero + at, zero + c.low, zero + c.high) for at, c in zip(start, commands, strict=True)]
+    x = [
+        clip(zero + at, zero + c.low, zero + c.high) for at, c in zip(start, commands, strict=True)
+    ]
     ends = zip(x, commands, strict=True)
     side = [where(at == c.high, zero + 1.0, where(at == c.low, zero - 1.0, zero)) for at, c in ends]
-    multipliers, done, freed = (zero, zero, zero), zero > 1.0, [zero > 1.0] * len(x)
+    multipliers = (zero, zero, zero)
+    done = zero > 1.0
+    freed = [zero > 1.0] * len(x)
     for _ in range(ROUNDS):
         found = _multipliers(request, commands, slack, x, side)
-        multipliers = tuple(where(done, old, new) for old, new in zip(multipliers, found, strict=True))
+        multipliers = tuple(
+            where(done, old, new) for old, new in zip(multipliers, found, strict=True)
+        )
         best, loss, steps = _towards(commands, found, x, side)
-        share, worst = zero + 1.0, zero
+        share = zero + 1.0
+        worst = zero
         for step, lost in zip(steps, loss, strict=True):
-            share, worst = minimum(share, step), maximum(worst, lost)
+            share = minimum(share, step)
+            worst = maximum(worst, lost)
         whole = share >= 1.0
         done = done | (whole & (worst <= 0.0))
-        for i, (command, new, old, step, lost) in enumerate(zip(commands, best, x, steps, loss, strict=True)):
-            over, hit, drop = new > command.high, (step <= share) & ~whole, whole & (worst > 0.0) & (lost >= worst)
+        for i, (command, new, old, step, lost) in enumerate(
+            zip(commands, best, x, steps, loss, strict=True)
+        ):
+            over = new > command.high
+            hit = (step <= share) & ~whole
+            drop = whole & (worst > 0.0) & (lost >= worst)
             done = done | (hit & freed[i] & (share <= 0.0))
             bound = where(over, zero + command.high, zero + command.low)
             x[i] = where(hit, bound, old + share * (new - old))
@@ -173,22 +211,37 @@ def _multipliers(request, commands, slack, x, side):
     b = c = e = 0.0
     for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
         free = at == 0.0
-        value, ease = where(free, 0.0 * value + wanted, value), where(free, 0.0 * value + ease, 0.0 * value)
-        X0, Y0, N0 = X0 - X * value, Y0 - Y * value, N0 - N * value
-        p, q = ease * X, ease * Y
-        a, b, c, d, e, f = a + p * X, b + p * Y, c + p * N, d + q * Y, e + q * N, f + ease * N * N
+        value, ease = (
+            where(free, 0.0 * value + wanted, value),
+            where(free, 0.0 * value + ease, 0.0 * value),
+        )
+        X0 = X0 - X * value
+        Y0 = Y0 - Y * value
+        N0 = N0 - N * value
+        p = ease * X
+        q = ease * Y
+        a = a + p * X
+        b = b + p * Y
+        c = c + p * N
+        d = d + q * Y
+        e = e + q * N
+        f = f + ease * N * N
     return _three_equations(a, b, c, d, e, f, X0, Y0, N0)
 
 
 def _towards(commands, multipliers, x, side):
     """Optimum of the free commands, what keeping each bound costs, and the share of the way to the bound of each."""
     p, q, r = multipliers
-    best, loss, steps = [], [], []
+    best = []
+    loss = []
+    steps = []
     for (X, Y, N, ease, wanted, low, high), at, old in zip(commands, side, x, strict=True):
-        pull, free = X * p + Y * q + N * r, at == 0.0
+        pull = X * p + Y * q + N * r
+        free = at == 0.0
         new = where(free, wanted + ease * pull, old)
         lost = where(0.0 * old + low < high, at * ((old - wanted) / ease - pull), 0.0 * old)
-        way, outside = new - old, (new > high) | (new < low)
+        way = new - old
+        outside = (new > high) | (new < low)
         room = where(new > high, high - old, low - old)
         best.append(new)
         loss.append(where(lost > _EDGE * abs(pull), lost, 0.0 * old))
@@ -198,7 +251,15 @@ def _towards(commands, multipliers, x, side):
 
 def _three_equations(a, b, c, d, e, f, X, Y, N):
     """Solution of three equations with the symmetric matrix of rows (a b c), (b d e), (c e f)."""
-    A, B, C = d * f - e * e, c * e - b * f, b * e - c * d
-    D, E, F = a * f - c * c, b * c - a * e, a * d - b * b
+    A = d * f - e * e
+    B = c * e - b * f
+    C = b * e - c * d
+    D = a * f - c * c
+    E = b * c - a * e
+    F = a * d - b * b
     over = 1.0 / (a * A + b * B + c * C)
-    return (A * X + B * Y + C * N) * over, (B * X + D * Y + E * N) * over, (C * X + E * Y + F * N) * over
+    return (
+        (A * X + B * Y + C * N) * over,
+        (B * X + D * Y + E * N) * over,
+        (C * X + E * Y + F * N) * over,
+    )

@@ -26,13 +26,21 @@ class ExtendedParameters(AllocationParameters):
     """Two azimuth thrusters that turn, and a tunnel thruster."""
 
     sway_price: float = quantity(
-        1.0, "1", "price of an azimuth's force to the side over that of its force forward", "choice", minimum=1e-6
+        1.0,
+        "1",
+        "price of an azimuth's force to the side over that of its force forward",
+        "choice",
+        minimum=1e-6,
     )
     azimuth_rate_max: float = quantity(
         10.0 * _DEG, "rad/s", "quickest turning of a command", "Skulstad 2021, paper V", minimum=0.0
     )
     turning_thrust: float = quantity(
-        500.0, "N", "an azimuth turns for forces beyond this; below, it keeps its angle", "assumed", minimum=1.0
+        500.0,
+        "N",
+        "an azimuth turns for forces beyond this; below, it keeps its angle",
+        "assumed",
+        minimum=1.0,
     )
 
 
@@ -153,14 +161,17 @@ def step(
     ----------
     As `design`; that thrust beyond a limit is asked of the free units is assumed.
     """
-    p, reach = parameters, parameters.thrust_rate_max * h
+    p = parameters
+    reach = parameters.thrust_rate_max * h
     forces = _within_limits(tau, available, shares, parameters=p, design=design)
     X, Y, N = missed(tau, forces, design.effect)
     saturated = X**2 + Y**2 + (N / p.yaw_lever) ** 2 > 1.0
-    thrusts, angles = [], []
+    thrusts = []
+    angles = []
     for unit in (0, 1):
         X, Y = forces[2 * unit : 2 * unit + 2]
-        old, share = state.azimuths[unit], shares[unit]
+        old = state.azimuths[unit]
+        share = shares[unit]
         angle = _turned(old, X, Y, available[unit], h, parameters=p)
         along = clip(X * cos(angle) + Y * sin(angle), p.azimuth_thrust_min, p.azimuth_thrust_max)
         limits = share * p.azimuth_thrust_min, share * p.azimuth_thrust_max
@@ -168,7 +179,9 @@ def step(
         angles.append(angle)
     limits = -shares[2] * p.tunnel_thrust_max, shares[2] * p.tunnel_thrust_max
     thrusts.append(_moved(state.thrusts[2], forces[4], reach, limits, available[2]))
-    return Allocated(tuple(thrusts), (*angles, 0.5 * pi), *_load(thrusts, angles, design.effect), saturated)
+    return Allocated(
+        tuple(thrusts), (*angles, 0.5 * pi), *_load(thrusts, angles, design.effect), saturated
+    )
 
 
 def _turned(old, X, Y, usable, h, *, parameters):
@@ -197,13 +210,19 @@ def _within_limits(tau, available, shares, *, parameters, design):
     p = parameters
     free = [where(usable, 1.0, 0.0) for usable in available]
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
-    most = shares[0] * p.azimuth_thrust_max, shares[1] * p.azimuth_thrust_max, shares[2] * p.tunnel_thrust_max
+    most = (
+        shares[0] * p.azimuth_thrust_max,
+        shares[1] * p.azimuth_thrust_max,
+        shares[2] * p.tunnel_thrust_max,
+    )
     held = forces = [0.0 * tau[0]] * 5
     for _ in range(3):
         chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
         more = _solve(missed(tau, held, design.effect), chosen, design.inverses)
         forces = [f + g for f, g in zip(held, more, strict=True)]
-        port, starboard, tunnel = hypot(forces[0], forces[1]), hypot(forces[2], forces[3]), abs(forces[4])
+        port = hypot(forces[0], forces[1])
+        starboard = hypot(forces[2], forces[3])
+        tunnel = abs(forces[4])
         parts = [
             minimum(1.0, limit / where(size > 1.0, size, 1.0))
             for size, limit in zip((port, starboard, tunnel), most, strict=True)
@@ -224,5 +243,8 @@ def _solve(tau, chosen, inverses):
     found = [0.0 * X] * 5
     for number, rows in enumerate(inverses):
         here = chosen == number
-        found = [where(here, a * X + b * Y + c * N, old) for (a, b, c), old in zip(rows, found, strict=True)]
+        found = [
+            where(here, a * X + b * Y + c * N, old)
+            for (a, b, c), old in zip(rows, found, strict=True)
+        ]
     return found

@@ -23,7 +23,12 @@ class ExtremeLearningParameters(FixedAngleParameters):
     """Units, and which of the trained networks commands them."""
 
     allocator: int = quantity(
-        2, "1", "1: sees the requested load; 2: its previous commands as well", "choice", minimum=1, maximum=2
+        2,
+        "1",
+        "1: sees the requested load; 2: its previous commands as well",
+        "choice",
+        minimum=1,
+        maximum=2,
     )
     signals: int = quantity(
         6,
@@ -110,8 +115,12 @@ def network_of(arrays: Mapping[str, np.ndarray], parameters: ExtremeLearningPara
     Definition.
     """
     of = f"{parameters.allocator}.{parameters.signals}"
-    scale, bias, least, most = (tuple(arrays[name].tolist()) for name in (f"{of}.scale", f"{of}.bias", "least", "most"))
-    hidden, output = (tuple(map(tuple, arrays[f"{of}.{name}"].tolist())) for name in ("hidden", "output"))
+    scale, bias, least, most = (
+        tuple(arrays[name].tolist()) for name in (f"{of}.scale", f"{of}.bias", "least", "most")
+    )
+    hidden, output = (
+        tuple(map(tuple, arrays[f"{of}.{name}"].tolist())) for name in ("hidden", "output")
+    )
     return Network(scale, hidden, bias, output, least, most)
 
 
@@ -139,7 +148,9 @@ def evaluate(network: Network, inputs: tuple) -> tuple:
     for weights, bias in zip(network.hidden, network.bias, strict=True):
         z = clip(sum(w * one for w, one in zip(weights, x, strict=True)) + bias, -50.0, 50.0)
         hidden.append(1.0 / (1.0 + exp(-z)))
-    return tuple(sum(w * one for w, one in zip(weights, hidden, strict=True)) for weights in network.output)
+    return tuple(
+        sum(w * one for w, one in zip(weights, hidden, strict=True)) for weights in network.output
+    )
 
 
 def at_rest(tau: Load, *, parameters: ExtremeLearningParameters) -> Commanded:
@@ -161,7 +172,9 @@ def at_rest(tau: Load, *, parameters: ExtremeLearningParameters) -> Commanded:
     ----------
     Definition.
     """
-    return Commanded(*no_thrust(tau, tuple(parameters.of_units("azimuth"))), (0.0 * tau[0],) * UNITS)
+    return Commanded(
+        *no_thrust(tau, tuple(parameters.of_units("azimuth"))), (0.0 * tau[0],) * UNITS
+    )
 
 
 def step(
@@ -207,14 +220,18 @@ def step(
     found = evaluate(design, (*tau, *seen))
     found = (*found, found[-1]) if parameters.signals < UNITS else found
     commands = tuple(where(on, one, 0.0 * one) for one, on in zip(found, available, strict=True))
-    weakest, strongest = parameters.of_units("thrust_min"), parameters.of_units("thrust_max")
+    weakest = parameters.of_units("thrust_min")
+    strongest = parameters.of_units("thrust_max")
     limits = tuple(zip(design.least, design.most, weakest, strongest, strict=True))
     thrusts = tuple(_thrust(one, *limit) for one, limit in zip(commands, limits, strict=True))
     over = sum(
-        where(one < low, 1.0, where(one > high, 1.0, 0.0)) for one, (low, high, *_) in zip(found, limits, strict=True)
+        where(one < low, 1.0, where(one > high, 1.0, 0.0))
+        for one, (low, high, *_) in zip(found, limits, strict=True)
     )
     missing = sum(where(on, 0.0, 1.0) for on in available)
-    return Commanded(thrusts, state.azimuths, *_load(thrusts, parameters), over + missing > 0.5, commands)
+    return Commanded(
+        thrusts, state.azimuths, *_load(thrusts, parameters), over + missing > 0.5, commands
+    )
 
 
 def _thrust(command, least, most, weakest, strongest):

@@ -25,15 +25,21 @@ def _place(unit, description):
 
 
 def _least(number):
-    return quantity(0.0, "N", f"least thrust of unit {number}, negative", "no such unit", maximum=0.0)
+    return quantity(
+        0.0, "N", f"least thrust of unit {number}, negative", "no such unit", maximum=0.0
+    )
 
 
 def _most(number):
-    return quantity(0.0, "N", f"most thrust of unit {number}; 0: there is none", "no such unit", minimum=0.0)
+    return quantity(
+        0.0, "N", f"most thrust of unit {number}; 0: there is none", "no such unit", minimum=0.0
+    )
 
 
 def _rate(number):
-    return quantity(0.0, "N/s", f"quickest change of the command to unit {number}", "no such unit", minimum=0.0)
+    return quantity(
+        0.0, "N/s", f"quickest change of the command to unit {number}", "no such unit", minimum=0.0
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,41 +48,55 @@ class FixedAngleParameters:
 
     x_1: float = _place("m", "unit 1 forward of the origin")
     y_1: float = _place("m", "unit 1 to starboard of the origin")
-    azimuth_1: float = _place("rad", "direction of positive thrust of unit 1, clockwise from the bow")
+    azimuth_1: float = _place(
+        "rad", "direction of positive thrust of unit 1, clockwise from the bow"
+    )
     thrust_min_1: float = _least(1)
     thrust_max_1: float = _most(1)
     thrust_rate_1: float = _rate(1)
     x_2: float = _place("m", "unit 2 forward of the origin")
     y_2: float = _place("m", "unit 2 to starboard of the origin")
-    azimuth_2: float = _place("rad", "direction of positive thrust of unit 2, clockwise from the bow")
+    azimuth_2: float = _place(
+        "rad", "direction of positive thrust of unit 2, clockwise from the bow"
+    )
     thrust_min_2: float = _least(2)
     thrust_max_2: float = _most(2)
     thrust_rate_2: float = _rate(2)
     x_3: float = _place("m", "unit 3 forward of the origin")
     y_3: float = _place("m", "unit 3 to starboard of the origin")
-    azimuth_3: float = _place("rad", "direction of positive thrust of unit 3, clockwise from the bow")
+    azimuth_3: float = _place(
+        "rad", "direction of positive thrust of unit 3, clockwise from the bow"
+    )
     thrust_min_3: float = _least(3)
     thrust_max_3: float = _most(3)
     thrust_rate_3: float = _rate(3)
     x_4: float = _place("m", "unit 4 forward of the origin")
     y_4: float = _place("m", "unit 4 to starboard of the origin")
-    azimuth_4: float = _place("rad", "direction of positive thrust of unit 4, clockwise from the bow")
+    azimuth_4: float = _place(
+        "rad", "direction of positive thrust of unit 4, clockwise from the bow"
+    )
     thrust_min_4: float = _least(4)
     thrust_max_4: float = _most(4)
     thrust_rate_4: float = _rate(4)
     x_5: float = _place("m", "unit 5 forward of the origin")
     y_5: float = _place("m", "unit 5 to starboard of the origin")
-    azimuth_5: float = _place("rad", "direction of positive thrust of unit 5, clockwise from the bow")
+    azimuth_5: float = _place(
+        "rad", "direction of positive thrust of unit 5, clockwise from the bow"
+    )
     thrust_min_5: float = _least(5)
     thrust_max_5: float = _most(5)
     thrust_rate_5: float = _rate(5)
     x_6: float = _place("m", "unit 6 forward of the origin")
     y_6: float = _place("m", "unit 6 to starboard of the origin")
-    azimuth_6: float = _place("rad", "direction of positive thrust of unit 6, clockwise from the bow")
+    azimuth_6: float = _place(
+        "rad", "direction of positive thrust of unit 6, clockwise from the bow"
+    )
     thrust_min_6: float = _least(6)
     thrust_max_6: float = _most(6)
     thrust_rate_6: float = _rate(6)
-    yaw_lever: float = required("m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1)
+    yaw_lever: float = required(
+        "m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1
+    )
 
     def of_units(self, name: str) -> list[float]:
         """A parameter of all units, in their order."""
@@ -128,11 +148,13 @@ def design(parameters: FixedAngleParameters) -> Layout:
     p = parameters
     places = zip(p.of_units("x"), p.of_units("y"), p.of_units("azimuth"), strict=True)
     effect = tuple((cos(a), sin(a), x * sin(a) - y * cos(a)) for x, y, a in places)
-    least, most = p.of_units("thrust_min"), p.of_units("thrust_max")
+    least = p.of_units("thrust_min")
+    most = p.of_units("thrust_max")
     size = np.array([max(high, -low) for low, high in zip(least, most, strict=True)])
     size = size / max(size.max(), 1.0)
     scale = np.array([1.0, 1.0, 1.0 / p.yaw_lever])
-    weighted, inverses = scale[:, None] * np.array(effect).T * size, np.zeros((1 << UNITS, UNITS, 3))
+    weighted = scale[:, None] * np.array(effect).T * size
+    inverses = np.zeros((1 << UNITS, UNITS, 3))
     for k in range(1, 1 << UNITS):
         free = np.array([(k >> unit) & 1 for unit in range(UNITS)])
         inverses[k] = size[:, None] * np.linalg.pinv(weighted * free, rcond=1e-6) * scale
@@ -159,7 +181,9 @@ def at_rest(tau: Load, *, parameters: FixedAngleParameters) -> Allocated:
     Definition.
     """
     zero = 0.0 * tau[0]
-    return Allocated((zero,) * UNITS, tuple(parameters.of_units("azimuth")), zero, zero, zero, zero > 0.0)
+    return Allocated(
+        (zero,) * UNITS, tuple(parameters.of_units("azimuth")), zero, zero, zero, zero > 0.0
+    )
 
 
 def step(
@@ -201,17 +225,24 @@ def step(
     X, Y, N = missed(tau, wanted, design.effect)
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
     limits = zip(state.thrusts, wanted, available, design.rate, strict=True)
-    thrusts = tuple(where(on, old + clip(new - old, -rate * h, rate * h), 0.0 * new) for old, new, on, rate in limits)
+    thrusts = tuple(
+        where(on, old + clip(new - old, -rate * h, rate * h), 0.0 * new)
+        for old, new, on, rate in limits
+    )
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
 def _within_limits(tau, available, design):
     """Thrusts for a load, without limit of the rate."""
-    free, held = [where(on, 1.0, 0.0) for on in available], [0.0 * tau[0]] * UNITS
+    free = [where(on, 1.0, 0.0) for on in available]
+    held = [0.0 * tau[0]] * UNITS
     thrusts = held
     for _ in range(UNITS):
         found = _solve(missed(tau, held, design.effect), free, design.inverses)
-        given = [clip(f, low, high) for f, low, high in zip(found, design.least, design.most, strict=True)]
+        given = [
+            clip(f, low, high)
+            for f, low, high in zip(found, design.least, design.most, strict=True)
+        ]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]
         anywhere = functools.reduce(operator.or_, over)
@@ -226,7 +257,10 @@ def _solve(tau, free, inverses):
     """Thrusts of the free units for a load, 0 for the others."""
     chosen = sum(2.0**unit * one for unit, one in enumerate(free))
     if is_single(chosen):
-        return [a * tau[0] + b * tau[1] + c * tau[2] for a, b, c in row_of(inverses, math.floor(chosen)).tolist()]
+        return [
+            a * tau[0] + b * tau[1] + c * tau[2]
+            for a, b, c in row_of(inverses, math.floor(chosen)).tolist()
+        ]
     found = [0.0 * tau[0]] * UNITS
     for k in range(1, 1 << UNITS):
         rows = inverses[k].tolist()

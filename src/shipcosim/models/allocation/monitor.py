@@ -20,7 +20,10 @@ class MonitorParameters:
     """Tolerances and times of the alarms, for a ship with two azimuth thrusters and a tunnel thruster."""
 
     azimuth_thrust_tolerance: float = quantity(
-        3e3, "N", "difference of commanded and reported thrust of an azimuth that is no fault", "assumed: 5 % of 60 kN"
+        3e3,
+        "N",
+        "difference of commanded and reported thrust of an azimuth that is no fault",
+        "assumed: 5 % of 60 kN",
     )
     tunnel_thrust_tolerance: float = quantity(
         1.5e3,
@@ -29,19 +32,38 @@ class MonitorParameters:
         "assumed: 7 % of 21.6 kN",
     )
     azimuth_tolerance: float = quantity(
-        10.0 * _DEG, "rad", "difference of commanded and reported direction that is no fault", "assumed"
+        10.0 * _DEG,
+        "rad",
+        "difference of commanded and reported direction that is no fault",
+        "assumed",
     )
     fault_delay: float = quantity(
-        6.0, "s", "time beyond a tolerance after which the unit is faulty", "assumed; turning by 45 deg takes 4.5 s"
+        6.0,
+        "s",
+        "time beyond a tolerance after which the unit is faulty",
+        "assumed; turning by 45 deg takes 4.5 s",
     )
-    position_limit: float = quantity(5.0, "m", "distance from the reference that is no alarm", "assumed, usual")
-    heading_limit: float = quantity(10.0 * _DEG, "rad", "heading off the reference that is no alarm", "assumed")
+    position_limit: float = quantity(
+        5.0, "m", "distance from the reference that is no alarm", "assumed, usual"
+    )
+    heading_limit: float = quantity(
+        10.0 * _DEG, "rad", "heading off the reference that is no alarm", "assumed"
+    )
     force_limit: float = quantity(
-        40e3, "N", "unexplained force that is no alarm", "assumed: above 25 kN, the most in the scenarios' weather"
+        40e3,
+        "N",
+        "unexplained force that is no alarm",
+        "assumed: above 25 kN, the most in the scenarios' weather",
     )
-    alarm_delay: float = quantity(2.0, "s", "time beyond a limit after which there is an alarm", "assumed")
+    alarm_delay: float = quantity(
+        2.0, "s", "time beyond a limit after which there is an alarm", "assumed"
+    )
     monitor_period: float = quantity(
-        0.2, "s", "time between two looks at commands and feedback", "assumed: short beside the delays", minimum=1e-3
+        0.2,
+        "s",
+        "time between two looks at commands and feedback",
+        "assumed: short beside the delays",
+        minimum=1e-3,
     )
 
 
@@ -183,7 +205,11 @@ def step(
         where((off > 1.0) & on, time + h, where(time >= p.fault_delay, time, 0.0))
         for time, off, on in zip(state[:3], deviations, available, strict=True)
     ]
-    beyond = (errors[0] > p.position_limit, abs(errors[1]) > p.heading_limit, hypot(*bias) > p.force_limit)
+    beyond = (
+        errors[0] > p.position_limit,
+        abs(errors[1]) > p.heading_limit,
+        hypot(*bias) > p.force_limit,
+    )
     ship = [where(over, time + h, 0.0) for time, over in zip(state[3:], beyond, strict=True)]
     return MonitorState(*units, *ship)
 

@@ -18,7 +18,18 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, clip, cos, library_of, maximum, minimum, pi, sin, sqrt, where
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    clip,
+    cos,
+    library_of,
+    maximum,
+    minimum,
+    pi,
+    sin,
+    sqrt,
+    where,
+)
 from shipcosim.models.propulsion.interaction import kept_share
 
 SMOOTHING = 20.0
@@ -86,7 +97,9 @@ class Commands(NamedTuple):
     smooth: Arithmetic
 
 
-def features(state: Commands, tau: Arithmetic, available: Arithmetic, pull: Arithmetic, *, units: Units) -> Arithmetic:
+def features(
+    state: Commands, tau: Arithmetic, available: Arithmetic, pull: Arithmetic, *, units: Units
+) -> Arithmetic:
     """What the network sees: numbers of order 1 that do not jump where an angle wraps.
 
     Parameters
@@ -146,7 +159,13 @@ def network(seen: Arithmetic, weights: tuple) -> Arithmetic:
 
 
 def propose(
-    state: Commands, tau: Arithmetic, available: Arithmetic, h: float, *, units: Units, weights: tuple
+    state: Commands,
+    tau: Arithmetic,
+    available: Arithmetic,
+    h: float,
+    *,
+    units: Units,
+    weights: tuple,
 ) -> Commands:
     """Commands of the network: how fast units turn, and thrusts at its prices that meet the request within limits.
 
@@ -178,11 +197,17 @@ def propose(
     As this module.
     """
     n = units.x.shape[-1]
-    least, most = units.least * available, units.most * available
-    old, reach = state.thrusts, units.rate * h
-    least = where(least > 0.0, minimum(least, old + reach), least)  # a unit at rest goes up to its least thrust
-    low, high = clip(old - reach, least, most), clip(old + reach, least, most)
-    asked, plain = tau + taken(old, state.azimuths, units=units), units._replace(tandem=None)
+    least = units.least * available
+    most = units.most * available
+    old = state.thrusts
+    reach = units.rate * h
+    least = where(
+        least > 0.0, minimum(least, old + reach), least
+    )  # a unit at rest goes up to its least thrust
+    low = clip(old - reach, least, most)
+    high = clip(old + reach, least, most)
+    asked = tau + taken(old, state.azimuths, units=units)
+    plain = units._replace(tandem=None)
     effect = effects(old, state.azimuths, units=plain)
     _, worth = completed(old, asked, effect, low, high, 1.0 + 0.0 * old, units=units)
     pull = _pull(worth, state.azimuths, units)
@@ -215,7 +240,8 @@ def effects(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arith
     ----------
     Thruster configuration matrix: Skulstad 2021, eq. 2.4, with the full yaw arm; slipstreams: `interaction`.
     """
-    c, s = cos(azimuths), sin(azimuths)
+    c = cos(azimuths)
+    s = sin(azimuths)
     library = library_of(c)
     matrix = library.stack([c, s, (units.x * s - units.y * c) / units.lever], -2)
     if units.tandem is None:
@@ -245,7 +271,8 @@ def taken(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arithme
     if units.tandem is None:
         return 0.0
     lost = thrusts * (1.0 - kept_shares(thrusts, azimuths, units=units))
-    c, s = cos(azimuths), sin(azimuths)
+    c = cos(azimuths)
+    s = sin(azimuths)
     library = library_of(c)
     rows = [(lost * c).sum(-1), (lost * s).sum(-1), (lost * (units.x * s - units.y * c)).sum(-1)]
     return library.stack(rows, -1)
@@ -315,14 +342,21 @@ def completed(
     ----------
     Newton's step of the power's Lagrangian; a unit beyond a limit stays there, and the others meet what is left.
     """
-    library, found = library_of(thrusts), clip(thrusts, low, high)
-    steep = prices * (units.full_power / units.full_power.max()) * (units.most.max() / units.most) ** 1.5
+    library = library_of(thrusts)
+    found = clip(thrusts, low, high)
+    steep = (
+        prices
+        * (units.full_power / units.full_power.max())
+        * (units.most.max() / units.most) ** 1.5
+    )
     used = maximum(abs(found), _GENTLE * units.most) / units.most.max()
     curve = 0.5 * steep / sqrt(used)  # of 2/3 of the power over thrust
     slope = steep * sqrt(used) * found / maximum(abs(found), _GENTLE * units.most)
-    request, scale = _scaled(tau, units.lever), units.most.max()
+    request = _scaled(tau, units.lever)
+    scale = units.most.max()
     free = (high > low) * (1.0 + 0.0 * found)
-    turned, soft = library.swapaxes(effect, -1, -2), _SOFT * library.eye(3, dtype=found.dtype)
+    turned = library.swapaxes(effect, -1, -2)
+    soft = _SOFT * library.eye(3, dtype=found.dtype)
     for _ in range(_ROUNDS):
         ease = free / curve
         missing = (request - (effect @ found[..., None])[..., 0]) / scale
@@ -333,7 +367,9 @@ def completed(
         wanted = found + scale * step
         after = clip(wanted, low, high)
         inside = wanted == after
-        slope, free, found = slope + curve * (after - found) / scale, free * inside, after
+        slope = slope + curve * (after - found) / scale
+        free = free * inside
+        found = after
         if bool(inside.all()):
             break
     return found, worth[..., 0]
@@ -342,7 +378,8 @@ def completed(
 def _pull(worth, azimuths, units):
     """Sine of the angle from each unit's direction to the one in which its newton is worth most; 0 of fixed units."""
     X, Y, N = (worth[..., k][..., None] for k in range(3))
-    ahead, aside = X - units.y / units.lever * N, Y + units.x / units.lever * N
+    ahead = X - units.y / units.lever * N
+    aside = Y + units.x / units.lever * N
     size = sqrt(ahead * ahead + aside * aside + 1e-6)
     return (cos(azimuths) * aside - sin(azimuths) * ahead) / size * (units.turn > 0.0)
 
@@ -372,7 +409,9 @@ def power(thrusts: Arithmetic, *, units: Units) -> Arithmetic:
 
 def _used(thrusts, units):
     """Shares of their limits that thrusts are; 0 of a unit without thrust."""
-    astern = where(units.least < 0.0, -units.least, units.most)  # the safety layer may reverse a unit that turns
+    astern = where(
+        units.least < 0.0, -units.least, units.most
+    )  # the safety layer may reverse a unit that turns
     return abs(thrusts) / (where(thrusts < 0.0, astern, units.most) + 1e-9)
 
 

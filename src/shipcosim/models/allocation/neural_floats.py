@@ -91,22 +91,49 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     ----------
     Definition.
     """
-    u, largest = units, float(units.most.max())
+    u = units
+    largest = float(units.most.max())
     astern = np.where(u.least < 0.0, -u.least, u.most)
     steep = u.full_power / u.full_power.max() * (largest / u.most) ** 1.5
-    own = u.azimuth, u.turn, u.first, u.last, u.least, u.most, u.rate, astern, neural._GENTLE * u.most, steep
-    columns = (np.asarray(values, float).tolist() for values in (u.x / u.lever, u.y / u.lever, *own))
-    pairs, kept = [], np.ones((len(u.x), len(u.x))) if u.tandem is None else u.tandem
+    own = (
+        u.azimuth,
+        u.turn,
+        u.first,
+        u.last,
+        u.least,
+        u.most,
+        u.rate,
+        astern,
+        neural._GENTLE * u.most,
+        steep,
+    )
+    columns = (
+        np.asarray(values, float).tolist() for values in (u.x / u.lever, u.y / u.lever, *own)
+    )
+    pairs = []
+    kept = np.ones((len(u.x), len(u.x))) if u.tandem is None else u.tandem
     for front, behind in np.argwhere(kept < 1.0).tolist():
-        bearing, tandem = float(u.bearing[front, behind]), float(kept[front, behind])
+        bearing = float(u.bearing[front, behind])
+        tandem = float(kept[front, behind])
         pairs.append((front, behind, bearing, tandem, 130.0 / tandem**3))
     return Floats(
-        tuple(FloatThruster(*row) for row in zip(*columns, strict=True)), u.lever, largest, tuple(pairs), weights
+        tuple(FloatThruster(*row) for row in zip(*columns, strict=True)),
+        u.lever,
+        largest,
+        tuple(pairs),
+        weights,
     )
 
 
 def propose(
-    thrusts: tuple, azimuths: tuple, smooth: tuple, tau: tuple, usable: list, lost: tuple, h: float, of: Floats
+    thrusts: tuple,
+    azimuths: tuple,
+    smooth: tuple,
+    tau: tuple,
+    usable: list,
+    lost: tuple,
+    h: float,
+    of: Floats,
 ) -> tuple[tuple, tuple, tuple]:
     """As `neural.propose`.
 
@@ -136,20 +163,34 @@ def propose(
     """
     asked = tuple((axis + less) / of.largest for axis, less in zip(tau, lost, strict=True))
     asked = asked[0], asked[1], asked[2] / of.lever
-    bounds = [_bounds(unit, f, share, h) for unit, f, share in zip(of.units, thrusts, usable, strict=True)]
+    bounds = [
+        _bounds(unit, f, share, h) for unit, f, share in zip(of.units, thrusts, usable, strict=True)
+    ]
     effects = [_effect(unit, angle) for unit, angle in zip(of.units, azimuths, strict=True)]
     worth = _completed(thrusts, asked, effects, bounds, [unit.steep for unit in of.units], of)[1]
     pull = [_pull(unit, worth, effect) for unit, effect in zip(of.units, effects, strict=True)]
-    said = neural.network(_features(thrusts, effects, smooth, tau, usable, pull, of), of.weights).tolist()
+    said = neural.network(
+        _features(thrusts, effects, smooth, tau, usable, pull, of), of.weights
+    ).tolist()
     angles = []
     for unit, angle, share, own, more in zip(of.units, azimuths, usable, pull, said, strict=False):
-        turn = tanh(neural._EAGERNESS * own + neural._SWAY * more) * unit.turn * h if share > 0.0 else 0.0
+        turn = (
+            tanh(neural._EAGERNESS * own + neural._SWAY * more) * unit.turn * h
+            if share > 0.0
+            else 0.0
+        )
         angles.append(min(max(angle + turn, unit.first), unit.last) if unit.turn > 0.0 else angle)
     effects = [_effect(unit, angle) for unit, angle in zip(of.units, angles, strict=True)]
-    steep = [unit.steep * exp(price) for unit, price in zip(of.units, said[len(angles) :], strict=True)]
+    steep = [
+        unit.steep * exp(price) for unit, price in zip(of.units, said[len(angles) :], strict=True)
+    ]
     found = _completed(thrusts, asked, effects, bounds, steep, of)[0]
     share = 1.0 - exp(-h / neural.SMOOTHING)
-    return tuple(found), tuple(angles), tuple(old + share * (new - old) for old, new in zip(smooth, tau, strict=True))
+    return (
+        tuple(found),
+        tuple(angles),
+        tuple(old + share * (new - old) for old, new in zip(smooth, tau, strict=True)),
+    )
 
 
 def taken(thrusts: tuple, azimuths: tuple, of: Floats) -> tuple[float, float, float]:
@@ -173,7 +214,9 @@ def taken(thrusts: tuple, azimuths: tuple, of: Floats) -> tuple[float, float, fl
     """
     if not of.pairs:
         return 0.0, 0.0, 0.0
-    limits = (unit.astern if f < 0.0 else unit.most for f, unit in zip(thrusts, of.units, strict=True))
+    limits = (
+        unit.astern if f < 0.0 else unit.most for f, unit in zip(thrusts, of.units, strict=True)
+    )
     wash = [sqrt(abs(f) / (limit + 1e-9) + 1e-6) for f, limit in zip(thrusts, limits, strict=True)]
     kept = [1.0] * len(thrusts)
     for front, behind, bearing, tandem, spread in of.pairs:
@@ -185,13 +228,17 @@ def taken(thrusts: tuple, azimuths: tuple, of: Floats) -> tuple[float, float, fl
     for unit, f, angle, share in zip(of.units, thrusts, azimuths, kept, strict=True):
         c, s, arm = _effect(unit, angle)
         less = f * (1.0 - share)
-        X, Y, N = X + c * less, Y + s * less, N + arm * less
+        X = X + c * less
+        Y = Y + s * less
+        N = N + arm * less
     return X, Y, N * of.lever
 
 
 def _bounds(unit, f, share, h):
     """Least and largest next thrust."""
-    least, most, reach = unit.least * share, unit.most * share, unit.rate * h
+    least = unit.least * share
+    most = unit.most * share
+    reach = unit.rate * h
     if least > 0.0:
         least = min(least, f + reach)  # a unit at rest goes up to its least thrust
     return min(max(f - reach, least), most), min(max(f + reach, least), most)
@@ -199,7 +246,8 @@ def _bounds(unit, f, share, h):
 
 def _effect(unit, angle):
     """Load of one newton, the moment over the lever."""
-    c, s = cos(angle), sin(angle)
+    c = cos(angle)
+    s = sin(angle)
     return c, s, unit.x * s - unit.y * c
 
 
@@ -207,25 +255,31 @@ def _pull(unit, worth, effect):
     """As `neural._pull`."""
     if unit.turn <= 0.0:
         return 0.0
-    ahead, aside = worth[0] - unit.y * worth[2], worth[1] + unit.x * worth[2]
+    ahead = worth[0] - unit.y * worth[2]
+    aside = worth[1] + unit.x * worth[2]
     return (effect[0] * aside - effect[1] * ahead) / sqrt(ahead * ahead + aside * aside + 1e-6)
 
 
 def _features(thrusts, effects, smooth, tau, usable, pull, of):
     """As `neural.features`."""
-    rows, floor = [], (neural._FLOOR * of.largest) ** 2
+    rows = []
+    floor = (neural._FLOOR * of.largest) ** 2
     for X, Y, N in (smooth, tau):
         N = N / of.lever
         size = sqrt(X * X + Y * Y + N * N + floor)
         rows.append((X / size, Y / size, N / size, 0.4 * log(size / of.largest) + 1.0))
     given = [tanh(f / size) for f in thrusts]
-    sines, cosines = [effect[1] for effect in effects], [effect[0] for effect in effects]
+    sines = [effect[1] for effect in effects]
+    cosines = [effect[0] for effect in effects]
     return np.array([*rows[1], *rows[0], *given, *usable, *pull, *sines, *cosines])
 
 
 def _completed(thrusts, asked, effects, bounds, steep, of):
     """As `neural.completed`; `asked` is over the largest thrust, and the moment over the lever too."""
-    found, curves, slopes, free = [], [], [], []
+    found = []
+    curves = []
+    slopes = []
+    free = []
     for f, (low, high), price, unit in zip(thrusts, bounds, steep, of.units, strict=True):
         f = min(max(f, low), high)
         curve = 0.5 * price / sqrt(max(abs(f), unit.gentle) / of.largest)
@@ -240,13 +294,22 @@ def _completed(thrusts, asked, effects, bounds, steep, of):
         b = c = e = 0.0
         for (X, Y, N), at, ease, slope in zip(effects, found, free, slopes, strict=True):
             less = ease * slope - at
-            X0, Y0, N0 = X0 + X * less, Y0 + Y * less, N0 + N * less
-            p, q = ease * X, ease * Y
-            a, b, c, d, e, f = a + p * X, b + p * Y, c + p * N, d + q * Y, e + q * N, f + ease * N * N
+            X0 = X0 + X * less
+            Y0 = Y0 + Y * less
+            N0 = N0 + N * less
+            p = ease * X
+            q = ease * Y
+            a = a + p * X
+            b = b + p * Y
+            c = c + p * N
+            d = d + q * Y
+            e = e + q * N
+            f = f + ease * N * N
         worth = p, q, r = _three_equations(a, b, c, d, e, f, X0, Y0, N0)
         inside = True
         for k, (X, Y, N) in enumerate(effects):
-            at, (low, high) = found[k], bounds[k]
+            at = found[k]
+            (low, high) = bounds[k]
             wanted = (at + free[k] * (X * p + Y * q + N * r - slopes[k])) * of.largest
             after = min(max(wanted, low), high)
             if after != wanted:

@@ -67,7 +67,9 @@ class Remembered(NamedTuple):
     proposed: tuple
 
 
-def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, lever_degraded: float) -> NeuralLaw:
+def designed(
+    units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, lever_degraded: float
+) -> NeuralLaw:
     """Design for some units and a trained network.
 
     Parameters
@@ -97,10 +99,14 @@ def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, 
     ----------
     Definition.
     """
-    weights = tuple((arrays[f"{k}.weights"], arrays[f"{k}.bias"]) for k in range(1, len(arrays) // 2 + 1))
+    weights = tuple(
+        (arrays[f"{k}.weights"], arrays[f"{k}.bias"]) for k in range(1, len(arrays) // 2 + 1)
+    )
     trained = weights[-1][0].shape[-1] // 2
     if trained != len(units.x):
-        raise ValueError(f"the network was trained for {trained} units, the ship has {len(units.x)}")
+        raise ValueError(
+            f"the network was trained for {trained} units, the ship has {len(units.x)}"
+        )
     rows = zip(*(np.asarray(values).tolist() for values in units[:10]), least_degraded, strict=True)
     safety = sqp.designed(tuple(_unit(*row) for row in rows), 0.0, units.lever, lever_degraded)
     return NeuralLaw(units, numbers, weights, safety, floats_of(units, weights))
@@ -109,7 +115,9 @@ def designed(units: Units, numbers: tuple, arrays: dict, least_degraded: tuple, 
 def _unit(x, y, azimuth, turn, first, last, least, most, rate, full_power, degraded):
     """A unit as the quadratic program knows it."""
     interval = (first, last) if turn > 0.0 else (azimuth, azimuth)
-    return sqp.AllocatedThruster(x, y, least, most, degraded, rate, *interval, turn, max(full_power, 1.0) / most**1.5)
+    return sqp.AllocatedThruster(
+        x, y, least, most, degraded, rate, *interval, turn, max(full_power, 1.0) / most**1.5
+    )
 
 
 def resting(tau: Load, azimuths: tuple) -> Remembered:
@@ -131,12 +139,19 @@ def resting(tau: Load, azimuths: tuple) -> Remembered:
     ----------
     Definition.
     """
-    rest, zero = no_thrust(tau, azimuths), 0.0 * tau[0]
+    rest = no_thrust(tau, azimuths)
+    zero = 0.0 * tau[0]
     return Remembered(*rest, (zero, zero, zero), (rest.thrusts, rest.azimuths))
 
 
 def step(
-    state: Remembered, tau: Load, available: tuple, h: float, *, design: NeuralLaw, shares: tuple | None = None
+    state: Remembered,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    design: NeuralLaw,
+    shares: tuple | None = None,
 ) -> Remembered:
     """Commands for a requested load, `h` after the last ones.
 
@@ -166,20 +181,32 @@ def step(
     """
     numbers = design.numbers
     left = tuple(shares[k] if shares else 1.0 for k in numbers)
-    on, zero = tuple(available[k] for k in numbers), 0.0 * tau[0]
+    on = tuple(available[k] for k in numbers)
+    zero = 0.0 * tau[0]
     usable = [where(unit, share + zero, zero) for unit, share in zip(on, left, strict=True)]
     thrusts, azimuths = (tuple(of[k] for k in numbers) for of in (state.thrusts, state.azimuths))
     lost = _taken(thrusts, azimuths, design)
-    wanted, angles, smooth = _proposed((thrusts, azimuths, state.smooth), tau, usable, lost, h, design)
+    wanted, angles, smooth = _proposed(
+        (thrusts, azimuths, state.smooth), tau, usable, lost, h, design
+    )
     last = sqp.Turned(thrusts, azimuths, zero, zero, zero, zero > 0.0, (zero, zero, zero))
-    asked = tau[0] + lost[0], tau[1] + lost[1], tau[2] + lost[2]  # within a step the loss hardly changes
+    asked = (
+        tau[0] + lost[0],
+        tau[1] + lost[1],
+        tau[2] + lost[2],
+    )  # within a step the loss hardly changes
     safe = sqp.nearest_step(last, wanted, angles, asked, on, h, design=design.safety, shares=left)
     lost = _taken(safe.thrusts, safe.azimuths, design)
-    X, Y, N = (axis - loss for axis, loss in zip((safe.tau_X, safe.tau_Y, safe.tau_N), lost, strict=True))
-    all_thrusts, all_azimuths = list(state.thrusts), list(state.azimuths)
+    X, Y, N = (
+        axis - loss for axis, loss in zip((safe.tau_X, safe.tau_Y, safe.tau_N), lost, strict=True)
+    )
+    all_thrusts = list(state.thrusts)
+    all_azimuths = list(state.azimuths)
     for k, thrust, azimuth in zip(numbers, safe.thrusts, safe.azimuths, strict=True):
         all_thrusts[k], all_azimuths[k] = thrust, azimuth
-    return Remembered(tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, smooth, (wanted, angles))
+    return Remembered(
+        tuple(all_thrusts), tuple(all_azimuths), X, Y, N, safe.saturated, smooth, (wanted, angles)
+    )
 
 
 def _proposed(before, tau, usable, lost, h, design):
@@ -188,7 +215,9 @@ def _proposed(before, tau, usable, lost, h, design):
         thrusts, azimuths, smooth = before
         return neural_floats.propose(thrusts, azimuths, smooth, tau, usable, lost, h, design.floats)
     state = Commands(*(_vector(values) for values in before))
-    found = neural.propose(state, _vector(tau), _vector(usable), h, units=design.units, weights=design.weights)
+    found = neural.propose(
+        state, _vector(tau), _vector(usable), h, units=design.units, weights=design.weights
+    )
     return tuple(_entries(vector) for vector in found)
 
 

@@ -53,18 +53,24 @@ def units_of(parameters: NeuralParameters, full_power: tuple = (1.0, 1.0, 1.0)) 
     Definition.
     """
     p = parameters
-    port, starboard = (p.port_x, p.port_y), (p.starboard_x, p.starboard_y)
-    first, last = (p.port_azimuth_first, p.starboard_azimuth_first), (p.port_azimuth_last, p.starboard_azimuth_last)
+    port = (p.port_x, p.port_y)
+    starboard = (p.starboard_x, p.starboard_y)
+    first = (p.port_azimuth_first, p.starboard_azimuth_first)
+    last = (p.port_azimuth_last, p.starboard_azimuth_last)
     bearing = tandem = None
     if p.azimuth_diameter > 0.0:
-        half = pi - atan(0.1 + p.azimuth_diameter / hypot(starboard[0] - port[0], starboard[1] - port[1]))
+        half = pi - atan(
+            0.1 + p.azimuth_diameter / hypot(starboard[0] - port[0], starboard[1] - port[1])
+        )
         towards = atan2(starboard[1] - port[1], starboard[0] - port[0])
         back = wrap(towards + pi)
-        first, last = (towards - half, back - half), (towards + half, back + half)
+        first = (towards - half, back - half)
+        last = (towards + half, back + half)
         sizes = dict(diameter_1=p.azimuth_diameter, diameter_2=p.azimuth_diameter)
         places = dict(x_1=port[0], y_1=port[1], x_2=starboard[0], y_2=starboard[1])
         bearing, tandem = pair_table(InteractionParameters(**places, **sizes), (0, 1, 2))
-    tunnel, least = p.tunnel_thrust_max, p.azimuth_thrust_least
+    tunnel = p.tunnel_thrust_max
+    least = p.azimuth_thrust_least
     return Units(
         x=np.array([p.port_x, p.starboard_x, p.tunnel_x]),
         y=np.array([p.port_y, p.starboard_y, 0.0]),

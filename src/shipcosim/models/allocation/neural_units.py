@@ -36,7 +36,9 @@ class NeuralUnitsParameters(OptimalUnitsParameters):
     diameter_6: float = _diameter(6)
 
 
-def units_of(parameters: NeuralUnitsParameters, full_power: tuple = (1.0,) * UNITS) -> tuple[Units, tuple]:
+def units_of(
+    parameters: NeuralUnitsParameters, full_power: tuple = (1.0,) * UNITS
+) -> tuple[Units, tuple]:
     """The units in vectors, without those that have no thrust.
 
     Parameters
@@ -60,16 +62,23 @@ def units_of(parameters: NeuralUnitsParameters, full_power: tuple = (1.0,) * UNI
     p = parameters
     numbers = tuple(k for k, most in enumerate(p.of_units("thrust_max")) if most > 0.0)
     names = "x y azimuth thrust_min thrust_max thrust_rate azimuth_rate azimuth_first azimuth_last thrust_least".split()
-    x, y, azimuth, low, high, rate, turn, first, last, least = (_chosen(p, name, numbers) for name in names)
+    x, y, azimuth, low, high, rate, turn, first, last, least = (
+        _chosen(p, name, numbers) for name in names
+    )
     free = last <= first
-    first, last = np.where(free, -inf, first), np.where(free, inf, last)
+    first = np.where(free, -inf, first)
+    last = np.where(free, inf, last)
     least = np.where(turn > 0.0, np.minimum(least, high), low)
     bearing = tandem = None
     if _chosen(p, "diameter", numbers).any():
         names = [f"{name}_{k}" for name in ("x", "y", "diameter") for k in range(1, UNITS + 1)]
-        bearing, tandem = pair_table(InteractionParameters(**{name: getattr(p, name) for name in names}), numbers)
+        bearing, tandem = pair_table(
+            InteractionParameters(**{name: getattr(p, name) for name in names}), numbers
+        )
     power = np.array(full_power, float)[list(numbers)]
-    return Units(x, y, azimuth, turn, first, last, least, high, rate, power, p.yaw_lever, bearing, tandem), numbers
+    return Units(
+        x, y, azimuth, turn, first, last, least, high, rate, power, p.yaw_lever, bearing, tandem
+    ), numbers
 
 
 def _chosen(parameters, name, numbers):

@@ -8,7 +8,14 @@ fixed angles `port_azimuth` and `starboard_azimuth` are those of laws that turn 
 from dataclasses import dataclass
 from math import pi
 
-from shipcosim.models.allocation.sqp import AllocatedThruster, OptimalProblem, Turned, designed, power_step, resting
+from shipcosim.models.allocation.sqp import (
+    AllocatedThruster,
+    OptimalProblem,
+    Turned,
+    designed,
+    power_step,
+    resting,
+)
 from shipcosim.models.allocation.units import NamedUnits
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
@@ -21,17 +28,33 @@ _SECTORS = "forbidden sectors of 80 to 100 deg to both sides, Skulstad 2021, pap
 class OptimalParameters(NamedUnits):
     """Two azimuth thrusters that turn and a tunnel thruster."""
 
-    port_azimuth_start: float = quantity(0.0, "rad", "angle of the port azimuth at the start", "as the thruster's")
-    starboard_azimuth_start: float = quantity(0.0, "rad", "the same of the starboard azimuth", "as the thruster's")
-    port_azimuth_first: float = quantity(-80 * _DEGREE, "rad", "port azimuth turns clockwise from here", _SECTORS)
+    port_azimuth_start: float = quantity(
+        0.0, "rad", "angle of the port azimuth at the start", "as the thruster's"
+    )
+    starboard_azimuth_start: float = quantity(
+        0.0, "rad", "the same of the starboard azimuth", "as the thruster's"
+    )
+    port_azimuth_first: float = quantity(
+        -80 * _DEGREE, "rad", "port azimuth turns clockwise from here", _SECTORS
+    )
     port_azimuth_last: float = quantity(80 * _DEGREE, "rad", "and to here", _SECTORS)
-    starboard_azimuth_first: float = quantity(100 * _DEGREE, "rad", "starboard azimuth turns from here", _SECTORS)
+    starboard_azimuth_first: float = quantity(
+        100 * _DEGREE, "rad", "starboard azimuth turns from here", _SECTORS
+    )
     starboard_azimuth_last: float = quantity(260 * _DEGREE, "rad", "and to here", _SECTORS)
     azimuth_rate_max: float = quantity(
-        10 * _DEGREE, "rad/s", "quickest turning of a command", "Skulstad 2021, paper V, Table I", minimum=0.0
+        10 * _DEGREE,
+        "rad/s",
+        "quickest turning of a command",
+        "Skulstad 2021, paper V, Table I",
+        minimum=0.0,
     )
     azimuth_thrust_least: float = quantity(
-        1000.0, "N", "least thrust of an azimuth that runs", "tried: calm needs it to follow small loads", minimum=0.0
+        1000.0,
+        "N",
+        "least thrust of an azimuth that runs",
+        "tried: calm needs it to follow small loads",
+        minimum=0.0,
     )
     tunnel_price: float = quantity(
         4.77,
@@ -41,7 +64,11 @@ class OptimalParameters(NamedUnits):
         minimum=1e-3,
     )
     turning_time: float = quantity(
-        10.0, "s", "time constant of turning to the cheapest direction", "tried: 1 s turns twice as much", minimum=0.0
+        10.0,
+        "s",
+        "time constant of turning to the cheapest direction",
+        "tried: 1 s turns twice as much",
+        minimum=0.0,
     )
 
 
@@ -66,7 +93,8 @@ def design(parameters: OptimalParameters) -> OptimalProblem:
     force = p.azimuth_thrust_least, p.azimuth_thrust_max, p.azimuth_thrust_min, p.thrust_rate_max
     port = p.port_azimuth_first, p.port_azimuth_last, p.azimuth_rate_max, 1.0
     starboard = p.starboard_azimuth_first, p.starboard_azimuth_last, p.azimuth_rate_max, 1.0
-    most, across = p.tunnel_thrust_max, 0.5 * pi
+    most = p.tunnel_thrust_max
+    across = 0.5 * pi
     tunnel = -most, most, -most, p.thrust_rate_max, across, across, 0.0, p.tunnel_price
     units = (
         AllocatedThruster(p.port_x, p.port_y, *force, *port),
@@ -95,7 +123,9 @@ def at_rest(tau: Load, *, parameters: OptimalParameters) -> Turned:
     ----------
     Definition.
     """
-    return resting(tau, (parameters.port_azimuth_start, parameters.starboard_azimuth_start, 0.5 * pi))
+    return resting(
+        tau, (parameters.port_azimuth_start, parameters.starboard_azimuth_start, 0.5 * pi)
+    )
 
 
 def step(

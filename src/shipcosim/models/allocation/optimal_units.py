@@ -9,7 +9,14 @@ from dataclasses import dataclass
 from math import inf
 
 from shipcosim.models.allocation.fixed_angles import UNITS, FixedAngleParameters
-from shipcosim.models.allocation.sqp import AllocatedThruster, OptimalProblem, Turned, designed, power_step, resting
+from shipcosim.models.allocation.sqp import (
+    AllocatedThruster,
+    OptimalProblem,
+    Turned,
+    designed,
+    power_step,
+    resting,
+)
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
 
@@ -17,11 +24,22 @@ _NONE = "none"
 
 
 def _turning(number):
-    return quantity(0.0, "rad/s", f"quickest turning of unit {number}; 0: its direction is fixed", _NONE, minimum=0.0)
+    return quantity(
+        0.0,
+        "rad/s",
+        f"quickest turning of unit {number}; 0: its direction is fixed",
+        _NONE,
+        minimum=0.0,
+    )
 
 
 def _first(number):
-    return quantity(0.0, "rad", f"unit {number} turns clockwise from here; no limit where it is `azimuth_last`", _NONE)
+    return quantity(
+        0.0,
+        "rad",
+        f"unit {number} turns clockwise from here; no limit where it is `azimuth_last`",
+        _NONE,
+    )
 
 
 def _last(number):
@@ -100,7 +118,10 @@ def design(parameters: OptimalUnitsParameters) -> OptimalProblem:
     p = parameters
     fixed = "x", "y", "azimuth", "thrust_min", "thrust_max", "thrust_rate"
     turning = "azimuth_rate", "azimuth_first", "azimuth_last", "thrust_least", "specific_power"
-    units = tuple(_unit(*values) for values in zip(*(p.of_units(name) for name in fixed + turning), strict=True))
+    units = tuple(
+        _unit(*values)
+        for values in zip(*(p.of_units(name) for name in fixed + turning), strict=True)
+    )
     return designed(units, p.turning_time, p.yaw_lever, p.yaw_lever)
 
 
@@ -109,7 +130,9 @@ def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, first, last, leas
     price = specific_power * max(high, -low, 1.0) ** -0.5
     if azimuth_rate > 0.0:
         first, last = (first, last) if last > first else (-inf, inf)
-        return AllocatedThruster(x, y, min(least, high), high, low, thrust_rate, first, last, azimuth_rate, price)
+        return AllocatedThruster(
+            x, y, min(least, high), high, low, thrust_rate, first, last, azimuth_rate, price
+        )
     return AllocatedThruster(x, y, low, high, low, thrust_rate, azimuth, azimuth, 0.0, price)
 
 

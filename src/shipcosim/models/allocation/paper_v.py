@@ -162,14 +162,20 @@ def step(
     PaperVState
         Commands and the load that they give.
     """
-    commands, memory, since = state.commands, state.memory, state.since
+    commands = state.commands
+    memory = state.memory
+    since = state.since
     if since > design.sample_time * (1.0 - _TOLERANCE):
         found, memory = evaluate(design.encoder, (np.array(tau) - design.mean) / design.std, memory)
-        commands, since = tuple((found * design.ranges).tolist()), 0.0
+        commands = tuple((found * design.ranges).tolist())
+        since = 0.0
     tunnel, port, port_azimuth, starboard, starboard_azimuth = commands
-    wanted, azimuths = (port, starboard, tunnel), (port_azimuth, starboard_azimuth, 0.5 * np.pi)
+    wanted = (port, starboard, tunnel)
+    azimuths = (port_azimuth, starboard_azimuth, 0.5 * np.pi)
     limits = zip(wanted, available, shares, _limits(parameters), strict=True)
-    thrusts = tuple(clip(f, share * low, share * high) if on else 0.0 for f, on, share, (low, high) in limits)
+    thrusts = tuple(
+        clip(f, share * low, share * high) if on else 0.0 for f, on, share, (low, high) in limits
+    )
     load = given((thrusts, azimuths), parameters=parameters)
     return PaperVState(thrusts, azimuths, *load, thrusts != wanted, commands, memory, since + h)
 
@@ -191,8 +197,17 @@ def given(commands: tuple[tuple, tuple], *, parameters: NamedUnits) -> Load:
     """
     (port, starboard, tunnel), (a, b, _) = commands
     p = parameters
-    X1, Y1, X2, Y2 = port * cos(a), port * sin(a), starboard * cos(b), starboard * sin(b)
-    N = p.port_x * Y1 - p.port_y * X1 + p.starboard_x * Y2 - p.starboard_y * X2 + p.tunnel_x * tunnel
+    X1 = port * cos(a)
+    Y1 = port * sin(a)
+    X2 = starboard * cos(b)
+    Y2 = starboard * sin(b)
+    N = (
+        p.port_x * Y1
+        - p.port_y * X1
+        + p.starboard_x * Y2
+        - p.starboard_y * X2
+        + p.tunnel_x * tunnel
+    )
     return X1 + X2, Y1 + Y2 + tunnel, N
 
 

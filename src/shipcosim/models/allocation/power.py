@@ -18,13 +18,21 @@ _ALMOST_NONE = 1e-12  # keeps derivatives of roots finite
 class PowerParameters:
     """Power of two azimuth thrusters and a tunnel thruster, and the bus that feeds each."""
 
-    azimuth_full_power: float = required("W", "power of an azimuth at its limits of thrust, at bollard", minimum=1.0)
-    tunnel_full_power: float = required("W", "power of the tunnel thruster at its limits of thrust", minimum=1.0)
+    azimuth_full_power: float = required(
+        "W", "power of an azimuth at its limits of thrust, at bollard", minimum=1.0
+    )
+    tunnel_full_power: float = required(
+        "W", "power of the tunnel thruster at its limits of thrust", minimum=1.0
+    )
     port_bus: float = required("1", "bus that feeds the port azimuth: 0 is A, 1 is B")
     starboard_bus: float = required("1", "bus that feeds the starboard azimuth")
     tunnel_bus: float = required("1", "bus that feeds the tunnel thruster")
     idle_share: float = quantity(
-        0.02, "1", "share of its largest power that a unit counts with when it rests", "assumed", minimum=1e-6
+        0.02,
+        "1",
+        "share of its largest power that a unit counts with when it rests",
+        "assumed",
+        minimum=1e-6,
     )
 
     @property
@@ -73,7 +81,9 @@ def granted_power(
     total_a = sum(power * (1.0 - on) for power, on in zip(wanted, on_b, strict=True))
     left_a = available[0] / (total_a + _ALMOST_NONE)
     left_b = available[1] / (total_b + _ALMOST_NONE)
-    a, b, c = (power * (on * left_b + (1.0 - on) * left_a) for power, on in zip(wanted, on_b, strict=True))
+    a, b, c = (
+        power * (on * left_b + (1.0 - on) * left_a) for power, on in zip(wanted, on_b, strict=True)
+    )
     return a, b, c
 
 

@@ -64,7 +64,8 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
         (p.port_x, p.port_y, p.port_azimuth),
         (p.starboard_x, p.starboard_y, p.starboard_azimuth),
     ):
-        c, s = cos(angle), sin(angle)
+        c = cos(angle)
+        s = sin(angle)
         units.append((c, s, x * s - y * c))
     return (*units, (0.0, 1.0, p.tunnel_x))
 
@@ -185,9 +186,16 @@ def step(
 
 def _limits(shares, parameters):
     """Least and largest thrust of port, starboard and tunnel. [N]"""
-    p, (port, starboard, tunnel) = parameters, shares
-    low, high, most = p.azimuth_thrust_min, p.azimuth_thrust_max, p.tunnel_thrust_max
-    return (port * low, port * high), (starboard * low, starboard * high), (tunnel * -most, tunnel * most)
+    p = parameters
+    (port, starboard, tunnel) = shares
+    low = p.azimuth_thrust_min
+    high = p.azimuth_thrust_max
+    most = p.tunnel_thrust_max
+    return (
+        (port * low, port * high),
+        (starboard * low, starboard * high),
+        (tunnel * -most, tunnel * most),
+    )
 
 
 def _within_limits(tau, available, limits, *, design):

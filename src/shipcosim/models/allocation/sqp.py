@@ -18,7 +18,16 @@ from typing import NamedTuple
 
 from shipcosim.models.allocation.box_qp import Command, solve
 from shipcosim.models.allocation.units import no_thrust
-from shipcosim.models.core.maths import Arithmetic, atan2, clip, maximum, minimum, sincos, sqrt, where
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    atan2,
+    clip,
+    maximum,
+    minimum,
+    sincos,
+    sqrt,
+    where,
+)
 from shipcosim.models.core.motion import Load
 
 _GENTLE = 0.02  # share of a unit's largest thrust below which its price is taken as quadratic
@@ -106,7 +115,9 @@ class Turned(NamedTuple):
     marginal: tuple
 
 
-def designed(units: tuple, turning_time: float, yaw_lever: float, yaw_lever_degraded: float) -> OptimalProblem:
+def designed(
+    units: tuple, turning_time: float, yaw_lever: float, yaw_lever_degraded: float
+) -> OptimalProblem:
     """Design for some units.
 
     Parameters
@@ -152,7 +163,13 @@ def resting(tau: Load, azimuths: tuple) -> Turned:
 
 
 def power_step(
-    state: Turned, tau: Load, available: tuple, h: float, *, design: OptimalProblem, shares: tuple | None = None
+    state: Turned,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    design: OptimalProblem,
+    shares: tuple | None = None,
 ) -> Turned:
     """Commands that meet a requested load at the least power, `h` after the last ones.
 
@@ -229,10 +246,15 @@ def nearest_step(
 def _step(state, tau, available, h, design, shares, slack, proposed):
     """Both programs: changes of thrust and angle, then thrusts at the new angles."""
     # True if no unit is missing.
-    missing = sum(where(on, 0.0, 1.0) for on, unit in zip(available, design.units, strict=True) if unit.most > 0.0)
+    missing = sum(
+        where(on, 0.0, 1.0)
+        for on, unit in zip(available, design.units, strict=True)
+        if unit.most > 0.0
+    )
     whole = missing < 0.5
     around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
-    unmet, changes = tau, []
+    unmet = tau
+    changes = []
     for at in around:
         unmet = _less(unmet, at.effect, at.thrust)
         ease, wanted, turn_ease, turn = (
@@ -241,31 +263,43 @@ def _step(state, tau, available, h, design, shares, slack, proposed):
         X, Y, N = at.effect
         changes.append(Command(X, Y, N, ease, wanted, at.low - at.thrust, at.high - at.thrust))
         if at.unit.azimuth_rate > 0.0:
-            (X, Y, N), stir = at.turning, _STIR * at.unit.most
+            (X, Y, N) = at.turning
+            stir = _STIR * at.unit.most
             f = where(abs(at.thrust) < stir, stir + 0.0 * at.thrust, at.thrust)
             changes.append(Command(f * X, f * Y, f * N, turn_ease, turn, at.left, at.right))
     lever = where(whole, design.yaw_lever, design.yaw_lever_degraded)
     slacks = (slack, slack, slack * lever * lever)
     found, marginal = solve(unmet, changes, slacks)
-    turned, forces, near, unmet = [], [], [], tau
+    turned = []
+    forces = []
+    near = []
+    unmet = tau
     for at in around:
-        command, near, found = changes[len(changes) - len(found)], [*near, found[0]], found[1:]
+        command = changes[len(changes) - len(found)]
+        near = [*near, found[0]]
+        found = found[1:]
         angle = at.azimuth
         if at.unit.azimuth_rate > 0.0:
-            angle, found = clip(angle + found[0], at.first, at.last), found[1:]
+            angle = clip(angle + found[0], at.first, at.last)
+            found = found[1:]
         effect = X, Y, N = _effect(at.unit, *sincos(angle))
         turned.append(angle)
         forces.append(command._replace(X=X, Y=Y, N=N))
         unmet = _less(unmet, effect, at.thrust)
     found = solve(unmet, forces, slacks, near)[0]
-    thrusts = [clip(at.thrust + change, at.low, at.high) for at, change in zip(around, found, strict=True)]
+    thrusts = [
+        clip(at.thrust + change, at.low, at.high) for at, change in zip(around, found, strict=True)
+    ]
     return _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
 
 
 def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design):
     """The state of new commands."""
     zero = 0.0 * tau[0]
-    all_thrusts, azimuths, unmet, moving = [zero] * len(state.thrusts), list(state.azimuths), tau, zero > 0.0
+    all_thrusts = [zero] * len(state.thrusts)
+    azimuths = list(state.azimuths)
+    unmet = tau
+    moving = zero > 0.0
     for at, f, angle, force in zip(around, thrusts, turned, forces, strict=True):
         all_thrusts[at.index], azimuths[at.index] = f, angle
         unmet = _less(unmet, force[:3], f)
@@ -305,7 +339,13 @@ def _around(state, available, whole, h, design, shares):
         s, c = sincos(angle)
         turning = (-s, c, unit.x * c + unit.y * s)
         bounds = _bounds(
-            unit, f, angle, on, share * where(whole, unit.least, unit.least_degraded), share * unit.most, h
+            unit,
+            f,
+            angle,
+            on,
+            share * where(whole, unit.least, unit.least_degraded),
+            share * unit.most,
+            h,
         )
         found.append(_Around(index, unit, f, angle, _effect(unit, s, c), turning, *bounds))
     return found
@@ -314,13 +354,18 @@ def _around(state, available, whole, h, design, shares):
 def _bounds(unit, f, angle, on, least, most, h):
     """Least and largest next thrust, and change of the angle; least and largest next angle."""
     reach = unit.thrust_rate * h
-    reverses, high = least < 0.0, minimum(most, f + reach)
-    low = where(reverses, clip(f - reach, least, most), minimum(clip(least, f - reach, f + reach), high))
+    reverses = least < 0.0
+    high = minimum(most, f + reach)
+    low = where(
+        reverses, clip(f - reach, least, most), minimum(clip(least, f - reach, f + reach), high)
+    )
     high = where(reverses, clip(f + reach, least, most), high)
     if unit.azimuth_rate <= 0.0:
         return where(on, low, 0.0 * low), where(on, high, 0.0 * high), 0.0, 0.0, angle, angle
-    turn, end = unit.azimuth_rate * h, clip(angle, unit.first, unit.last)
-    inside, fade = end == angle, clip(0.0 * f, f - reach, f + reach)
+    turn = unit.azimuth_rate * h
+    end = clip(angle, unit.first, unit.last)
+    inside = end == angle
+    fade = clip(0.0 * f, f - reach, f + reach)
     back = where(abs(f) > 0.0, 0.0 * angle, clip(end - angle, -turn, turn))
     left = where(inside, maximum(unit.first - angle, -turn), back)
     right = where(inside, minimum(unit.last - angle, turn), back)
@@ -336,18 +381,23 @@ def _bounds(unit, f, angle, on, least, most, h):
 
 def _cheapest(at, marginal, design, h):
     """Ease and target of the changes of thrust and angle by the power's price."""
-    unit, f = at.unit, at.thrust
-    k, size, gentle = 1.5 * unit.price, abs(f), _GENTLE * max(unit.most, -unit.least)
+    unit = at.unit
+    f = at.thrust
+    k = 1.5 * unit.price
+    size = abs(f)
+    gentle = _GENTLE * max(unit.most, -unit.least)
     astern = -min(unit.least, unit.least_degraded)
     if astern > 0.0 and astern != unit.most:
         k = where(f < 0.0, k * (unit.most / astern) ** 1.5, k)
     firm = maximum(size, gentle)
     root = sqrt(firm)
     above = where(size > gentle, 2.0, 1.0)
-    ease, wanted = above * root / k, -above * f
+    ease = above * root / k
+    wanted = -above * f
     if unit.azimuth_rate <= 0.0:
         return ease, wanted, 0.0, 0.0
-    (X, Y, N), (p, q, r) = at.effect, marginal
+    (X, Y, N) = at.effect
+    (p, q, r) = marginal
     pull = X * p + Y * q + N * r
     pull = maximum(where(f < 0.0, -pull, pull), k * sqrt(gentle))
     return ease, wanted, 1.0 / (firm * pull * (1.0 + design.turning_time / h)), 0.0
@@ -358,10 +408,17 @@ def _nearest(at, thrusts, azimuths):
     f = at.thrust
     arm = maximum(abs(f), _GENTLE * at.unit.most)
     s, c = sincos(azimuths[at.index] - at.azimuth)
-    return 1.0, clip(thrusts[at.index], at.low, at.high) - f, 1.0 / (arm * arm), clip(atan2(s, c), at.left, at.right)
+    return (
+        1.0,
+        clip(thrusts[at.index], at.low, at.high) - f,
+        1.0 / (arm * arm),
+        clip(atan2(s, c), at.left, at.right),
+    )
 
 
-def _effect(unit: AllocatedThruster, s: Arithmetic, c: Arithmetic) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def _effect(
+    unit: AllocatedThruster, s: Arithmetic, c: Arithmetic
+) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     """Load of one newton at an angle of given sine and cosine."""
     return c, s, unit.x * s - unit.y * c
 

@@ -82,11 +82,14 @@ def static_optimum(
     ]
     for first, last in (pair for of_unit in choices for pair in of_unit):
         if not (0.0 <= last - first <= np.pi or last - first >= 2.0 * np.pi):
-            raise ValueError(f"cone from {first} to {last} rad: more than half a circle, which is not convex; split it")
+            raise ValueError(
+                f"cone from {first} to {last} rad: more than half a circle, which is not convex; split it"
+            )
     tau = np.asarray(tau, float)
     found = [_convex(tau, units, chosen, yaw_lever) for chosen in product(*choices)]
     cost = [one.power + (one.missed**2 / _slack(units, yaw_lever)).sum(-1) / 2.0 for one in found]
-    rows, best = np.arange(len(tau)), np.argmin(cost, axis=0)
+    rows = np.arange(len(tau))
+    best = np.argmin(cost, axis=0)
     return Optimum(*(np.stack(values)[best, rows] for values in zip(*found, strict=True)))
 
 
@@ -117,19 +120,24 @@ def _convex(tau, units, cones, yaw_lever):
         prices = np.where(good[:, None], prices + step, prices)
         old = value, slope, curve, thrusts, angles
         value, slope, curve, thrusts, angles = (
-            np.where(good.reshape(-1, *(1,) * (a.ndim - 1)), a, b) for a, b in zip(new, old, strict=True)
+            np.where(good.reshape(-1, *(1,) * (a.ndim - 1)), a, b)
+            for a, b in zip(new, old, strict=True)
         )
         damping = np.maximum(np.where(good, 0.2 * damping, 8.0 * damping), 1e-10)
         if (np.abs(slope * scale).max(-1) < 1e-6).all():
             break
     missed = tau - _load(units, thrusts, angles)
-    power = np.sum([_price(unit, f) * np.abs(f) ** 1.5 for unit, f in zip(units, thrusts.T, strict=True)], axis=0)
+    power = np.sum(
+        [_price(unit, f) * np.abs(f) ** 1.5 for unit, f in zip(units, thrusts.T, strict=True)],
+        axis=0,
+    )
     return Optimum(power, thrusts, angles, missed)
 
 
 def _load(units, thrusts, angles):
     """Load of commands."""
-    X, Y = thrusts * np.cos(angles), thrusts * np.sin(angles)
+    X = thrusts * np.cos(angles)
+    Y = thrusts * np.sin(angles)
     x, y = np.array([[unit.x, unit.y] for unit in units]).T
     return np.stack([X.sum(-1), Y.sum(-1), (x * Y - y * X).sum(-1)], -1)
 
@@ -145,12 +153,15 @@ def _dual(prices, tau, units, cones, yaw_lever):
     """Value of the dual, its slope and negative curvature, and the thrust and angle that each unit takes."""
     slack = _slack(units, yaw_lever)
     value = (prices * tau).sum(-1) - 0.5 * (prices**2 * slack).sum(-1)
-    slope, curve = tau - prices * slack, np.zeros((len(tau), 3, 3)) + np.diag(slack)
-    thrusts, angles = [], []
+    slope = tau - prices * slack
+    curve = np.zeros((len(tau), 3, 3)) + np.diag(slack)
+    thrusts = []
+    angles = []
     for unit, cone in zip(units, cones, strict=True):
         effect = np.array([[1.0, 0.0], [0.0, 1.0], [-unit.y, unit.x]])
         gain, vector, f, angle, bend = _taken(unit, cone, prices @ effect)
-        value, slope = value - gain, slope - vector @ effect.T
+        value = value - gain
+        slope = slope - vector @ effect.T
         curve = curve + effect @ bend @ effect.T
         thrusts.append(f)
         angles.append(angle)
@@ -159,21 +170,30 @@ def _dual(prices, tau, units, cones, yaw_lever):
 
 def _taken(unit, cone, g):
     """What a unit takes where g is offered for a newton in each direction: gain, vector, thrust, angle, derivative."""
-    middle, half = 0.5 * (cone[0] + cone[1]), min(0.5 * (cone[1] - cone[0]), np.pi)
+    middle = 0.5 * (cone[0] + cone[1])
+    half = min(0.5 * (cone[1] - cone[0]), np.pi)
     off = (np.arctan2(g[:, 1], g[:, 0]) - middle + np.pi) % (2.0 * np.pi) - np.pi
     turned = np.clip(off, -half, half)
-    angle, size = middle + turned, np.hypot(g[:, 0], g[:, 1])
+    angle = middle + turned
+    size = np.hypot(g[:, 0], g[:, 1])
     along = size * np.cos(off - turned)
     turns = unit.azimuth_rate > 0.0
     along = np.maximum(along, 0.0) if turns else along
     price = _price(unit, along)
     f = (along / (1.5 * price)) ** 2
     most = np.where(along < 0.0, -min(unit.least, 0.0), unit.most)
-    free, f = f < most, np.sign(along) * np.minimum(f, most)
+    free = f < most
+    f = np.sign(along) * np.minimum(f, most)
     gain = along * f - price * np.abs(f) ** 1.5
-    u, t = np.stack([np.cos(angle), np.sin(angle)], -1), np.stack([-np.sin(angle), np.cos(angle)], -1)
+    u = np.stack([np.cos(angle), np.sin(angle)], -1)
+    t = np.stack([-np.sin(angle), np.cos(angle)], -1)
     rate = np.where(free, 2.0 * np.abs(along) / (1.5 * price) ** 2, 0.0)
     bend = rate[:, None, None] * u[:, :, None] * u[:, None, :]
     inside = turns & (np.abs(off) < half)
-    bend = bend + np.where(inside, f / np.maximum(size, 1e-12), 0.0)[:, None, None] * t[:, :, None] * t[:, None, :]
+    bend = (
+        bend
+        + np.where(inside, f / np.maximum(size, 1e-12), 0.0)[:, None, None]
+        * t[:, :, None]
+        * t[:, None, :]
+    )
     return gain, f[:, None] * u, f, angle, bend

@@ -18,14 +18,22 @@ class NamedUnits:
     starboard_x: float = required("m", "starboard azimuth forward of the origin")
     starboard_y: float = required("m", "starboard azimuth to starboard of the origin")
     tunnel_x: float = required("m", "tunnel thruster forward of the origin")
-    port_azimuth: float = required("rad", "angle of the port azimuth at the start; fixed where the law turns no unit")
+    port_azimuth: float = required(
+        "rad", "angle of the port azimuth at the start; fixed where the law turns no unit"
+    )
     starboard_azimuth: float = required("rad", "the same of the starboard azimuth")
     azimuth_thrust_min: float = required("N", "most thrust astern of an azimuth", maximum=0.0)
     azimuth_thrust_max: float = required("N", "most thrust ahead of an azimuth", minimum=0.0)
-    tunnel_thrust_max: float = required("N", "most thrust of the tunnel thruster to either side", minimum=0.0)
+    tunnel_thrust_max: float = required(
+        "N", "most thrust of the tunnel thruster to either side", minimum=0.0
+    )
     thrust_rate_max: float = required("N/s", "quickest change of a command", minimum=0.0)
-    yaw_lever: float = required("m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1)
-    yaw_lever_degraded: float = required("m", "the same where a unit is missing: position before heading", minimum=0.1)
+    yaw_lever: float = required(
+        "m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1
+    )
+    yaw_lever_degraded: float = required(
+        "m", "the same where a unit is missing: position before heading", minimum=0.1
+    )
 
 
 class Allocated(NamedTuple):
@@ -129,7 +137,10 @@ def thruster_power(shares: tuple, full: tuple) -> Arithmetic:
     >>> thruster_power((1.0, 0.25, 0.0), (100e3, 80e3, 50e3))
     110000.0
     """
-    return sum(most * (share * sqrt(maximum(share, 1e-12))) for share, most in zip(shares, full, strict=True))
+    return sum(
+        most * (share * sqrt(maximum(share, 1e-12)))
+        for share, most in zip(shares, full, strict=True)
+    )
 
 
 def load(thrusts: Sequence, effect: tuple) -> Load:
@@ -158,7 +169,9 @@ def load(thrusts: Sequence, effect: tuple) -> Load:
     """
     X = Y = N = 0.0
     for thrust, (x, y, n) in zip(thrusts, effect, strict=True):
-        X, Y, N = X + x * thrust, Y + y * thrust, N + n * thrust
+        X = X + x * thrust
+        Y = Y + y * thrust
+        N = N + n * thrust
     return X, Y, N
 
 

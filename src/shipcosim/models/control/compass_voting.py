@@ -24,17 +24,31 @@ class CompassVotingParameters:
     """Limits of the tests of compasses."""
 
     compass_freeze_time: float = quantity(
-        5.0, "s", "unchanged for so long while others change, a compass is frozen", "assumed: a coarse scale may rest"
+        5.0,
+        "s",
+        "unchanged for so long while others change, a compass is frozen",
+        "assumed: a coarse scale may rest",
     )
     compass_apart_max: float = quantity(
-        _DEGREE, "rad", "filtered difference from which two compasses disagree", "seven standard deviations of drift"
+        _DEGREE,
+        "rad",
+        "filtered difference from which two compasses disagree",
+        "seven standard deviations of drift",
     )
-    compass_filter: float = quantity(2.0, "s", "time constant of that filter", "assumed", minimum=1e-3)
+    compass_filter: float = quantity(
+        2.0, "s", "time constant of that filter", "assumed", minimum=1e-3
+    )
     compass_memory: float = quantity(
-        60.0, "s", "how long it is remembered that a compass turned otherwise than the gyro", "assumed"
+        60.0,
+        "s",
+        "how long it is remembered that a compass turned otherwise than the gyro",
+        "assumed",
     )
     compass_gyro_max: float = quantity(
-        3.0 * _DEGREE, "rad", "turn otherwise than the gyro from which a compass is not believed", "assumed"
+        3.0 * _DEGREE,
+        "rad",
+        "turn otherwise than the gyro from which a compass is not believed",
+        "assumed",
     )
     compass_return_time: float = quantity(
         30.0, "s", "a rejected compass is believed again after agreeing for so long", "assumed"
@@ -98,9 +112,12 @@ def start(headings: tuple[Heading, Heading]) -> CompassVote:
         State of the vote.
     """
     zero = 0.0 * headings[0].psi
-    one, used = zero + 1.0, tuple(zero + heading.valid for heading in headings)
+    one = zero + 1.0
+    used = tuple(zero + heading.valid for heading in headings)
     psi = _mean(headings, used, headings[0].psi)
-    return CompassVote(headings, (zero,) * 2, (zero,) * 2, zero, (one,) * 2, (zero,) * 2, used, psi, zero)
+    return CompassVote(
+        headings, (zero,) * 2, (zero,) * 2, zero, (one,) * 2, (zero,) * 2, used, psi, zero
+    )
 
 
 def step(
@@ -137,10 +154,15 @@ def step(
     CompassVote
         State of the vote; `psi` is the heading to use, the predicted one where no compass is believed.
     """
-    p, (first, second), (one, two) = parameters, headings, state.headings
-    keep, gain = exp(-dt / p.compass_memory), 1.0 - exp(-dt / p.compass_filter)
-    off_one, off_two = wrap(first.psi - predicted), wrap(second.psi - predicted)
-    moved_one, moved_two = wrap(first.psi - one.psi), wrap(second.psi - two.psi)
+    p = parameters
+    (first, second) = headings
+    (one, two) = state.headings
+    keep = exp(-dt / p.compass_memory)
+    gain = 1.0 - exp(-dt / p.compass_filter)
+    off_one = wrap(first.psi - predicted)
+    off_two = wrap(second.psi - predicted)
+    moved_one = wrap(first.psi - one.psi)
+    moved_two = wrap(second.psi - two.psi)
     memory = (
         where(one.valid > 0.5, keep * state.memory[0] + moved_one - dt * r, off_one),
         where(two.valid > 0.5, keep * state.memory[1] + moved_two - dt * r, off_two),
@@ -156,16 +178,26 @@ def step(
     difference = wrap(first.psi - second.psi - state.apart)
     apart = usable[0] * usable[1] * (state.apart + gain * difference)
     passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
-    limit, between = p.compass_gyro_max + p.gyro_drift * state.age, abs(apart) - p.compass_apart_max
+    limit = p.compass_gyro_max + p.gyro_drift * state.age
+    between = abs(apart) - p.compass_apart_max
     agreed = (
         _agreed(state.agreed[0] + dt, usable[0], passed[1], between, abs(off_one) - limit),
         _agreed(state.agreed[1] + dt, usable[1], passed[0], between, abs(off_two) - limit),
     )
     believed = (
-        where((agreed[0] >= p.compass_return_time), 1.0, where(first.valid > 0.5, passed[0], state.believed[0])),
-        where((agreed[1] >= p.compass_return_time), 1.0, where(second.valid > 0.5, passed[1], state.believed[1])),
+        where(
+            (agreed[0] >= p.compass_return_time),
+            1.0,
+            where(first.valid > 0.5, passed[0], state.believed[0]),
+        ),
+        where(
+            (agreed[1] >= p.compass_return_time),
+            1.0,
+            where(second.valid > 0.5, passed[1], state.believed[1]),
+        ),
     )
-    psi, age = _mean(headings, passed, predicted), where(passed[0] + passed[1] > 0.5, 0.0 * dt, state.age + dt)
+    psi = _mean(headings, passed, predicted)
+    age = where(passed[0] + passed[1] > 0.5, 0.0 * dt, state.age + dt)
     return CompassVote(headings, unchanged, memory, apart, believed, agreed, passed, psi, age)
 
 
@@ -176,9 +208,11 @@ def _usable(heading, unchanged, others, limit):
 
 def _passed(state, usable, memory, disagree, p):
     """1 of each compass that is believed still: of two that disagree, the one that turned with the gyro."""
-    first, second = usable[0] * state.believed[0], usable[1] * state.believed[1]
+    first = usable[0] * state.believed[0]
+    second = usable[1] * state.believed[1]
     apart = disagree & (first * second > 0.5)
-    one, two = abs(memory[0]), abs(memory[1])
+    one = abs(memory[0])
+    two = abs(memory[1])
     return (
         where((one > p.compass_gyro_max) | (apart & (one >= two)), 0.0, first),
         where((two > p.compass_gyro_max) | (apart & (two > one)), 0.0, second),
@@ -192,7 +226,8 @@ def _agreed(time, usable, other, between, alone):
 
 def _mean(headings, weights, otherwise):
     """Mean of the headings with weight, or another heading where none has."""
-    (first, second), (a, b) = headings, weights
+    (first, second) = headings
+    (a, b) = weights
     half = 0.5 * wrap(second.psi - first.psi)
     only = where(a > 0.5, first.psi, where(b > 0.5, second.psi, otherwise))
     return where(a * b > 0.5, wrap(first.psi + half), only)

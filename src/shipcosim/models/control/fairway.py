@@ -16,11 +16,21 @@ class FairwayParameters:
     """The way to a berth; the ship's origin is to lie at x = y = 0."""
 
     waypoints: str = quantity(
-        "-400 0; 0 0", "m", "rows 'north east': the way from the sea to the place off the berth", "set by the scenario"
+        "-400 0; 0 0",
+        "m",
+        "rows 'north east': the way from the sea to the place off the berth",
+        "set by the scenario",
     )
-    berth_heading: float = quantity(0.0, "rad", "heading at the berth, clockwise from north", "set by the scenario")
+    berth_heading: float = quantity(
+        0.0, "rad", "heading at the berth, clockwise from north", "set by the scenario"
+    )
     berth_side: float = quantity(
-        1.0, "1", "side to the quay: 1 starboard, -1 port", "set by the scenario", minimum=-1.0, maximum=1.0
+        1.0,
+        "1",
+        "side to the quay: 1 starboard, -1 port",
+        "set by the scenario",
+        minimum=-1.0,
+        maximum=1.0,
     )
 
     @cached_property
@@ -50,7 +60,9 @@ class Progress(NamedTuple):
     course: float
 
 
-def progress(x: float, y: float, u: float, leg: int, *, fairway: FairwayParameters, yaw_rate: float) -> Progress:
+def progress(
+    x: float, y: float, u: float, leg: int, *, fairway: FairwayParameters, yaw_rate: float
+) -> Progress:
     """Where a ship is on the way; she goes over to the next leg as early as her turn needs.
 
     Parameters
@@ -84,7 +96,8 @@ def progress(x: float, y: float, u: float, leg: int, *, fairway: FairwayParamete
     """
     points = fairway.points
     while True:
-        (x_0, y_0), (x_1, y_1) = points[leg], points[leg + 1]
+        (x_0, y_0) = points[leg]
+        (x_1, y_1) = points[leg + 1]
         course = atan2(y_1 - y_0, x_1 - x_0)
         left = (x_1 - x) * cos(course) + (y_1 - y) * sin(course)
         if leg + 2 == len(points) or left > _early(points, leg, course, u, yaw_rate):
@@ -99,6 +112,7 @@ def progress(x: float, y: float, u: float, leg: int, *, fairway: FairwayParamete
 
 def _early(points: Sequence, leg: int, course: float, u: float, yaw_rate: float) -> float:
     """Distance from the waypoint at which the turn begins. [m]"""
-    (x_1, y_1), (x_2, y_2) = points[leg + 1], points[leg + 2]
+    (x_1, y_1) = points[leg + 1]
+    (x_2, y_2) = points[leg + 2]
     turn = min(abs(wrap(atan2(y_2 - y_1, x_2 - x_1) - course)), 0.6 * pi)
     return abs(u) * (tan(0.5 * turn) / yaw_rate + 8.0)  # 8 s until she turns

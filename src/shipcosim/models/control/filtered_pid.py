@@ -147,12 +147,15 @@ def step(
     Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper I, eq. (1),
     (2). Order and frequency of the filter and the gains are not printed.
     """
-    p, frequency = parameters, parameters.filter_frequency
+    p = parameters
+    frequency = parameters.filter_frequency
     x, x_dot = _filtered(state.x - measured[0], state.x_dot, frequency, h)
     y, y_dot = _filtered(state.y - measured[1], state.y_dot, frequency, h)
     psi, psi_dot = _filtered(wrap(state.psi - measured[2]), state.psi_dot, frequency, h)
     heading = state.psi - wrap(state.psi - measured[2]) + psi
-    held = state._replace(x=measured[0] + x, y=measured[1] + y, psi=heading, x_dot=x_dot, y_dot=y_dot, psi_dot=psi_dot)
+    held = state._replace(
+        x=measured[0] + x, y=measured[1] + y, psi=heading, x_dot=x_dot, y_dot=y_dot, psi_dot=psi_dot
+    )
     surge, sway, yaw = errors(held, desired)
     u, v = to_body(heading, desired.x_dot - x_dot, desired.y_dot - y_dot)
     r = desired.r - psi_dot
@@ -161,7 +164,8 @@ def step(
         surge=sums[0],
         sway=sums[1],
         yaw=sums[2],
-        tau_X=p.surge_gain * (surge + sums[0] / p.surge_integral_time + p.surge_derivative_time * u),
+        tau_X=p.surge_gain
+        * (surge + sums[0] / p.surge_integral_time + p.surge_derivative_time * u),
         tau_Y=p.sway_gain * (sway + sums[1] / p.sway_integral_time + p.sway_derivative_time * v),
         tau_N=p.yaw_gain * (yaw + sums[2] / p.yaw_integral_time + p.yaw_derivative_time * r),
     )
@@ -169,5 +173,6 @@ def step(
 
 def _filtered(ahead, rate, frequency, h):
     """Deviation of a filter from its constant input, and its rate, a step later."""
-    slope, left = rate + frequency * ahead, exp(0.0 * ahead - frequency * h)
+    slope = rate + frequency * ahead
+    left = exp(0.0 * ahead - frequency * h)
     return (ahead + slope * h) * left, (rate - frequency * slope * h) * left

@@ -36,7 +36,9 @@ class ShipInHand:
     mass_sway: float = required("kg", "mass with added mass in sway", minimum=1.0)
     mass_yaw: float = required("kg.m2", "moment of inertia with the added one", minimum=1.0)
     resistance: float = required("N.s2/m2", "resistance over squared speed", minimum=0.0)
-    side_wind: float = required("N.s2/m2", "side force of beam wind over its squared speed", minimum=0.0)
+    side_wind: float = required(
+        "N.s2/m2", "side force of beam wind over its squared speed", minimum=0.0
+    )
     stern_x: float = required("m", "place of the azimuths forward", maximum=0.0)
     stern_y: float = required("m", "distance of the azimuths from the centreline", minimum=0.0)
     bow_x: float = required("m", "place of the tunnel forward", minimum=0.0)
@@ -53,21 +55,41 @@ class MannerParameters:
     closing_speed: float = quantity(1.2, "m/s", "speed off the berth", _MANNER, minimum=0.1)
     sideways_speed: float = quantity(0.25, "m/s", "speed to the quay", _MANNER, minimum=0.02)
     slowing_distance: float = quantity(900.0, "m", "way over which he slows", _MANNER, minimum=1.0)
-    closing_distance: float = quantity(50.0, "m", "way left at which he heads for the berth", _MANNER, minimum=1.0)
-    stand_off: float = quantity(15.0, "m", "distance off the quay from which he goes sideways", _MANNER, minimum=0.0)
-    speed_time: float = quantity(25.0, "s", "time in which he wants another speed", _MANNER, minimum=1.0)
-    place_time: float = quantity(60.0, "s", "time in which he wants to be at a near place", _MANNER, minimum=1.0)
-    heading_time: float = quantity(12.0, "s", "time in which he wants another heading", _MANNER, minimum=1.0)
-    yaw_time: float = quantity(5.0, "s", "time in which he wants another yaw rate", _MANNER, minimum=0.5)
+    closing_distance: float = quantity(
+        50.0, "m", "way left at which he heads for the berth", _MANNER, minimum=1.0
+    )
+    stand_off: float = quantity(
+        15.0, "m", "distance off the quay from which he goes sideways", _MANNER, minimum=0.0
+    )
+    speed_time: float = quantity(
+        25.0, "s", "time in which he wants another speed", _MANNER, minimum=1.0
+    )
+    place_time: float = quantity(
+        60.0, "s", "time in which he wants to be at a near place", _MANNER, minimum=1.0
+    )
+    heading_time: float = quantity(
+        12.0, "s", "time in which he wants another heading", _MANNER, minimum=1.0
+    )
+    yaw_time: float = quantity(
+        5.0, "s", "time in which he wants another yaw rate", _MANNER, minimum=0.5
+    )
     yaw_rate: float = quantity(0.02, "rad/s", "yaw rate of a turn", _MANNER, minimum=1e-3)
-    trim_time: float = quantity(45.0, "s", "time in which he learns what wind and current take", _MANNER, minimum=1.0)
-    wind_feel: float = quantity(0.7, "1", "share of the wind's side force that he meets in advance", _MANNER)
+    trim_time: float = quantity(
+        45.0, "s", "time in which he learns what wind and current take", _MANNER, minimum=1.0
+    )
+    wind_feel: float = quantity(
+        0.7, "1", "share of the wind's side force that he meets in advance", _MANNER
+    )
     look_interval: float = quantity(4.0, "s", "time between two looks", _MANNER, minimum=0.1)
-    reaction_time: float = quantity(1.5, "s", "time from a look to the levers", _MANNER, minimum=0.0)
+    reaction_time: float = quantity(
+        1.5, "s", "time from a look to the levers", _MANNER, minimum=0.0
+    )
     lever_step: float = quantity(
         0.05, "1", "step of a lever, which goes with the root of thrust", _MANNER, minimum=1e-3
     )
-    angle_step: float = quantity(5.0 * pi / 180.0, "rad", "step of a unit's direction", _MANNER, minimum=1e-3)
+    angle_step: float = quantity(
+        5.0 * pi / 180.0, "rad", "step of a unit's direction", _MANNER, minimum=1e-3
+    )
     lurch: float = quantity(
         0.15,
         "1",
@@ -179,7 +201,9 @@ def begin(t: float) -> Mind:
     -------
     Mind
     """
-    return Mind(UNDER_WAY, Progress(0, 0.0, 0.0, 0.0), 0, t, t, NEUTRAL, NEUTRAL, (0.0, 0.0, 0.0), False)
+    return Mind(
+        UNDER_WAY, Progress(0, 0.0, 0.0, 0.0), 0, t, t, NEUTRAL, NEUTRAL, (0.0, 0.0, 0.0), False
+    )
 
 
 def follow(t: float, mind: Mind, seen: Seen, *, helmsman: Helmsman) -> Mind:
@@ -208,11 +232,15 @@ def follow(t: float, mind: Mind, seen: Seen, *, helmsman: Helmsman) -> Mind:
 
 def _look(t, mind, seen, who):
     """Look, think, and mean to move the levers."""
-    manner, ship = who.manner, seen.ship
-    way = progress(ship.x, ship.y, ship.u, mind.way.leg, fairway=who.fairway, yaw_rate=manner.yaw_rate)
+    manner = who.manner
+    ship = seen.ship
+    way = progress(
+        ship.x, ship.y, ship.u, mind.way.leg, fairway=who.fairway, yaw_rate=manner.yaw_rate
+    )
     mind = mind._replace(way=way, stage=_stage(mind.stage, way, ship, who))
     since = t - mind.looks_at + manner.look_interval if mind.looks else 0.0
-    mood, pause = normals("helmsman", manner.seed, mind.looks, 1)[0], manner.look_interval
+    mood = normals("helmsman", manner.seed, mind.looks, 1)[0]
+    pause = manner.look_interval
     mood_of_now = normals("mood of the helmsman", manner.seed, int(t / manner.lurch_time), 1)[0]
     wanted = _wanted(mind, ship, 1.0 + manner.lurch * clip(mood_of_now, -2.0, 2.0), who)
     mind = _force(mind, seen, wanted, since, who)
@@ -225,8 +253,10 @@ def _look(t, mind, seen, who):
 
 def _off_berth(ship, fairway):
     """Distance along the quay ahead of the berth, distance off the quay, heading less that at the berth. [m, m, rad]"""
-    c, s = cos(fairway.berth_heading), sin(fairway.berth_heading)
-    ahead, beside = ship.x * c + ship.y * s, ship.y * c - ship.x * s
+    c = cos(fairway.berth_heading)
+    s = sin(fairway.berth_heading)
+    ahead = ship.x * c + ship.y * s
+    beside = ship.y * c - ship.x * s
     return ahead, -fairway.berth_side * beside, wrap(ship.psi - fairway.berth_heading)
 
 
@@ -235,7 +265,12 @@ def _stage(stage, way, ship, who):
     ahead, off, turned = _off_berth(ship, who.fairway)
     if stage == UNDER_WAY and way.to_go < who.manner.closing_distance:
         return CLOSING
-    if stage == CLOSING and abs(ahead) < 4.0 and off < who.manner.stand_off + 6.0 and abs(turned) < 0.14:
+    if (
+        stage == CLOSING
+        and abs(ahead) < 4.0
+        and off < who.manner.stand_off + 6.0
+        and abs(turned) < 0.14
+    ):
         return SIDEWAYS
     lies = hypot(ahead, off) < 2.0 and abs(turned) < 0.08 and hypot(ship.u, ship.v) < 0.08
     return MOORED if stage == SIDEWAYS and lies else stage
@@ -255,7 +290,8 @@ def _wanted(mind, ship, mood, who):
 def _under_way(way, ship, mood, manner):
     """Speed by the way left, heading so that she makes good the way; sway is let go. [m/s, m/s, rad]"""
     left = clip((way.to_go - manner.closing_distance) / manner.slowing_distance, 0.0, 1.0)
-    slow, fast = manner.closing_speed, manner.transit_speed
+    slow = manner.closing_speed
+    fast = manner.transit_speed
     u = sqrt(slow * slow + left * (fast * fast - slow * slow))
     course = way.course - atan2(way.beside, 60.0 + 12.0 * ship.u)
     drift = atan2(ship.v, max(ship.u, 0.5))
@@ -264,22 +300,28 @@ def _under_way(way, ship, mood, manner):
 
 def _near(stage, ship, mood, who):
     """Velocity towards the place off the berth, then the berth itself, and the heading there. [m/s, m/s, rad]"""
-    manner, fairway = who.manner, who.fairway
+    manner = who.manner
+    fairway = who.fairway
     ahead, off, turned = _off_berth(ship, fairway)
     if stage == CLOSING:
-        off, most = off - manner.stand_off, manner.closing_speed
+        off = off - manner.stand_off
+        most = manner.closing_speed
     else:
         most = manner.sideways_speed
     distance = hypot(ahead, off)
     speed = min(most * mood, distance / manner.place_time) / max(distance, 1e-3)
-    along, beside = -speed * ahead, speed * off * fairway.berth_side
-    c, s = cos(turned), sin(turned)
+    along = -speed * ahead
+    beside = speed * off * fairway.berth_side
+    c = cos(turned)
+    s = sin(turned)
     return c * along + s * beside, c * beside - s * along, fairway.berth_heading
 
 
 def _force(mind, seen, wanted, since, who):
     """Force that he thinks it takes, less what wind and current take; and the levers for it."""
-    hand, manner, ship = who.ship, who.manner, seen.ship
+    hand = who.ship
+    manner = who.manner
+    ship = seen.ship
     lacking = wanted[0] - ship.u, wanted[1] - ship.v, wanted[2] - ship.r
     times = manner.speed_time, manner.speed_time, manner.yaw_time
     masses = hand.mass_surge, hand.mass_sway, hand.mass_yaw
@@ -320,7 +362,9 @@ def _apart(X, Y, N, side, hand):
     """The azimuth at the quay pushes ahead or astern, the other one towards the quay or off it, as the tunnel does."""
     X = clip(X, -hand.astern_max, hand.ahead_max)
     N = N + side * hand.stern_y * X  # of the azimuth at the quay
-    tunnel = clip((N - hand.stern_x * Y) / (hand.bow_x - hand.stern_x), -hand.tunnel_max, hand.tunnel_max)
+    tunnel = clip(
+        (N - hand.stern_x * Y) / (hand.bow_x - hand.stern_x), -hand.tunnel_max, hand.tunnel_max
+    )
     across = clip(side * (Y - tunnel), -hand.astern_max, hand.ahead_max)
     if side > 0.0:
         return Levers(across, X, tunnel, 0.5 * pi, 0.0)
@@ -329,7 +373,9 @@ def _apart(X, Y, N, side, hand):
 
 def _moved(before, wanted, who):
     """Levers moved in steps, those that are off by more than most of a step."""
-    hand, step, turn = who.ship, who.manner.lever_step, who.manner.angle_step
+    hand = who.ship
+    step = who.manner.lever_step
+    turn = who.manner.angle_step
     return Levers(
         _notch(before.port, wanted.port, hand.ahead_max, step),
         _notch(before.starboard, wanted.starboard, hand.ahead_max, step),

@@ -23,7 +23,8 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
 
 AXES = ("surge", "sway", "yaw")
-_ESTIMATE, _CONTROL = 15, 6
+_ESTIMATE = 15
+_CONTROL = 6
 _SMALL = 1e-5
 
 
@@ -34,9 +35,15 @@ class Delays:
     position: float = quantity(
         0.4, "s", "age of a position when the controller gets it", "docs/dp-loop.md", minimum=0.1
     )
-    heading: float = quantity(0.2, "s", "age of a heading when the controller gets it", "docs/dp-loop.md", minimum=0.1)
-    command: float = quantity(0.2, "s", "from a sample of the controller to the thrusters", "docs/dp-loop.md")
-    thruster: float = quantity(0.3, "s", "time constant of the thrusters", "docs/dp-loop.md", minimum=1e-3)
+    heading: float = quantity(
+        0.2, "s", "age of a heading when the controller gets it", "docs/dp-loop.md", minimum=0.1
+    )
+    command: float = quantity(
+        0.2, "s", "from a sample of the controller to the thrusters", "docs/dp-loop.md"
+    )
+    thruster: float = quantity(
+        0.3, "s", "time constant of the thrusters", "docs/dp-loop.md", minimum=1e-3
+    )
 
 
 class Margins(NamedTuple):
@@ -92,7 +99,11 @@ class OpenLoop(NamedTuple):
 
 
 def linear_loop(
-    ship: DpShip, parameters: ObserverParameters, law: ControlParameters, delays: Delays, wave_frequency: float
+    ship: DpShip,
+    parameters: ObserverParameters,
+    law: ControlParameters,
+    delays: Delays,
+    wave_frequency: float,
 ) -> OpenLoop:
     """The linear open loop of all three axes.
 
@@ -114,14 +125,19 @@ def linear_loop(
     OpenLoop
         The open loop.
     """
-    h, period = parameters.sample_period, round(parameters.position_period / parameters.sample_period)
-    late, later = round(delays.heading / h), round(delays.position / h)
+    h = parameters.sample_period
+    period = round(parameters.position_period / parameters.sample_period)
+    late = round(delays.heading / h)
+    later = round(delays.position / h)
     queue = max(1, round(delays.command / h))
     plant, push = _ship(ship, h)
     sizes = [6, 6 * later, _ESTIMATE + _CONTROL, 3 * queue, 3]
     ends = np.cumsum([0, *sizes])
-    body, past, controller, commands, thrust = (slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
-    n, keep = ends[-1], np.exp(-h / delays.thruster)
+    body, past, controller, commands, thrust = (
+        slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)
+    )
+    n = ends[-1]
+    keep = np.exp(-h / delays.thruster)
     transitions = []
     for sample in range(period):
         own, measured = _controller(ship, parameters, law, wave_frequency, float(sample == 0))
@@ -137,7 +153,9 @@ def linear_loop(
         a[thrust, thrust] = keep * np.eye(3)
         a[thrust, commands.stop - 3 : commands.stop] = (1.0 - keep) * np.eye(3)
         transitions.append(a)
-    b, w, rows = np.zeros((n, 3)), np.zeros((n, 6)), np.eye(n)
+    b = np.zeros((n, 3))
+    w = np.zeros((n, 6))
+    rows = np.eye(n)
     b[body], w[past.start : past.start + 6] = push, np.eye(6)
     request = rows[controller.stop - 3 : controller.stop]
     return OpenLoop(tuple(transitions), b, w, rows[thrust], request, np.linalg.inv(_mass(ship)), h)
@@ -183,20 +201,31 @@ def margins(loop: OpenLoop, axis: int) -> Margins:
     """
     w = np.geomspace(3e-3, 2.0, 300)
     gain = open_loop(loop, axis, w)
-    size, angle = np.log(np.abs(gain)), np.unwrap(np.angle(gain))
+    size = np.log(np.abs(gain))
+    angle = np.unwrap(np.angle(gain))
     crossed = np.flatnonzero(size[:-1] * size[1:] < 0.0)
     share = size[crossed] / (size[crossed] - size[crossed + 1])
     at = w[crossed] * (w[crossed + 1] / w[crossed]) ** share
-    lag = np.mod(angle[crossed] + share * (angle[crossed + 1] - angle[crossed]) + np.pi, 2.0 * np.pi)
-    turned = np.flatnonzero((np.diff(np.sign(np.imag(gain))) != 0) & (np.real(gain)[:-1] < 0.0) & (w[:-1] > at[-1]))
+    lag = np.mod(
+        angle[crossed] + share * (angle[crossed + 1] - angle[crossed]) + np.pi, 2.0 * np.pi
+    )
+    turned = np.flatnonzero(
+        (np.diff(np.sign(np.imag(gain))) != 0) & (np.real(gain)[:-1] < 0.0) & (w[:-1] > at[-1])
+    )
     limit = 1.0 / np.abs(gain[turned]).max() if turned.size else np.inf
     phase = np.minimum(lag, 2.0 * np.pi - lag)
     return Margins(
-        float(at[-1]), float(phase.min()), float(limit), float(1.0 / np.abs(1.0 + gain).min()), float((lag / at).min())
+        float(at[-1]),
+        float(phase.min()),
+        float(limit),
+        float(1.0 / np.abs(1.0 + gain).min()),
+        float((lag / at).min()),
     )
 
 
-def wave_suppression(loop: OpenLoop, axis: int, frequencies: np.ndarray, law: ControlParameters) -> np.ndarray:
+def wave_suppression(
+    loop: OpenLoop, axis: int, frequencies: np.ndarray, law: ControlParameters
+) -> np.ndarray:
     """Response of the requested load to wave motion, over that of the same law without observer and filters.
 
     Parameters
@@ -254,7 +283,8 @@ def _ship(ship, h):
     """Transition of (x, y, psi, u, v, r) at heading 0 over a sample, and effect of a load that is held over it."""
     mass = _mass(ship)
     drag = np.linalg.solve(mass, np.diag([ship.damping_surge, ship.damping_sway, ship.damping_yaw]))
-    eye, zero = np.eye(3), np.zeros((3, 3))
+    eye = np.eye(3)
+    zero = np.zeros((3, 3))
     a = np.block([[zero, eye, zero], [zero, -drag, np.linalg.inv(mass)], [zero, zero, zero]]) * h
     held = np.eye(9) + a + a @ a / 2.0 + a @ a @ a / 6.0
     return held[:6, :6], held[:6, 6:]
@@ -266,10 +296,13 @@ def _controller(ship, parameters, law, wave_frequency, new):
     scale = np.concatenate([np.full(_ESTIMATE, _SMALL), np.full(_CONTROL, 1.0), np.full(6, _SMALL)])
     scale[6:9] = 1.0
     x = np.concatenate([np.diag(scale), -np.diag(scale)], axis=1)
-    own, measured = _ESTIMATE + _CONTROL, x[_ESTIMATE + _CONTROL :]
+    own = _ESTIMATE + _CONTROL
+    measured = x[_ESTIMATE + _CONTROL :]
     zero = np.zeros(x.shape[1])
     pace = np.minimum(1.0, (zero + wave_frequency) / parameters.full_frequency)
-    estimate = StateEstimate(*x[:_ESTIMATE])._replace(wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace)
+    estimate = StateEstimate(*x[:_ESTIMATE])._replace(
+        wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace
+    )
     state = ControlState(*x[_ESTIMATE:own])
     allocated = state[-3:]
     estimate = observer.step(
@@ -280,7 +313,9 @@ def _controller(ship, parameters, law, wave_frequency, new):
         parameters=parameters,
         design=design,
     )
-    desired, calm, h = Desired(*(zero,) * 9), (0.0, 0.0, 0.0), parameters.sample_period
+    desired = Desired(*(zero,) * 9)
+    calm = (0.0, 0.0, 0.0)
+    h = parameters.sample_period
     state = pid.step(state, estimate, desired, calm, h, ship=ship, parameters=law)
     found = np.array([*estimate[:_ESTIMATE], *state])
     slopes = (found[:, : len(scale)] - found[:, len(scale) :]) / (2.0 * scale)
@@ -290,11 +325,14 @@ def _controller(ship, parameters, law, wave_frequency, new):
 def _responses(transitions, push, shown, frequencies, h):
     """Part with a frequency of what a periodic system shows when it is pushed with it; (frequencies, shown, pushed)."""
     n, m = push.shape[-2:]
-    count, step = len(transitions), np.exp(1j * h * np.asarray(frequencies))
+    count = len(transitions)
+    step = np.exp(1j * h * np.asarray(frequencies))
     turns = step[:, None, None] ** np.arange(count + 1)[:, None, None, None]
-    over, forced = np.eye(n), np.zeros((len(step), n, m), complex)
+    over = np.eye(n)
+    forced = np.zeros((len(step), n, m), complex)
     for a, turn in zip(transitions, turns, strict=False):
-        over, forced = a @ over, a @ forced + push * turn
+        over = a @ over
+        forced = a @ forced + push * turn
     x = np.linalg.solve(turns[-1] * np.eye(n) - over, forced)
     total = np.zeros((len(step), len(shown), m), complex)
     for a, turn in zip(transitions, turns, strict=False):

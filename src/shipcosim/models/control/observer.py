@@ -52,8 +52,12 @@ class ObserverParameters:
     """Rates, ages and noise of the measurements, waves and disturbances as the observer assumes them."""
 
     sample_period: float = required("s", "period of observer and control law", minimum=1e-3)
-    position_period: float = required("s", "time from one new position and velocity to the next", minimum=1e-3)
-    heading_period: float = required("s", "time from one new heading and yaw rate to the next", minimum=1e-3)
+    position_period: float = required(
+        "s", "time from one new position and velocity to the next", minimum=1e-3
+    )
+    heading_period: float = required(
+        "s", "time from one new heading and yaw rate to the next", minimum=1e-3
+    )
     position_delay: float = required("s", "age of a new position and velocity", minimum=0.0)
     heading_delay: float = required("s", "age of a new heading and yaw rate", minimum=0.0)
     position_noise: float = required("m", "white noise of measured positions", minimum=1e-6)
@@ -61,21 +65,43 @@ class ObserverParameters:
     velocity_noise: float = required("m/s", "white noise of measured velocity", minimum=1e-6)
     rate_noise: float = required("rad/s", "white noise of measured yaw rate", minimum=1e-9)
     wave_frequency: float = required(
-        "rad/s", "middle frequency of the motion in waves: at the start, and in calm water", minimum=0.1
+        "rad/s",
+        "middle frequency of the motion in waves: at the start, and in calm water",
+        minimum=0.1,
     )
-    wave_frequency_min: float = required("rad/s", "lowest frequency that the wave filter goes to", minimum=0.1)
-    wave_frequency_max: float = required("rad/s", "highest frequency that the wave filter goes to", minimum=0.1)
+    wave_frequency_min: float = required(
+        "rad/s", "lowest frequency that the wave filter goes to", minimum=0.1
+    )
+    wave_frequency_max: float = required(
+        "rad/s", "highest frequency that the wave filter goes to", minimum=0.1
+    )
     full_frequency: float = required(
-        "rad/s", "wave frequency below which observer and law slow down in proportion to it", minimum=0.1
+        "rad/s",
+        "wave frequency below which observer and law slow down in proportion to it",
+        minimum=0.1,
     )
-    wave_time: float = required("s", "time in which the wave filter's frequency follows the sea", minimum=1.0)
-    wave_peak_ratio: float = required("1", "peak frequency over that at which the motion in waves swings", minimum=0.5)
-    wave_damping: float = required("1", "relative damping of the wave model: its bandwidth", minimum=0.01)
-    wave_motion: float = required("m", "standard deviation of surge and sway in short waves", minimum=1e-6)
+    wave_time: float = required(
+        "s", "time in which the wave filter's frequency follows the sea", minimum=1.0
+    )
+    wave_peak_ratio: float = required(
+        "1", "peak frequency over that at which the motion in waves swings", minimum=0.5
+    )
+    wave_damping: float = required(
+        "1", "relative damping of the wave model: its bandwidth", minimum=0.01
+    )
+    wave_motion: float = required(
+        "m", "standard deviation of surge and sway in short waves", minimum=1e-6
+    )
     wave_yaw: float = required("rad", "standard deviation of yaw in short waves", minimum=1e-9)
-    velocity_disturbance: float = required("m2/s3", "intensity of the white disturbance of velocity", minimum=1e-18)
-    rate_disturbance: float = required("rad2/s3", "intensity of the white disturbance of yaw rate", minimum=1e-18)
-    bias_drift: float = required("m2/s5", "intensity of the random walk of the bias force over mass", minimum=1e-18)
+    velocity_disturbance: float = required(
+        "m2/s3", "intensity of the white disturbance of velocity", minimum=1e-18
+    )
+    rate_disturbance: float = required(
+        "rad2/s3", "intensity of the white disturbance of yaw rate", minimum=1e-18
+    )
+    bias_drift: float = required(
+        "m2/s5", "intensity of the random walk of the bias force over mass", minimum=1e-18
+    )
     bias_drift_yaw: float = required(
         "rad2/s5", "intensity of the random walk of the bias moment over inertia", minimum=1e-18
     )
@@ -211,7 +237,9 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
         -ship.mass_sway_yaw / determinant,
         ship.mass_sway / determinant,
     )
-    return ObserverConstants(filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse)
+    return ObserverConstants(
+        filter_table(frequencies, p.wave_damping, p.sample_period, horizontal, yaw), inverse
+    )
 
 
 def at_rest(measured: Motion, *, parameters: ObserverParameters) -> StateEstimate:
@@ -282,7 +310,12 @@ def step(
     frequency, power, pace = _paced(*_wave_frequency(corrected, swings, parameters), parameters)
     surge, sway, yaw = swings
     return corrected._replace(
-        surge_swing=surge, sway_swing=sway, yaw_swing=yaw, wave_frequency=frequency, wave_power=power, pace=pace
+        surge_swing=surge,
+        sway_swing=sway,
+        yaw_swing=yaw,
+        wave_frequency=frequency,
+        wave_power=power,
+        pace=pace,
     )
 
 
@@ -310,7 +343,8 @@ def pace(wave_frequency: Arithmetic, full_frequency: float) -> Arithmetic:
 
 def _acceleration(e, load, *, ship, inverse_mass):
     """Acceleration of the low-frequency ship in body axes."""
-    c, s = cos(e.psi), sin(e.psi)
+    c = cos(e.psi)
+    s = sin(e.psi)
     X = load[0] - ship.damping_surge * e.u + c * e.bias_north + s * e.bias_east
     Y = load[1] - ship.damping_sway * e.v - s * e.bias_north + c * e.bias_east
     N = load[2] - ship.damping_yaw * e.r + e.bias_N
@@ -320,9 +354,11 @@ def _acceleration(e, load, *, ship, inverse_mass):
 
 def _predict(e, acceleration, *, dt, wave):
     """Estimate after a sample without measurement: acceleration held, wave model integrated exactly."""
-    c, s = cos(e.psi), sin(e.psi)
+    c = cos(e.psi)
+    s = sin(e.psi)
     u_dot, v_dot, r_dot = acceleration
-    surge, sway = dt * (e.u + 0.5 * dt * u_dot), dt * (e.v + 0.5 * dt * v_dot)
+    surge = dt * (e.u + 0.5 * dt * u_dot)
+    sway = dt * (e.v + 0.5 * dt * v_dot)
     w11, w12, w21, w22 = wave
     return e._replace(
         x=e.x + c * surge - s * sway,
@@ -344,16 +380,24 @@ def _innovations(e, acceleration, measurement, parameters, filters):
     """Measurement less the estimate of its time, which is the estimate now run backwards; 0 where nothing is new."""
     measured, position, heading = measurement
     u_dot, v_dot, r_dot = acceleration
-    c, s = cos(e.psi), sin(e.psi)
-    age, (b11, b12, b21, b22) = parameters.position_delay, filters.horizontal_age
-    dx, dy = measured.x - e.x, measured.y - e.y
-    surge_wave, u_wave = b11 * e.surge_wave + b12 * e.u_wave, b21 * e.surge_wave + b22 * e.u_wave
-    sway_wave, v_wave = b11 * e.sway_wave + b12 * e.v_wave, b21 * e.sway_wave + b22 * e.v_wave
+    c = cos(e.psi)
+    s = sin(e.psi)
+    age = parameters.position_delay
+    (b11, b12, b21, b22) = filters.horizontal_age
+    dx = measured.x - e.x
+    dy = measured.y - e.y
+    surge_wave = b11 * e.surge_wave + b12 * e.u_wave
+    u_wave = b21 * e.surge_wave + b22 * e.u_wave
+    sway_wave = b11 * e.sway_wave + b12 * e.v_wave
+    v_wave = b21 * e.sway_wave + b22 * e.v_wave
     surge = c * dx + s * dy + age * (e.u - 0.5 * age * u_dot) - surge_wave
     sway = c * dy - s * dx + age * (e.v - 0.5 * age * v_dot) - sway_wave
-    u, v = measured.u - e.u + age * u_dot - u_wave, measured.v - e.v + age * v_dot - v_wave
-    age, (b11, b12, b21, b22) = parameters.heading_delay, filters.yaw_age
-    yaw_wave, r_wave = b11 * e.yaw_wave + b12 * e.r_wave, b21 * e.yaw_wave + b22 * e.r_wave
+    u = measured.u - e.u + age * u_dot - u_wave
+    v = measured.v - e.v + age * v_dot - v_wave
+    age = parameters.heading_delay
+    (b11, b12, b21, b22) = filters.yaw_age
+    yaw_wave = b11 * e.yaw_wave + b12 * e.r_wave
+    r_wave = b21 * e.yaw_wave + b22 * e.r_wave
     yaw = wrap(measured.psi - e.psi + age * (e.r - 0.5 * age * r_dot) - yaw_wave)
     r = measured.r - e.r + age * r_dot - r_wave
     return position * surge, position * sway, heading * yaw, position * u, position * v, heading * r
@@ -362,14 +406,17 @@ def _innovations(e, acceleration, measurement, parameters, filters):
 def _correct(e, innovations, *, ship, filters):
     """Estimate corrected by the innovations; biases are accelerations times mass."""
     surge, sway, yaw, du, dv, dr = innovations
-    c, s = cos(e.psi), sin(e.psi)
-    g, k = filters.horizontal, filters.yaw
+    c = cos(e.psi)
+    s = sin(e.psi)
+    g = filters.horizontal
+    k = filters.yaw
     move_surge = g.position_position * surge + g.position_velocity * du
     move_sway = g.position_position * sway + g.position_velocity * dv
     bias_u = g.bias_position * surge + g.bias_velocity * du
     bias_v = g.bias_position * sway + g.bias_velocity * dv
     bias_r = k.bias_position * yaw + k.bias_velocity * dr
-    X, Y = ship.mass_surge * bias_u, ship.mass_sway * bias_v + ship.mass_sway_yaw * bias_r
+    X = ship.mass_surge * bias_u
+    Y = ship.mass_sway * bias_v + ship.mass_sway_yaw * bias_r
     return e._replace(
         x=e.x + c * move_surge - s * move_sway,
         y=e.y + s * move_surge + c * move_sway,
@@ -396,13 +443,21 @@ def _wave_frequency(e, swings, parameters):
     In calm water it returns to its default. Each axis counts by its motion over the assumed one; what is far above the
     mean of the last minutes, as the motion after a failure is, hardly counts.
     """
-    p, w = parameters, e.wave_frequency
+    p = parameters
+    w = e.wave_frequency
     surge, sway, turn = swings
-    du, dv, dr = e.u_wave - FORGETTING * surge, e.v_wave - FORGETTING * sway, e.r_wave - FORGETTING * turn
-    horizontal, yaw = 1.0 / p.wave_motion**2, 1.0 / p.wave_yaw**2
+    du = e.u_wave - FORGETTING * surge
+    dv = e.v_wave - FORGETTING * sway
+    dr = e.r_wave - FORGETTING * turn
+    horizontal = 1.0 / p.wave_motion**2
+    yaw = 1.0 / p.wave_yaw**2
     rate = horizontal * (du * du + dv * dv) + yaw * dr * dr
-    expected = (w / p.wave_peak_ratio) ** 2 * (horizontal * (surge * surge + sway * sway) + yaw * turn * turn)
-    share, size, level = p.sample_period / p.wave_time, 0.5 * (rate + expected), e.wave_power + CALM
+    expected = (w / p.wave_peak_ratio) ** 2 * (
+        horizontal * (surge * surge + sway * sway) + yaw * turn * turn
+    )
+    share = p.sample_period / p.wave_time
+    size = 0.5 * (rate + expected)
+    level = e.wave_power + CALM
     excess = size / (OUTLIER * level)
     rise = 0.5 * w * (rate - expected) / (1.0 + excess**4) + (p.wave_frequency - w) * CALM
     frequency = clip(w + share * rise / level, p.wave_frequency_min, p.wave_frequency_max)

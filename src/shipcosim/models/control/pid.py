@@ -20,7 +20,9 @@ from shipcosim.models.core.parameters import required
 class ControlParameters:
     """Poles and limits of the control law; its gains follow from the mass of the ship."""
 
-    surge_frequency: float = required("rad/s", "natural frequency of the loop in surge", minimum=0.0)
+    surge_frequency: float = required(
+        "rad/s", "natural frequency of the loop in surge", minimum=0.0
+    )
     sway_frequency: float = required("rad/s", "natural frequency of the loop in sway", minimum=0.0)
     yaw_frequency: float = required("rad/s", "natural frequency of the loop in yaw", minimum=0.0)
     damping_ratio: float = required("1", "relative damping of the loops", minimum=0.0)
@@ -30,9 +32,15 @@ class ControlParameters:
     heading_error_max: float = required(
         "rad", "heading error beyond which the restoring moment grows no more", minimum=1e-3
     )
-    wind_filter_time: float = required("s", "time constant of the filter of the wind's load", minimum=1e-3)
-    force_filter_time: float = required("s", "time constant of the filter of the requested force", minimum=1e-3)
-    moment_filter_time: float = required("s", "time constant of the filter of the requested yaw moment", minimum=1e-3)
+    wind_filter_time: float = required(
+        "s", "time constant of the filter of the wind's load", minimum=1e-3
+    )
+    force_filter_time: float = required(
+        "s", "time constant of the filter of the requested force", minimum=1e-3
+    )
+    moment_filter_time: float = required(
+        "s", "time constant of the filter of the requested yaw moment", minimum=1e-3
+    )
     wind_share: float = required("1", "share of the wind's load that is fed forward", minimum=0.0)
 
 
@@ -173,12 +181,15 @@ def step(
     """
     psi = estimate.psi
     nu_d = (*to_body(psi, desired.x_dot, desired.y_dot), desired.r)
-    p, pace = parameters, estimate.pace
+    p = parameters
+    pace = estimate.pace
     frequencies = (pace * p.surge_frequency, pace * p.sway_frequency, pace * p.yaw_frequency)
     correction = _correction(estimate, desired, nu_d, frequencies, parameters=parameters)
     wind = _filtered(state, wind_load, h, parameters=parameters)
     u_dot, v_dot = to_body(psi, desired.x_ddot, desired.y_ddot)
-    X, Y, N = _load(u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship)
+    X, Y, N = _load(
+        u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship
+    )
     b_X, b_Y = to_body(psi, estimate.bias_north, estimate.bias_east)
     share = parameters.wind_share
     wanted = (
@@ -189,7 +200,9 @@ def step(
     return ControlState(*wind, *_smoothed(state, wanted, h, parameters=parameters))
 
 
-def errors(estimate: StateEstimate, desired: Desired | ReferenceState) -> tuple[Arithmetic, Arithmetic]:
+def errors(
+    estimate: StateEstimate, desired: Desired | ReferenceState
+) -> tuple[Arithmetic, Arithmetic]:
     """Distance from the desired to the estimated position, and estimated less desired heading.
 
     Parameters
@@ -213,7 +226,8 @@ def errors(estimate: StateEstimate, desired: Desired | ReferenceState) -> tuple[
 
 def _correction(estimate, desired, nu_d, frequencies, *, parameters):
     """Acceleration by proportional and derivative action, with limited errors of position and heading."""
-    p, damping = parameters, 2.0 * parameters.damping_ratio
+    p = parameters
+    damping = 2.0 * parameters.damping_ratio
     in_surge, in_sway, in_yaw = frequencies
     surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
     scale = p.position_error_max / maximum(hypot(surge, sway), p.position_error_max)
@@ -229,14 +243,23 @@ def _filtered(state, wind_load, h, *, parameters):
     """Wind load behind its low-pass filter a sample later."""
     keep = exp(-h / parameters.wind_filter_time)
     X, Y, N = wind_load
-    return X + keep * (state.wind_X - X), Y + keep * (state.wind_Y - Y), N + keep * (state.wind_N - N)
+    return (
+        X + keep * (state.wind_X - X),
+        Y + keep * (state.wind_Y - Y),
+        N + keep * (state.wind_N - N),
+    )
 
 
 def _smoothed(state, wanted, h, *, parameters):
     """Requested load behind its low-pass filter a sample later."""
-    force, moment = exp(-h / parameters.force_filter_time), exp(-h / parameters.moment_filter_time)
+    force = exp(-h / parameters.force_filter_time)
+    moment = exp(-h / parameters.moment_filter_time)
     X, Y, N = wanted
-    return X + force * (state.tau_X - X), Y + force * (state.tau_Y - Y), N + moment * (state.tau_N - N)
+    return (
+        X + force * (state.tau_X - X),
+        Y + force * (state.tau_Y - Y),
+        N + moment * (state.tau_N - N),
+    )
 
 
 def _load(u_dot, v_dot, r_dot, *, ship):

@@ -21,7 +21,11 @@ from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.sensor_messages import Fix
 
 PAIRS = ((0, 1), (0, 2), (1, 2))
-_PAIRS_OF = (((0, 1), (1, 2)), ((0, 0), (2, 2)), ((1, 0), (2, 1)))  # of each reference: number of the pair, other one
+_PAIRS_OF = (
+    ((0, 1), (1, 2)),
+    ((0, 0), (2, 2)),
+    ((1, 0), (2, 1)),
+)  # of each reference: number of the pair, other one
 _COUNTS_MORE = 1e6  # m, by which being apart from one more reference outweighs any movement
 
 
@@ -33,17 +37,31 @@ class PositionVotingParameters:
         3.0, "s", "unchanged for so long while others change, a reference is frozen", "assumed"
     )
     position_apart_max: float = quantity(
-        2.0, "m", "distance of two references from which they disagree", "six standard deviations of noise 0.2 m"
+        2.0,
+        "m",
+        "distance of two references from which they disagree",
+        "six standard deviations of noise 0.2 m",
     )
     position_drift_max: float = quantity(
-        0.8, "m", "the same of their low-pass filtered distance", "five standard deviations of drifts of 0.1 m"
+        0.8,
+        "m",
+        "the same of their low-pass filtered distance",
+        "five standard deviations of drifts of 0.1 m",
     )
-    position_drift_filter: float = quantity(20.0, "s", "time constant of that filter", "assumed", minimum=1e-3)
+    position_drift_filter: float = quantity(
+        20.0, "s", "time constant of that filter", "assumed", minimum=1e-3
+    )
     position_memory: float = quantity(
-        60.0, "s", "how long it is remembered that a reference moved otherwise than measured velocity", "assumed"
+        60.0,
+        "s",
+        "how long it is remembered that a reference moved otherwise than measured velocity",
+        "assumed",
     )
     position_innovation_max: float = quantity(
-        2.0, "m", "distance from the prediction from which a position is not believed", "as position_apart_max"
+        2.0,
+        "m",
+        "distance from the prediction from which a position is not believed",
+        "as position_apart_max",
     )
     position_model_error: float = quantity(
         0.003,
@@ -57,7 +75,10 @@ class PositionVotingParameters:
         30.0, "s", "a rejected reference is believed again after agreeing for so long", "assumed"
     )
     position_timeout: float = quantity(
-        1.5, "s", "time without a trusted position from which the controller rides on its model", "assumed"
+        1.5,
+        "s",
+        "time without a trusted position from which the controller rides on its model",
+        "assumed",
     )
     realignment_time: float = quantity(
         8.0,
@@ -129,9 +150,13 @@ def start(t: float, fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
     """
     zero = 0.0 * fixes[0].x
     used = tuple(zero + fix.valid for fix in fixes)
-    three, six, one = (zero,) * 3, (zero,) * 6, zero + 1.0
+    three = (zero,) * 3
+    six = (zero,) * 6
+    one = zero + 1.0
     mean = _mean(fixes, used)
-    return PositionVote(fixes, three, six, six, (one,) * 3, three, used, mean, zero, zero, zero, zero, zero + t)
+    return PositionVote(
+        fixes, three, six, six, (one,) * 3, three, used, mean, zero, zero, zero, zero, zero + t
+    )
 
 
 def step(
@@ -168,12 +193,14 @@ def step(
     PositionVote
         State of the vote; `fix` is the position to use.
     """
-    p, age = parameters, t - state.trusted_at
+    p = parameters
+    age = t - state.trusted_at
     unchanged, usable = _usable(state, fixes, quiet, dt, p)
     candidates = tuple([a * b for a, b in zip(usable, state.believed, strict=True)])
     rates = _rates(fixes, candidates, predicted)
     innovations = [_innovation(state, fix, predicted) for fix in fixes]
-    memory, off = _memory(state, fixes, innovations, rates, dt, p), [hypot(*both) for both in innovations]
+    memory = _memory(state, fixes, innovations, rates, dt, p)
+    off = [hypot(*both) for both in innovations]
     apart, disagree = _pairs(state, fixes, usable, dt, p)
     limit = p.position_innovation_max + 0.5 * p.position_model_error * age * age
     candidates = _near_if_any(candidates, disagree, [distance <= limit for distance in off])
@@ -182,7 +209,8 @@ def step(
     off_north, off_east = _innovation(state, mean, predicted)
     near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
     back = near * where(age > p.position_timeout, 1.0, 0.0)
-    north, east = state.north_shift - back * off_north, state.east_shift - back * off_east
+    north = state.north_shift - back * off_north
+    east = state.east_shift - back * off_east
     used = tuple([near * candidate for candidate in candidates])
     agreed = _agreed(state, usable, used, disagree, [distance - limit for distance in off], dt)
     return PositionVote(
@@ -221,7 +249,8 @@ def faded(
         State, and what is to be added to the estimated position. [m, m]
     """
     keep = exp(-dt / parameters.realignment_time)
-    north, east = keep * state.north_shift, keep * state.east_shift
+    north = keep * state.north_shift
+    east = keep * state.east_shift
     moved = north - state.north_shift, east - state.east_shift
     return state._replace(north_shift=north, east_shift=east), *moved
 
@@ -244,7 +273,8 @@ def _usable(state, fixes, quiet, dt, p):
 
 def _mean(fixes, weights):
     """Weighted mean of telegrams; valid 1 where there is any weight."""
-    (first, second, third), (a, b, c) = fixes, weights
+    (first, second, third) = fixes
+    (a, b, c) = weights
     total = a + b + c
     share = 1.0 / maximum(total, 1.0)
     return Fix(
@@ -259,7 +289,8 @@ def _mean(fixes, weights):
 def _rates(fixes, candidates, predicted):
     """Measured velocity over ground north and east; where nothing measures it, the predicted one."""
     mean = _mean(fixes, candidates)
-    u, v = where(mean.valid > 0.5, mean.u, predicted.u), where(mean.valid > 0.5, mean.v, predicted.v)
+    u = where(mean.valid > 0.5, mean.u, predicted.u)
+    v = where(mean.valid > 0.5, mean.v, predicted.v)
     return to_ned(predicted.psi, u, v)
 
 
@@ -270,8 +301,10 @@ def _innovation(state, fix, predicted):
 
 def _memory(state, fixes, innovations, rates, dt, p):
     """How much farther each reference moved than measured velocity says; of one that comes new, its innovation."""
-    keep, found = exp(-dt / p.position_memory), []
-    north, east = 0.5 * dt * (state.north_rate + rates[0]), 0.5 * dt * (state.east_rate + rates[1])
+    keep = exp(-dt / p.position_memory)
+    found = []
+    north = 0.5 * dt * (state.north_rate + rates[0])
+    east = 0.5 * dt * (state.east_rate + rates[1])
     for i, (new, old, fresh) in enumerate(zip(fixes, state.fixes, innovations, strict=True)):
         known = old.valid > 0.5
         found.append(where(known, keep * state.memory[2 * i] + new.x - old.x - north, fresh[0]))
@@ -282,10 +315,14 @@ def _memory(state, fixes, innovations, rates, dt, p):
 def _pairs(state, fixes, usable, dt, p):
     """Filtered differences of all pairs, limited so that a jump that ends is forgotten; 1 of those that are apart."""
     most = p.position_apart_max
-    gain, apart, disagree = 1.0 - exp(-dt / p.position_drift_filter), [], []
+    gain = 1.0 - exp(-dt / p.position_drift_filter)
+    apart = []
+    disagree = []
     for k, (i, j) in enumerate(PAIRS):
         both = usable[i] * usable[j]
-        x, y, was = fixes[i].x - fixes[j].x, fixes[i].y - fixes[j].y, state.apart[2 * k : 2 * k + 2]
+        x = fixes[i].x - fixes[j].x
+        y = fixes[i].y - fixes[j].y
+        was = state.apart[2 * k : 2 * k + 2]
         north = both * (was[0] + gain * (clip(x, -most, most) - was[0]))
         east = both * (was[1] + gain * (clip(y, -most, most) - was[1]))
         far = (hypot(x, y) > p.position_apart_max) | (hypot(north, east) > p.position_drift_max)
@@ -299,8 +336,11 @@ def _near_if_any(candidates, disagree, near):
 
     So two that jump together do not outvote a third.
     """
-    near = [where(is_near, candidate, 0.0) for is_near, candidate in zip(near, candidates, strict=True)]
-    found, kept = sum(near) > 0.5, []
+    near = [
+        where(is_near, candidate, 0.0) for is_near, candidate in zip(near, candidates, strict=True)
+    ]
+    found = sum(near) > 0.5
+    kept = []
     for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
         beside = maximum(near[one] * (1.0 - disagree[k]), near[two] * (1.0 - disagree[n]))
         kept.append(where(found, candidates[i] * maximum(near[i], beside), candidates[i]))
@@ -310,7 +350,9 @@ def _near_if_any(candidates, disagree, near):
 def _without_worst(candidates, disagree, memory):
     """Candidates without the one that is apart from most others, of equals the one that moved on its own most."""
     a, b, c = candidates
-    first, second, third = a * b * disagree[0], a * c * disagree[1], b * c * disagree[2]
+    first = a * b * disagree[0]
+    second = a * c * disagree[1]
+    third = b * c * disagree[2]
     counts = first + second, first + third, second + third
     scores = [n * (_COUNTS_MORE + hypot(*memory[2 * i : 2 * i + 2])) for i, n in enumerate(counts)]
     worst = maximum(scores[0], maximum(scores[1], scores[2]))
@@ -323,7 +365,8 @@ def _without_worst(candidates, disagree, memory):
 
 def _agreed(state, usable, used, disagree, too_far, dt):
     """How long each reference has agreed with all that are used, or where none is with the prediction."""
-    found, alone = [], sum(used) < 0.5
+    found = []
+    alone = sum(used) < 0.5
     for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
         against = disagree[k] * used[one] + disagree[n] * used[two]
         off = where(alone, too_far[i], against - 0.5)
@@ -335,5 +378,9 @@ def _believed(state, fixes, candidates, agreed, p):
     """Who is believed: of those that speak who passed, or has agreed for long enough."""
     found = []
     for fix, was, passed, time in zip(fixes, state.believed, candidates, agreed, strict=True):
-        found.append(maximum(where(fix.valid > 0.5, passed, was), where(time >= p.position_return_time, 1.0, 0.0)))
+        found.append(
+            maximum(
+                where(fix.valid > 0.5, passed, was), where(time >= p.position_return_time, 1.0, 0.0)
+            )
+        )
     return tuple(found)

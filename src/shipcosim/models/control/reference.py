@@ -16,10 +16,18 @@ from shipcosim.models.core.parameters import quantity, required
 class ReferenceParameters:
     """How quickly the reference follows its setpoint."""
 
-    position_frequency: float = required("rad/s", "natural frequency of the position reference", minimum=1e-4)
-    heading_frequency: float = required("rad/s", "natural frequency of the heading reference", minimum=1e-4)
+    position_frequency: float = required(
+        "rad/s", "natural frequency of the position reference", minimum=1e-4
+    )
+    heading_frequency: float = required(
+        "rad/s", "natural frequency of the heading reference", minimum=1e-4
+    )
     speed_max: float = quantity(
-        0.0, "m/s", "largest speed of the reference over ground; 0: not limited", "choice", minimum=0.0
+        0.0,
+        "m/s",
+        "largest speed of the reference over ground; 0: not limited",
+        "choice",
+        minimum=0.0,
     )
     yaw_rate_max: float = quantity(
         0.0, "rad/s", "largest yaw rate of the reference; 0: not limited", "choice", minimum=0.0
@@ -100,9 +108,14 @@ def resumed(motion: Sequence[Arithmetic], *, parameters: ReferenceParameters) ->
     ----------
     (d/dt + w)³ e = 0 without its third derivative.
     """
-    of_position, of_heading = parameters.position_frequency, parameters.heading_frequency
-    axes = zip(motion[:3], motion[3:6], motion[6:], (of_position, of_position, of_heading), strict=True)
-    return ReferenceState(*motion, *(x + 3.0 / w * (rate + second / w) for x, rate, second, w in axes))
+    of_position = parameters.position_frequency
+    of_heading = parameters.heading_frequency
+    axes = zip(
+        motion[:3], motion[3:6], motion[6:], (of_position, of_position, of_heading), strict=True
+    )
+    return ReferenceState(
+        *motion, *(x + 3.0 / w * (rate + second / w) for x, rate, second, w in axes)
+    )
 
 
 def step(
@@ -140,16 +153,21 @@ def step(
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 12.1.
     """
     x_set, y_set, psi_set = setpoint
-    dx, dy, dpsi = x_set - state.x_in, y_set - state.y_in, wrap(psi_set - state.psi_in)
+    dx = x_set - state.x_in
+    dy = y_set - state.y_in
+    dpsi = wrap(psi_set - state.psi_in)
     part = _share(hypot(dx, dy), h * parameters.speed_max)
-    x_in, y_in = state.x_in + part * dx, state.y_in + part * dy
+    x_in = state.x_in + part * dx
+    y_in = state.y_in + part * dy
     psi_in = state.psi_in + _share(maximum(dpsi, -dpsi), h * parameters.yaw_rate_max) * dpsi
     w = parameters.position_frequency
     x, x_dot, x_ddot = critically_damped(h, state.x - x_in, state.x_dot, state.x_ddot, frequency=w)
     y, y_dot, y_ddot = critically_damped(h, state.y - y_in, state.y_dot, state.y_ddot, frequency=w)
     w = parameters.heading_frequency
     psi, r, r_dot = critically_damped(h, state.psi - psi_in, state.r, state.r_dot, frequency=w)
-    return ReferenceState(x + x_in, y + y_in, psi + psi_in, x_dot, y_dot, r, x_ddot, y_ddot, r_dot, x_in, y_in, psi_in)
+    return ReferenceState(
+        x + x_in, y + y_in, psi + psi_in, x_dot, y_dot, r, x_ddot, y_ddot, r_dot, x_in, y_in, psi_in
+    )
 
 
 def critically_damped(

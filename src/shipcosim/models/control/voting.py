@@ -27,7 +27,10 @@ class VotingParameters(PositionVotingParameters, CompassVotingParameters):
     """Limits of the tests of all sensors."""
 
     wind_freeze_time: float = quantity(
-        10.0, "s", "unchanged for so long while others change, the anemometer sticks", "assumed: ten samples"
+        10.0,
+        "s",
+        "unchanged for so long while others change, the anemometer sticks",
+        "assumed: ten samples",
     )
     wind_fade_time: float = quantity(
         60.0,
@@ -89,7 +92,9 @@ class VotingState(NamedTuple):
     heading_new: float
 
 
-def start(t: float, telegrams: Telegrams, *, mast: MastParameters, wind: WindParameters) -> VotingState:
+def start(
+    t: float, telegrams: Telegrams, *, mast: MastParameters, wind: WindParameters
+) -> VotingState:
     """Voting at the start, on what is valid.
 
     Parameters
@@ -108,7 +113,8 @@ def start(t: float, telegrams: Telegrams, *, mast: MastParameters, wind: WindPar
     VotingState
         State of the voting.
     """
-    zero, given = 0.0 * telegrams.r, telegrams.wind
+    zero = 0.0 * telegrams.r
+    given = telegrams.wind
     share = zero + given.valid
     return VotingState(
         position_voting.start(t, telegrams.positions),
@@ -155,22 +161,41 @@ def step(
     tuple of VotingState and Estimate
         State; and the estimate, moved to where positions are after dead reckoning.
     """
-    positions, compasses, air = state.positions, state.compasses, state.wind
+    positions = state.positions
+    compasses = state.compasses
+    air = state.wind
     heading_since = telegrams.heading_time - state.heading_time
     position_since = telegrams.position_time - state.position_time
     wind_since = telegrams.wind_time - state.wind_time
     if heading_since > 0.0:
-        quiet = minimum(minimum(positions.unchanged[0], positions.unchanged[1]), positions.unchanged[2])
-        psi = estimate.psi + estimate.yaw_wave - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
+        quiet = minimum(
+            minimum(positions.unchanged[0], positions.unchanged[1]), positions.unchanged[2]
+        )
+        psi = (
+            estimate.psi
+            + estimate.yaw_wave
+            - (t - telegrams.heading_time) * (estimate.r + estimate.r_wave)
+        )
         compasses = compass_voting.step(
-            compasses, telegrams.compasses, telegrams.r, psi, quiet, heading_since, parameters=parameters
+            compasses,
+            telegrams.compasses,
+            telegrams.r,
+            psi,
+            quiet,
+            heading_since,
+            parameters=parameters,
         )
     quiet = minimum(*compasses.unchanged)
     if position_since > 0.0:
-        positions, north, east = position_voting.faded(positions, position_since, parameters=parameters)
+        positions, north, east = position_voting.faded(
+            positions, position_since, parameters=parameters
+        )
         estimate = estimate._replace(x=estimate.x + north, y=estimate.y + east)
-        at, fixes = _at(estimate, t - telegrams.position_time), telegrams.positions
-        positions = position_voting.step(t, positions, fixes, at, quiet, position_since, parameters=parameters)
+        at = _at(estimate, t - telegrams.position_time)
+        fixes = telegrams.positions
+        positions = position_voting.step(
+            t, positions, fixes, at, quiet, position_since, parameters=parameters
+        )
     if wind_since > 0.0:
         quiet = minimum(quiet, positions.unchanged[0])
         air = _wind(air, telegrams.wind, quiet, wind_since, parameters, estimate, mast, wind)
@@ -196,7 +221,9 @@ def measurement(state: VotingState) -> Measurement:
     return Measurement(motion, state.position_new * fix.valid, state.heading_new)
 
 
-def dead_reckoning_time(t: float, state: VotingState, *, parameters: VotingParameters) -> Arithmetic:
+def dead_reckoning_time(
+    t: float, state: VotingState, *, parameters: VotingParameters
+) -> Arithmetic:
     """Time since the last trusted position while the controller rides on its model, else 0.
 
     Parameters
@@ -219,8 +246,12 @@ def dead_reckoning_time(t: float, state: VotingState, *, parameters: VotingParam
 
 def _at(e, delay):
     """Motion some time before the estimate, motion in waves included."""
-    north, east = to_ned(e.psi, e.surge_wave - delay * (e.u + e.u_wave), e.sway_wave - delay * (e.v + e.v_wave))
-    return Motion(e.x + north, e.y + east, wrap(e.psi), e.u + e.u_wave, e.v + e.v_wave, e.r + e.r_wave)
+    north, east = to_ned(
+        e.psi, e.surge_wave - delay * (e.u + e.u_wave), e.sway_wave - delay * (e.v + e.v_wave)
+    )
+    return Motion(
+        e.x + north, e.y + east, wrap(e.psi), e.u + e.u_wave, e.v + e.v_wave, e.r + e.r_wave
+    )
 
 
 def _wind(state, given, quiet, dt, p, estimate, mast, wind):

@@ -68,13 +68,16 @@ def wave_transition(
     """
     decay = np.exp(-damping * frequency * dt)
     free = frequency * np.sqrt(1.0 - damping * damping)
-    c, s = decay * np.cos(free * dt), decay * np.sin(free * dt) / free
+    c = decay * np.cos(free * dt)
+    s = decay * np.sin(free * dt) / free
     shift = damping * frequency * s
     first, second, third, fourth = _floats(c + shift, s, -frequency * frequency * s, c - shift)
     return first, second, third, fourth
 
 
-def kalman_gain(transition: np.ndarray, noise: np.ndarray, output: np.ndarray, output_noise: np.ndarray) -> np.ndarray:
+def kalman_gain(
+    transition: np.ndarray, noise: np.ndarray, output: np.ndarray, output_noise: np.ndarray
+) -> np.ndarray:
     """Steady gain of the measurement update of a Kalman filter.
 
     Parameters
@@ -101,7 +104,8 @@ def kalman_gain(transition: np.ndarray, noise: np.ndarray, output: np.ndarray, o
     ----------
     Anderson and Moore, Optimal Filtering, Prentice-Hall, 1979, section 6.7.
     """
-    a, h = np.swapaxes(transition, -1, -2), noise
+    a = np.swapaxes(transition, -1, -2)
+    h = noise
     transposed = np.swapaxes(output, -1, -2)
     g = transposed @ np.linalg.inv(output_noise) @ output
     eye = np.eye(output.shape[-1])
@@ -170,10 +174,14 @@ def axis_gains(frequency: Arithmetic, damping: float, noise: AxisNoise) -> AxisG
     size = noise.wave * noise.wave * one
     stationary = _diagonal(size, size * frequency * frequency, 0.0, 0.0, 0.0)
     added = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
-    added = added + _diagonal(0.0, 0.0, 0.0, noise.disturbance * noise.period, noise.bias_drift * noise.period)
+    added = added + _diagonal(
+        0.0, 0.0, 0.0, noise.disturbance * noise.period, noise.bias_drift * noise.period
+    )
     then = kalman_gain(transition, added, output, np.diag([noise.position**2, noise.velocity**2]))
     gain = _transition(noise.delay, frequency, damping) @ then
-    return AxisGains(*_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5))))
+    return AxisGains(
+        *_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5)))
+    )
 
 
 class WaveFilter(NamedTuple):
@@ -197,7 +205,11 @@ class WaveFilter(NamedTuple):
 
 
 def filter_table(
-    frequencies: np.ndarray, damping: float, sample_period: float, horizontal: AxisNoise, yaw: AxisNoise
+    frequencies: np.ndarray,
+    damping: float,
+    sample_period: float,
+    horizontal: AxisNoise,
+    yaw: AxisNoise,
 ) -> EvenTable:
     """Wave models and gains over a range of frequencies, for `filter_at`.
 
@@ -219,7 +231,9 @@ def filter_table(
     """
     spans = sample_period, -horizontal.delay, -yaw.delay
     columns = [column for span in spans for column in wave_transition(span, frequencies, damping)]
-    columns += [column for noise in (horizontal, yaw) for column in _gains(frequencies, damping, noise)]
+    columns += [
+        column for noise in (horizontal, yaw) for column in _gains(frequencies, damping, noise)
+    ]
     return even_table(frequencies, *columns)
 
 

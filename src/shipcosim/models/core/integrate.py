@@ -72,7 +72,9 @@ def euler(state: Sequence, rates: Sequence, h: float) -> tuple:
     return tuple([y + h * rate for y, rate in zip(state, rates, strict=True)])
 
 
-def rk4(rates: Callable, state: Sequence, h: float, inputs: Sequence[tuple] = ((), (), ())) -> tuple:
+def rk4(
+    rates: Callable, state: Sequence, h: float, inputs: Sequence[tuple] = ((), (), ())
+) -> tuple:
     """The state one step of the classical Runge-Kutta method of fourth order later.
 
     Parameters
@@ -106,7 +108,8 @@ def rk4(rates: Callable, state: Sequence, h: float, inputs: Sequence[tuple] = ((
     0.36788
     """
     start, middle, end = inputs
-    half, sixth = 0.5 * h, h / 6.0
+    half = 0.5 * h
+    sixth = h / 6.0
     k1 = rates(*state, *start)
     k2 = rates(*euler(state, k1, half), *middle)
     k3 = rates(*euler(state, k2, half), *middle)
@@ -140,7 +143,8 @@ def rk4_pair(
     ----------
     As `rk4`.
     """
-    half, sixth = 0.5 * h, h / 6.0
+    half = 0.5 * h
+    sixth = h / 6.0
     a, p = rates(x, y, *start)
     b, q = rates(x + half * a, y + half * p, *middle)
     c, r = rates(x + half * b, y + half * q, *middle)
@@ -181,13 +185,20 @@ def rk4_motion(
     As `rk4`. η̇ = R(ψ) ν: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
     ch. 2.
     """
-    half, sixth = 0.5 * h, h / 6.0
+    half = 0.5 * h
+    sixth = h / 6.0
     u1, v1, r1 = accelerations(u, v, r)
-    ub, vb, rb = u + half * u1, v + half * v1, r + half * r1
+    ub = u + half * u1
+    vb = v + half * v1
+    rb = r + half * r1
     u2, v2, r2 = accelerations(ub, vb, rb)
-    uc, vc, rc = u + half * u2, v + half * v2, r + half * r2
+    uc = u + half * u2
+    vc = v + half * v2
+    rc = r + half * r2
     u3, v3, r3 = accelerations(uc, vc, rc)
-    ud, vd, rd = u + h * u3, v + h * v3, r + h * r3
+    ud = u + h * u3
+    vd = v + h * v3
+    rd = r + h * r3
     u4, v4, r4 = accelerations(ud, vd, rd)
     x1, y1 = to_ned(psi, u, v)
     x2, y2 = to_ned(psi + half * r, ub, vb)
@@ -241,7 +252,9 @@ def midpoint_motion(
     """
     half = 0.5 * h
     u_dot, v_dot, r_dot = accelerations(u, v, r)
-    u_mid, v_mid, r_mid = u + half * u_dot, v + half * v_dot, r + half * r_dot
+    u_mid = u + half * u_dot
+    v_mid = v + half * v_dot
+    r_mid = r + half * r_dot
     u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid)
     north, east = to_ned(psi + half * r, u_mid, v_mid)
     return (

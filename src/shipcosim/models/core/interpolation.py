@@ -110,9 +110,13 @@ def even_table(xs: np.ndarray, *columns: np.ndarray) -> EvenTable:
     """
     values = np.stack(columns, axis=-1)
     changes = np.diff(values, axis=0, append=values[-1:])
-    rows = (tuple(zip(*row, strict=True)) for row in zip(values.tolist(), changes.tolist(), strict=True))
+    rows = (
+        tuple(zip(*row, strict=True)) for row in zip(values.tolist(), changes.tolist(), strict=True)
+    )
     per_unit = float((len(xs) - 1) / (xs[-1] - xs[0]))
-    return EvenTable(float(xs[0]), per_unit, tuple(rows), np.concatenate([values, changes], axis=-1))
+    return EvenTable(
+        float(xs[0]), per_unit, tuple(rows), np.concatenate([values, changes], axis=-1)
+    )
 
 
 def interp_even(x: Arithmetic, table: EvenTable) -> list:
@@ -136,7 +140,8 @@ def interp_even(x: Arithmetic, table: EvenTable) -> list:
         share = position - below
         return [value + share * change for value, change in table.rows[below]]
     below = floor(position)
-    library, share = library_of(x), position - below
+    library = library_of(x)
+    share = position - below
     if hasattr(library, "row_of"):
         rows = library.row_of(table.array, below)
     elif library is np:

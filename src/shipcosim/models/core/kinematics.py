@@ -9,7 +9,9 @@ from shipcosim.models.core.maths import Arithmetic, sincos
 from shipcosim.models.core.motion import Load
 
 
-def to_ned(psi: Arithmetic, forward: Arithmetic, starboard: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
+def to_ned(
+    psi: Arithmetic, forward: Arithmetic, starboard: Arithmetic
+) -> tuple[Arithmetic, Arithmetic]:
     """Components in north and east of a vector given in body axes, R(ψ) of the horizontal plane.
 
     Parameters
@@ -54,7 +56,9 @@ def to_body(psi: Arithmetic, north: Arithmetic, east: Arithmetic) -> tuple[Arith
     return c * north + s * east, c * east - s * north
 
 
-def eta_dot(psi: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def eta_dot(
+    psi: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic
+) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     """Rate of position and heading, η̇ = R(ψ) ν.
 
     Parameters

@@ -201,7 +201,8 @@ def hypot(x: Arithmetic, y: Arithmetic) -> Arithmetic:
     """
     if isinstance(y, float) and isinstance(x, float):
         return math.sqrt(x * x + y * y)
-    square, library = x * x + y * y, library_of(x, y)
+    square = x * x + y * y
+    library = library_of(x, y)
     return (square + _TINY).sqrt() if _is_torch(library) else library.sqrt(square)
 
 
@@ -382,7 +383,9 @@ def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
             part = part[0]
         own = own or getattr(part, "maths", None)
     if own is not None:
-        return own.repeat(lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state))[1]
+        return own.repeat(
+            lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state)
+        )[1]
     for _ in range(count):
         state = turn(state)
     return state
@@ -420,5 +423,8 @@ def _tensors(torch: Any, *values: Any) -> list[Any] | tuple[Any, ...]:
     """All values as tensors of the kind of the first tensor among them, of double precision where there is none."""
     if not _is_torch(torch):
         return values
-    like = next((value for value in values if isinstance(value, torch.Tensor)), torch.zeros((), dtype=torch.float64))
+    like = next(
+        (value for value in values if isinstance(value, torch.Tensor)),
+        torch.zeros((), dtype=torch.float64),
+    )
     return [torch.as_tensor(value, dtype=like.dtype, device=like.device) for value in values]

@@ -102,7 +102,9 @@ def network_of(arrays: Mapping[str, np.ndarray], name: str) -> Network:
     """
     layers = sum(key.startswith(f"{name}.lstm.") and key.endswith(".bias") for key in arrays)
     names = [*(f"lstm.{number}" for number in range(1, layers + 1)), "dense"]
-    *lstm, last = (Layer(arrays[f"{name}.{one}.weights"], arrays[f"{name}.{one}.bias"]) for one in names)
+    *lstm, last = (
+        Layer(arrays[f"{name}.{one}.weights"], arrays[f"{name}.{one}.bias"]) for one in names
+    )
     return Network(tuple(lstm), last)
 
 
@@ -169,12 +171,17 @@ def lstm_step(x: np.ndarray, memory: Memory, layer: Layer) -> Memory:
     z[..., : 2 * n] *= 0.5
     z[..., 3 * n :] *= 0.5
     z = np.tanh(z, out=z)
-    into, keep, new, out = z[..., :n], z[..., n : 2 * n], z[..., 2 * n : 3 * n], z[..., 3 * n :]
+    into = z[..., :n]
+    keep = z[..., n : 2 * n]
+    new = z[..., 2 * n : 3 * n]
+    out = z[..., 3 * n :]
     cell = 0.5 * ((1.0 + keep) * memory.cell + (1.0 + into) * new)
     return Memory(0.5 * (1.0 + out) * np.tanh(cell), cell)
 
 
-def evaluate(network: Network, x: np.ndarray, memory: tuple[Memory, ...]) -> tuple[np.ndarray, tuple[Memory, ...]]:
+def evaluate(
+    network: Network, x: np.ndarray, memory: tuple[Memory, ...]
+) -> tuple[np.ndarray, tuple[Memory, ...]]:
     """Outputs of a network for one sample.
 
     Parameters

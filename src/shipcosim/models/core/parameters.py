@@ -48,7 +48,9 @@ def quantity(
     dataclasses.Field
         The field, whose metadata are what is given here. [as unit says]
     """
-    about = _about(unit, description, type(default), origin=origin, tolerance=tolerance, share=share)
+    about = _about(
+        unit, description, type(default), origin=origin, tolerance=tolerance, share=share
+    )
     return field(default=default, metadata=about | {"minimum": minimum, "maximum": maximum})
 
 
@@ -101,7 +103,14 @@ def required_table(columns: tuple[str, ...], description: str) -> Any:
 
 def _about(unit: str, description: str, kind: type, **more: Any) -> dict[str, Any]:
     """What a field knows of its number beside the default."""
-    rest = {"origin": "", "tolerance": 0.0, "share": 0.0, "minimum": None, "maximum": None, "columns": ()}
+    rest = {
+        "origin": "",
+        "tolerance": 0.0,
+        "share": 0.0,
+        "minimum": None,
+        "maximum": None,
+        "columns": (),
+    }
     return {"unit": unit, "description": description, "kind": kind} | rest | more
 
 
@@ -123,7 +132,11 @@ def left_out(value: Any) -> bool:
     >>> left_out(1e30), left_out(""), left_out(0.0)
     (True, True, False)
     """
-    return value == "" if isinstance(value, str) else isinstance(value, float) and abs(value) >= LEFT_OUT
+    return (
+        value == ""
+        if isinstance(value, str)
+        else isinstance(value, float) and abs(value) >= LEFT_OUT
+    )
 
 
 def acts(value: Any, neutral: float = 0.0) -> bool:

@@ -37,7 +37,9 @@ def parse(text: str) -> tuple[tuple[float, ...], ...]:
     rows = tuple(_row(number, row) for number, row in enumerate(text.strip(" ;\n").split(";"), 1))
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]):
-            raise ValueError(f"table, row {number}: {len(row)} columns. The first row has {len(rows[0])}.")
+            raise ValueError(
+                f"table, row {number}: {len(row)} columns. The first row has {len(rows[0])}."
+            )
     return rows
 
 
@@ -70,10 +72,14 @@ def columns(text: str, width: int) -> tuple[tuple[float, ...], ...]:
     """
     rows: Any = parse(text)
     if len(rows[0]) != width or len(rows) < 2:
-        raise ValueError(f"table of {len(rows)} rows and {len(rows[0])} columns. It needs rows of {width} numbers.")
+        raise ValueError(
+            f"table of {len(rows)} rows and {len(rows[0])} columns. It needs rows of {width} numbers."
+        )
     for number, (before, row) in enumerate(zip(rows, rows[1:], strict=False), 2):
         if row[0] <= before[0]:
-            raise ValueError(f"table, row {number}: {row[0]:g} after {before[0]:g}. The first column must increase.")
+            raise ValueError(
+                f"table, row {number}: {row[0]:g} after {before[0]:g}. The first column must increase."
+            )
     return tuple(zip(*rows, strict=True))
 
 
@@ -103,4 +109,6 @@ def _row(number, row):
     try:
         return tuple(float(value) for value in row.split())
     except ValueError:
-        raise ValueError(f"table, row {number}: '{row.strip()}' is not numbers separated by blanks.") from None
+        raise ValueError(
+            f"table, row {number}: '{row.strip()}' is not numbers separated by blanks."
+        ) from None

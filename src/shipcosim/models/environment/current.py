@@ -13,11 +13,21 @@ _STILL = 1e-9  # m/s, below which a current has no direction
 class VaryingCurrentParameters:
     """A current at two times."""
 
-    north_start: float = quantity(0.0, "m/s", "velocity of the water towards north until the start", "neutral")
-    east_start: float = quantity(0.0, "m/s", "velocity of the water towards east until the start", "neutral")
-    north_end: float = quantity(0.0, "m/s", "velocity of the water towards north from the end on", "neutral")
-    east_end: float = quantity(0.0, "m/s", "velocity of the water towards east from the end on", "neutral")
-    time_start: float = quantity(0.0, "s", "time from which on the current varies", "set by the system")
+    north_start: float = quantity(
+        0.0, "m/s", "velocity of the water towards north until the start", "neutral"
+    )
+    east_start: float = quantity(
+        0.0, "m/s", "velocity of the water towards east until the start", "neutral"
+    )
+    north_end: float = quantity(
+        0.0, "m/s", "velocity of the water towards north from the end on", "neutral"
+    )
+    east_end: float = quantity(
+        0.0, "m/s", "velocity of the water towards east from the end on", "neutral"
+    )
+    time_start: float = quantity(
+        0.0, "s", "time from which on the current varies", "set by the system"
+    )
     time_end: float = quantity(600.0, "s", "time until which it varies", "set by the system")
 
 
@@ -64,7 +74,9 @@ def varying_current(
     (0.4, 45.0)
     """
     share = clip((t - time_start) / (time_end - time_start), 0.0, 1.0)
-    start, end = hypot(north_start, east_start), hypot(north_end, east_end)
-    from_, to = atan2(east_start, north_start), atan2(east_end, north_end)
+    start = hypot(north_start, east_start)
+    end = hypot(north_end, east_end)
+    from_ = atan2(east_start, north_start)
+    to = atan2(east_end, north_end)
     from_, to = where(start < _STILL, to, from_), where(end < _STILL, from_, to)
     return start + share * (end - start), wrap(from_ + share * wrap(to - from_))

@@ -7,7 +7,8 @@ from shipcosim.models.core.maths import Arithmetic, clip, hypot
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity, required
 
-_SURGE_SHARE, _SWAY_POWER = 1.0 / 3.0, 2.0
+_SURGE_SHARE = 1.0 / 3.0
+_SWAY_POWER = 2.0
 _TINY = 1e-30  # N
 _SOON = 1e-6  # s, so that the time of an onset belongs to it, however a master adds up its steps
 _VERES = "fitted to the drift table of a research vessel of 34 m, Tp 4 to 7 s"
@@ -18,7 +19,9 @@ class OnsetParameters:
     """From when on something acts."""
 
     onset_time: float = quantity(0.0, "s", "time from which on it acts", "set by the system")
-    ramp_time: float = quantity(0.0, "s", "time that it takes to grow after that", "0: at once", minimum=0.0)
+    ramp_time: float = quantity(
+        0.0, "s", "time that it takes to grow after that", "0: at once", minimum=0.0
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,9 +38,15 @@ class EarthForceParameters:
 class DriftForceParameters:
     """Mean drift of waves that travel in one direction."""
 
-    north: float = quantity(0.0, "N", "force on the beam, towards north where the waves travel", "neutral")
-    east: float = quantity(0.0, "N", "force on the beam, towards east where the waves travel", "neutral")
-    surge_share: float = quantity(_SURGE_SHARE, "1", "force in following waves over that on the beam", _VERES)
+    north: float = quantity(
+        0.0, "N", "force on the beam, towards north where the waves travel", "neutral"
+    )
+    east: float = quantity(
+        0.0, "N", "force on the beam, towards east where the waves travel", "neutral"
+    )
+    surge_share: float = quantity(
+        _SURGE_SHARE, "1", "force in following waves over that on the beam", _VERES
+    )
     sway_power: float = quantity(
         _SWAY_POWER,
         "1",
@@ -45,7 +54,9 @@ class DriftForceParameters:
         "waves much shorter than the ship (Faltinsen 1990, ch. 5)",
         minimum=1.0,
     )
-    yaw_arm: float = required("m", "yaw moment in waves from 45 deg to port of the stern, over the force on the beam")
+    yaw_arm: float = required(
+        "m", "yaw moment in waves from 45 deg to port of the stern, over the force on the beam"
+    )
 
 
 def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Arithmetic:
@@ -77,7 +88,9 @@ def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Ar
     return clip((t - onset_time + _SOON) / (ramp_time + _SOON), 0.0, 1.0)
 
 
-def earth_force(psi: Arithmetic, north: Arithmetic, east: Arithmetic, *, x: Arithmetic, y: Arithmetic = 0.0) -> Load:
+def earth_force(
+    psi: Arithmetic, north: Arithmetic, east: Arithmetic, *, x: Arithmetic, y: Arithmetic = 0.0
+) -> Load:
     """Load of a force of constant direction over the earth that attacks at a point of the ship.
 
     Parameters

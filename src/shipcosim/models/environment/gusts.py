@@ -15,7 +15,8 @@ from shipcosim.models.core.sampling import generator
 from shipcosim.models.environment.sinusoids import column, per_seed, tensors_if_any, total
 
 COMPONENTS = 60
-FREQUENCY_MIN, FREQUENCY_MAX = 1.0 / 600.0, 0.5  # Hz
+FREQUENCY_MIN = 1.0 / 600.0  # Hz
+FREQUENCY_MAX = 0.5
 
 _EDGES = np.geomspace(FREQUENCY_MIN, FREQUENCY_MAX, COMPONENTS + 1)
 _ALMOST_CALM = 1e-6  # m/s

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from shipcosim.models.core.maths import Arithmetic, cos, exp, hypot, maximum, sin, sqrt
 from shipcosim.models.core.parameters import quantity
 
-_SET, _NONE = "set by the scenario", "neutral"
+_SET = "set by the scenario"
+_NONE = "neutral"
 _SLOW = 1e-6  # m/s, keeps the direction of no wind finite
 
 
@@ -14,26 +15,56 @@ class HarbourParameters:
     """Land and river about a berth, which is the origin; by default there are none."""
 
     wind_shelter: float = quantity(
-        0.0, "1", "share of the wind from land that land takes at the berth", _NONE, minimum=0.0, maximum=1.0
+        0.0,
+        "1",
+        "share of the wind from land that land takes at the berth",
+        _NONE,
+        minimum=0.0,
+        maximum=1.0,
     )
     land_towards: float = quantity(
-        0.0, "rad", "direction in which land lies, and from which it shelters, clockwise from north", _SET
+        0.0,
+        "rad",
+        "direction in which land lies, and from which it shelters, clockwise from north",
+        _SET,
     )
-    wind_reach: float = quantity(300.0, "m", "distance from the berth at which 1/e of it is left", _SET, minimum=1.0)
+    wind_reach: float = quantity(
+        300.0, "m", "distance from the berth at which 1/e of it is left", _SET, minimum=1.0
+    )
     tide_shelter: float = quantity(
-        0.0, "1", "share of the open sea's current that is missing at the berth", _NONE, minimum=0.0, maximum=1.0
+        0.0,
+        "1",
+        "share of the open sea's current that is missing at the berth",
+        _NONE,
+        minimum=0.0,
+        maximum=1.0,
     )
     channel: float = quantity(
-        0.0, "rad", "direction of the channel, along which alone the tide flows near the berth", _SET
+        0.0,
+        "rad",
+        "direction of the channel, along which alone the tide flows near the berth",
+        _SET,
     )
-    tide_reach: float = quantity(400.0, "m", "distance from the berth at which 1/e of that is left", _SET, minimum=1.0)
-    river_speed: float = quantity(0.0, "m/s", "speed of the river in the middle of its mouth", _NONE, minimum=0.0)
-    river_to: float = quantity(0.0, "rad", "direction the river flows to, clockwise from north", _SET)
+    tide_reach: float = quantity(
+        400.0, "m", "distance from the berth at which 1/e of that is left", _SET, minimum=1.0
+    )
+    river_speed: float = quantity(
+        0.0, "m/s", "speed of the river in the middle of its mouth", _NONE, minimum=0.0
+    )
+    river_to: float = quantity(
+        0.0, "rad", "direction the river flows to, clockwise from north", _SET
+    )
     river_x: float = quantity(0.0, "m", "middle of the mouth, north of the berth", _SET)
     river_y: float = quantity(0.0, "m", "middle of the mouth, east of the berth", _SET)
-    river_width: float = quantity(60.0, "m", "half-width of the river, to 1/e of the speed", _SET, minimum=1.0)
+    river_width: float = quantity(
+        60.0, "m", "half-width of the river, to 1/e of the speed", _SET, minimum=1.0
+    )
     river_spread: float = quantity(
-        0.1, "1", "growth of the half-width over the distance from the mouth", "plane jet", minimum=0.0
+        0.1,
+        "1",
+        "growth of the half-width over the distance from the mouth",
+        "plane jet",
+        minimum=0.0,
     )
 
 
@@ -107,13 +138,19 @@ def local_current(
     [0.5, 0.184]
     """
     near = _near(x, y, harbour.tide_reach)
-    c, s = cos(harbour.channel), sin(harbour.channel)
+    c = cos(harbour.channel)
+    s = sin(harbour.channel)
     along = (1.0 - harbour.tide_shelter) * (north * c + east * s)
-    c_river, s_river = cos(harbour.river_to), sin(harbour.river_to)
-    x_mouth, y_mouth = x - harbour.river_x, y - harbour.river_y
-    ahead, beside = x_mouth * c_river + y_mouth * s_river, y_mouth * c_river - x_mouth * s_river
+    c_river = cos(harbour.river_to)
+    s_river = sin(harbour.river_to)
+    x_mouth = x - harbour.river_x
+    y_mouth = y - harbour.river_y
+    ahead = x_mouth * c_river + y_mouth * s_river
+    beside = y_mouth * c_river - x_mouth * s_river
     width = 1.0 + harbour.river_spread * maximum(ahead, 0.0) / harbour.river_width
-    river = harbour.river_speed / sqrt(width) * exp(-((beside / (width * harbour.river_width)) ** 2))
+    river = (
+        harbour.river_speed / sqrt(width) * exp(-((beside / (width * harbour.river_width)) ** 2))
+    )
     return (
         north + near * (along * c - north) + river * c_river,
         east + near * (along * s - east) + river * s_river,

@@ -11,7 +11,16 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.interpolation import interp
-from shipcosim.models.core.maths import Arithmetic, floor, library_of, minimum, pi, row_of, sincos, where
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    floor,
+    library_of,
+    minimum,
+    pi,
+    row_of,
+    sincos,
+    where,
+)
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.tables import parse
@@ -70,16 +79,27 @@ def drift_table(text: str) -> DriftTable:
     loads = {row[:2]: row[2:] for row in rows if len(row) == 5}
     omegas, headings = (tuple(sorted({key[i] for key in loads})) for i in (0, 1))
     if not rows or not len(rows) == len(loads) == len(omegas) * len(headings):
-        raise ValueError("drift table: rows 'omega heading X Y N' must hold every heading at every frequency once")
+        raise ValueError(
+            "drift table: rows 'omega heading X Y N' must hold every heading at every frequency once"
+        )
     if (headings[0], headings[-1]) != (0.0, 180.0):
-        raise ValueError(f"drift table: headings from {headings[0]} to {headings[-1]}; must go from 0 to 180 deg")
-    starboard = [tuple(zip(*(loads[omega, heading] for omega in omegas), strict=True)) for heading in headings]
+        raise ValueError(
+            f"drift table: headings from {headings[0]} to {headings[-1]}; must go from 0 to 180 deg"
+        )
+    starboard = [
+        tuple(zip(*(loads[omega, heading] for omega in omegas), strict=True))
+        for heading in headings
+    ]
     port = [(X, tuple(-Yi for Yi in Y), tuple(-Ni for Ni in N)) for X, Y, N in starboard[:0:-1]]
     circle = [-heading for heading in headings[:0:-1]] + list(headings)
-    return DriftTable(omegas, tuple(heading * pi / 180.0 for heading in circle), tuple(port + starboard))
+    return DriftTable(
+        omegas, tuple(heading * pi / 180.0 for heading in circle), tuple(port + starboard)
+    )
 
 
-def drift(t: Arithmetic, x: Arithmetic, y: Arithmetic, psi: Arithmetic, waves: Waves, table: DriftTable) -> Load:
+def drift(
+    t: Arithmetic, x: Arithmetic, y: Arithmetic, psi: Arithmetic, waves: Waves, table: DriftTable
+) -> Load:
     """Mean and slowly varying wave drift load on a ship.
 
     Newman's approximation with D_ij = (D_ii + D_jj)/2. The double sum over components then separates into single sums:
@@ -117,7 +137,9 @@ def drift(t: Arithmetic, x: Arithmetic, y: Arithmetic, psi: Arithmetic, waves: W
     return drift_at(c, s, psi, waves, table)
 
 
-def drift_at(c: Arithmetic, s: Arithmetic, psi: Arithmetic, waves: Waves, table: DriftTable) -> Load:
+def drift_at(
+    c: Arithmetic, s: Arithmetic, psi: Arithmetic, waves: Waves, table: DriftTable
+) -> Load:
     """`drift` at known phase angles.
 
     Parameters
@@ -174,7 +196,8 @@ def _weighted_drift(weights, psi, waves, table):
     grid = _kept_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
     position = interp(wrap(waves.direction - psi), table.heading, _counted(len(table.heading)))
     below = minimum(floor(position), len(table.heading) - 2.0)
-    row, share = _whole(below), position - below
+    row = _whole(below)
+    share = position - below
     if isinstance(row, int) and weights.ndim == 1:
         pair = (grid[row : row + 2] @ weights).tolist()
         return tuple([lower + share * (upper - lower) for lower, upper in zip(*pair, strict=True)])
@@ -194,7 +217,13 @@ def _grid(waves, table):
     """a_i D_i at each heading of the table, (headings, ..., 3, n)."""
     stack = library_of(waves.omega).stack
     amplitude = where(waves.omega > OMEGA_DRIFT_MAX, 0.0, waves.amplitude)
-    return stack([stack([amplitude * interp(waves.omega, table.omega, D) for D in XYN], -2) for XYN in table.loads], 0)
+    return stack(
+        [
+            stack([amplitude * interp(waves.omega, table.omega, D) for D in XYN], -2)
+            for XYN in table.loads
+        ],
+        0,
+    )
 
 
 _kept_grid = kept(8)(_grid)

@@ -112,23 +112,32 @@ def wave_response(
         return (zero, zero, zero), Motion(*(zero,) * 6)
     waves = waves_like(waves, x, y, psi)
     s, c = sincos(phase_angle(t, x, y, waves))
-    return drift_at(c, s, psi, waves, table), _motion(c, s, psi, u, v, waves, length, breadth, draught)
+    return drift_at(c, s, psi, waves, table), _motion(
+        c, s, psi, u, v, waves, length, breadth, draught
+    )
 
 
 def _motion(c, s, psi, u, v, waves, length, breadth, draught):
     """`first_order_motion` at known phase angles, of which c and s are cosine and sine."""
     across, ahead = sincos(waves.direction - psi)
-    some_across, some_ahead = _not_zero(across), _not_zero(ahead)
+    some_across = _not_zero(across)
+    some_ahead = _not_zero(ahead)
     half_length, half_breadth, spread, turned = _hull_in(waves, length, breadth, draught)
     q = half_length * column(some_ahead)
     sin_q, cos_q = sincos(q)
-    shift, turn = spread * sin_q * sin(half_breadth * column(some_across)), turned * (sin_q - q * cos_q)
+    shift = spread * sin_q * sin(half_breadth * column(some_across))
+    turn = turned * (sin_q - q * cos_q)
     encounter = waves.omega - waves.wavenumber * column(u * ahead + v * across)
-    per_shift, per_turn = 1.0 / (some_ahead * some_across), 6.0 / length * across / (some_ahead * some_ahead)
-    along, along_dot = per_shift * total(shift, s), per_shift * total(shift, encounter * c)
-    psi_wave, r_wave = -per_turn * total(turn, c), per_turn * total(turn, encounter * s)
+    per_shift = 1.0 / (some_ahead * some_across)
+    per_turn = 6.0 / length * across / (some_ahead * some_ahead)
+    along = per_shift * total(shift, s)
+    along_dot = per_shift * total(shift, encounter * c)
+    psi_wave = -per_turn * total(turn, c)
+    r_wave = per_turn * total(turn, encounter * s)
     east, north = sincos(waves.direction)
-    return Motion(along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave)
+    return Motion(
+        along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave
+    )
 
 
 def _hull_in(waves, length, breadth, draught):
@@ -144,9 +153,15 @@ def _hull_in(waves, length, breadth, draught):
 def _hull(waves, length, breadth, draught):
     """As `_hull_in`."""
     k = waves.wavenumber
-    half_length, half_breadth = k * column(0.5 * length), k * column(0.5 * breadth)
+    half_length = k * column(0.5 * length)
+    half_breadth = k * column(0.5 * breadth)
     amplitude = waves.amplitude * exp(k * column(-0.5 * draught))
-    return half_length, half_breadth, amplitude / (half_length * half_breadth), amplitude / half_length**2
+    return (
+        half_length,
+        half_breadth,
+        amplitude / (half_length * half_breadth),
+        amplitude / half_length**2,
+    )
 
 
 _kept_hull = kept(8)(_hull)

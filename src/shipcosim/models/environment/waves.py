@@ -27,7 +27,9 @@ from shipcosim.models.environment.sinusoids import column, tensors_if_any, total
 GRAVITY = 9.81  # m/s2
 COMPONENTS = 40
 
-_RATIO = np.linspace(0.4, 5.0, 4601)  # omega over omega_peak; 0.2 % of the energy lies above, none below
+_RATIO = np.linspace(
+    0.4, 5.0, 4601
+)  # omega over omega_peak; 0.2 % of the energy lies above, none below
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,17 +216,28 @@ def waves_like(waves: Waves, *values: Arithmetic) -> Waves:
     """
     if not isinstance(waves.omega, np.ndarray) or not hasattr(library_of(*values), "Tensor"):
         return waves
-    arrays = (waves.amplitude, waves.omega, waves.wavenumber, waves.phase, np.asarray(waves.direction))
+    arrays = (
+        waves.amplitude,
+        waves.omega,
+        waves.wavenumber,
+        waves.phase,
+        np.asarray(waves.direction),
+    )
     return Waves(*tensors_if_any(arrays, *values))
 
 
 def _components(height, period, wave_from, peak_enhancement, seed):
     _refuse_impossible(height, period, peak_enhancement)
-    peak_enhancement, seed = np.broadcast_arrays(np.asarray(peak_enhancement, float), np.asarray(seed))
+    peak_enhancement, seed = np.broadcast_arrays(
+        np.asarray(peak_enhancement, float), np.asarray(seed)
+    )
     pairs = [
-        _ratio_and_phase(*pair) for pair in zip(peak_enhancement.ravel().tolist(), seed.ravel().tolist(), strict=True)
+        _ratio_and_phase(*pair)
+        for pair in zip(peak_enhancement.ravel().tolist(), seed.ravel().tolist(), strict=True)
     ]
-    ratio, phase = (np.array(part).reshape(*seed.shape, COMPONENTS) for part in zip(*pairs, strict=True))
+    ratio, phase = (
+        np.array(part).reshape(*seed.shape, COMPONENTS) for part in zip(*pairs, strict=True)
+    )
     ratio, phase = tensors_if_any((ratio, phase), height, period, wave_from)
     omega = column(2.0 * pi / period) * ratio
     amplitude = column(height) * ((2.0 / COMPONENTS) ** 0.5 / 4.0) + 0.0 * ratio
@@ -248,7 +261,9 @@ def _refuse_impossible(height, period, peak_enhancement):
     ):
         value = np.asarray(value.detach() if hasattr(value, "detach") else value)
         if not (np.all(value >= low) and (high is None or np.all(value <= high))):
-            raise ValueError(f"{name} is {value}; must be from {low}" + ("" if high is None else f" to {high}"))
+            raise ValueError(
+                f"{name} is {value}; must be from {low}" + ("" if high is None else f" to {high}")
+            )
 
 
 @lru_cache(maxsize=1024)
@@ -256,7 +271,9 @@ def _ratio_and_phase(peak_enhancement, seed):
     """Frequencies over the peak frequency, and phases: (n,) each."""
     random = generator("waves", seed)
     share = (np.arange(COMPONENTS) + random.random(COMPONENTS)) / COMPONENTS
-    return np.interp(share, _cumulative_energy(peak_enhancement), _RATIO), random.uniform(0.0, 2.0 * pi, COMPONENTS)
+    return np.interp(share, _cumulative_energy(peak_enhancement), _RATIO), random.uniform(
+        0.0, 2.0 * pi, COMPONENTS
+    )
 
 
 @lru_cache(maxsize=32)

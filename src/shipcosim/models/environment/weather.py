@@ -26,19 +26,34 @@ class EnvironmentParameters:
         0.02, "rad/s", "fastest turn of the mean wind", "assumed: 45 deg in 40 s", minimum=0.0
     )
     current_speed_rate: float = quantity(
-        0.005, "m/s2", "fastest change of the current's speed", "assumed: 0.5 m/s in 100 s", minimum=0.0
+        0.005,
+        "m/s2",
+        "fastest change of the current's speed",
+        "assumed: 0.5 m/s in 100 s",
+        minimum=0.0,
     )
     current_turn_rate: float = quantity(
         0.005, "rad/s", "fastest turn of the current", "assumed: 90 deg in 310 s", minimum=0.0
     )
-    gust_scale: float = quantity(1.0, "1", "gusts over those of the spectrum; 0: none", "definition", minimum=0.0)
+    gust_scale: float = quantity(
+        1.0, "1", "gusts over those of the spectrum; 0: none", "definition", minimum=0.0
+    )
     significant_wave_height: float = quantity(
         0.0, "m", "significant wave height Hs; 0: no waves", "set by the scenario", minimum=0.0
     )
-    peak_period: float = quantity(6.0, "s", "peak period Tp of the waves", "assumed: a coastal wind sea", minimum=0.5)
-    waves_from: float = quantity(0.0, "rad", "where the waves come from, clockwise from north", "set by the scenario")
+    peak_period: float = quantity(
+        6.0, "s", "peak period Tp of the waves", "assumed: a coastal wind sea", minimum=0.5
+    )
+    waves_from: float = quantity(
+        0.0, "rad", "where the waves come from, clockwise from north", "set by the scenario"
+    )
     peak_enhancement: float = quantity(
-        3.3, "1", "gamma of the JONSWAP spectrum", "mean of the JONSWAP measurements", minimum=1.0, maximum=7.0
+        3.3,
+        "1",
+        "gamma of the JONSWAP spectrum",
+        "mean of the JONSWAP measurements",
+        minimum=1.0,
+        maximum=7.0,
     )
     seed: int = quantity(1, "1", "seed of gusts and waves", "any", minimum=0)
 

@@ -22,10 +22,18 @@ class WindParameters:
         "relative to the bow, 0 to 180 deg, starboard",
     )
     wind_load_scale: float = quantity(
-        1.0, "1", "factor on the wind loads; 1 as in the table", "neutral", tolerance=0.03, minimum=0.0
+        1.0,
+        "1",
+        "factor on the wind loads; 1 as in the table",
+        "neutral",
+        tolerance=0.03,
+        minimum=0.0,
     )
     apparent_wind_offset: float = quantity(
-        0.0, "rad", "direction of the apparent wind as it is given minus the real one, which loads the ship", "neutral"
+        0.0,
+        "rad",
+        "direction of the apparent wind as it is given minus the real one, which loads the ship",
+        "neutral",
     )
 
     @cached_property
@@ -65,7 +73,8 @@ def apparent_wind(
     (5.0, 0.0)
     """
     wind_u, wind_v = to_body(psi, wind_north, wind_east)
-    u_r, v_r = u - wind_u, v - wind_v
+    u_r = u - wind_u
+    v_r = v - wind_v
     return hypot(u_r, v_r), atan2(v_r, u_r)
 
 
@@ -109,5 +118,7 @@ def _table(text):
     """Columns of the table, the angle in rad."""
     angles, *loads = columns(text, 4)
     if angles[0] != 0.0 or angles[-1] != 180.0:
-        raise ValueError(f"wind table: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 180 deg.")
+        raise ValueError(
+            f"wind table: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 180 deg."
+        )
     return tuple(angle * pi / 180.0 for angle in angles), *loads

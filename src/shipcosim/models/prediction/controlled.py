@@ -34,9 +34,15 @@ NOTHING = 1e-3
 class ObserverAhead:
     """What is left of the observer along the horizon."""
 
-    full_frequency: float = required("rad/s", "wave frequency below which the control law slows down", minimum=0.1)
+    full_frequency: float = required(
+        "rad/s", "wave frequency below which the control law slows down", minimum=0.1
+    )
     bias_time: float = quantity(
-        30.0, "s", "time in which the observer's bias follows its load", "chosen by seeds 300-311", minimum=0.1
+        30.0,
+        "s",
+        "time in which the observer's bias follows its load",
+        "chosen by seeds 300-311",
+        minimum=0.1,
     )
 
 
@@ -120,12 +126,18 @@ def predict(
     Equations of motion as `dead_reckoning.predict`; reference, control law and allocation as the functions of those
     modules. Running the controller ahead: Skulstad, Data-based modelling of ships, NTNU 2021, research question 5.
     """
-    now, before, predictions = _start(known, surroundings, wind, loop), 0.0, []
+    now = _start(known, surroundings, wind, loop)
+    before = 0.0
+    predictions = []
     available = tuple(abs(thrust) > NOTHING for thrust in now.allocated.thrusts)
     for horizon in horizons:
         steps = int(ceil((horizon - before) / longest_step))
         h = (horizon - before) / steps
-        now = times(steps, lambda now, h=h: _later(now, known, surroundings, available, h, hull, wind, loop), now)
+        now = times(
+            steps,
+            lambda now, h=h: _later(now, known, surroundings, available, h, hull, wind, loop),
+            now,
+        )
         predictions.append(Motion(*now.motion[:6]))
         before = horizon
     return tuple(predictions)
@@ -133,12 +145,19 @@ def predict(
 
 def _start(known, around, wind, loop):
     """The loop now. The load of the thrusters says their thrusts, and what was requested last."""
-    ship, units = known.ship, loop.units
-    fed = [known.wind_believed * one for one in wind_loads(known.wind_speed, known.wind_from, wind=wind)]
+    ship = known.ship
+    units = loop.units
+    fed = [
+        known.wind_believed * one
+        for one in wind_loads(known.wind_speed, known.wind_from, wind=wind)
+    ]
     rest = pseudo_inverse.at_rest(known.thrusters, parameters=units)
     all_of_them = {"available": (True, True, True), "parameters": units, "design": loop.design}
     return _Now(
-        (*ship, *through_water(ship.psi, ship.u, ship.v, around.current_north, around.current_east)),
+        (
+            *ship,
+            *through_water(ship.psi, ship.u, ship.v, around.current_north, around.current_east),
+        ),
         reference.resumed(known.desired, parameters=loop.reference),
         ControlState(*fed, *known.thrusters),
         pseudo_inverse.step(rest, known.thrusters, h=1e9, **all_of_them),
@@ -151,7 +170,8 @@ def _later(now, known, around, available, h, hull, wind, loop):
     """The loop a step later: the ship with the load of the middle of the step, then reference, law and allocator."""
     given = now.allocated.tau_X, now.allocated.tau_Y, now.allocated.tau_N
     middle = tuple(
-        new + 0.5 * (new - old) + error for new, old, error in zip(given, now.before, around.thrust_error, strict=True)
+        new + 0.5 * (new - old) + error
+        for new, old, error in zip(given, now.before, around.thrust_error, strict=True)
     )
     motion = advance(now.motion, middle, around, h, hull=hull, wind=wind)
     desired = reference.step(now.desired, known.goal, h, parameters=loop.reference)
@@ -162,7 +182,9 @@ def _later(now, known, around, available, h, hull, wind, loop):
     pace = observer.pace(known.wave_frequency, loop.observer.full_frequency)
     estimate = StateEstimate(*motion[:6], *bias, pace=pace)
     control = pid.step(now.control, estimate, desired, fed, h, ship=loop.ship, parameters=loop.law)
-    allocated = pseudo_inverse.step(now.allocated, control[3:], available, h, parameters=loop.units, design=loop.design)
+    allocated = pseudo_inverse.step(
+        now.allocated, control[3:], available, h, parameters=loop.units, design=loop.design
+    )
     return _Now(motion, desired, control, allocated, bias, given)
 
 
@@ -171,7 +193,9 @@ def _bias(now, motion, known, around, wind_load, h, hull, loop):
     _, _, psi, u, v, r, u_r, v_r = motion
     X, Y, N = hull_loads(u_r, v_r, r, hull=hull)
     force_X, force_Y = to_body(psi, around.force_north, around.force_east)
-    lost, ship, share = 1.0 - known.wind_believed, loop.ship, 1.0 - exp(-h / loop.observer.bias_time)
+    lost = 1.0 - known.wind_believed
+    ship = loop.ship
+    share = 1.0 - exp(-h / loop.observer.bias_time)
     error_X, error_Y, error_N = around.thrust_error
     X = X + force_X + error_X + lost * wind_load[0] + ship.damping_surge * u
     Y = Y + force_Y + error_Y + lost * wind_load[1] + ship.damping_sway * v

@@ -57,24 +57,37 @@ def predict(
     ----------
     Equations of motion as `ship.vessel`; integration as `core.integrate.midpoint_motion`.
     """
-    ship, current = known.ship, (surroundings.current_north, surroundings.current_east)
+    ship = known.ship
+    current = (surroundings.current_north, surroundings.current_east)
     # What thrusters give: what they are told and their error, or nothing.
     acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
     X, Y, N = [where(acting, error, 0.0 * error) for error in surroundings.thrust_error]
     delivered = known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N
-    motion, thrusters = (*ship, *through_water(ship.psi, ship.u, ship.v, *current)), delivered
-    predictions, before = [], 0.0
+    motion = (*ship, *through_water(ship.psi, ship.u, ship.v, *current))
+    thrusters = delivered
+    predictions = []
+    before = 0.0
     for horizon in horizons:
         steps = int(ceil((horizon - before) / longest_step))
         h = (horizon - before) / steps
-        motion = times(steps, lambda now, h=h: advance(now, thrusters, surroundings, h, hull=hull, wind=wind), motion)
+        motion = times(
+            steps,
+            lambda now, h=h: advance(now, thrusters, surroundings, h, hull=hull, wind=wind),
+            motion,
+        )
         predictions.append(Motion(*motion[:6]))
         before = horizon
     return tuple(predictions)
 
 
 def advance(
-    motion: tuple, thrusters: Load, around: Surroundings, h: float, *, hull: HullParameters, wind: WindParameters
+    motion: tuple,
+    thrusters: Load,
+    around: Surroundings,
+    h: float,
+    *,
+    hull: HullParameters,
+    wind: WindParameters,
 ) -> tuple:
     """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`.
 
@@ -101,10 +114,15 @@ def advance(
     As `predict`.
     """
     x, y, psi, u, v, r, u_r, v_r = motion
-    current, middle = (around.current_north, around.current_east), psi + 0.5 * h * r
-    wind_X, wind_Y, wind_N = wind_loads(*apparent_wind(middle, u, v, around.wind_north, around.wind_east), wind=wind)
+    current = (around.current_north, around.current_east)
+    middle = psi + 0.5 * h * r
+    wind_X, wind_Y, wind_N = wind_loads(
+        *apparent_wind(middle, u, v, around.wind_north, around.wind_east), wind=wind
+    )
     force_X, force_Y = to_body(middle, around.force_north, around.force_east)
-    X, Y, N = thrusters[0] + wind_X + force_X, thrusters[1] + wind_Y + force_Y, thrusters[2] + wind_N + around.moment
+    X = thrusters[0] + wind_X + force_X
+    Y = thrusters[1] + wind_Y + force_Y
+    N = thrusters[2] + wind_N + around.moment
 
     def rates(u_r, v_r, r):
         return accelerations(u_r, v_r, r, X, Y, N, hull=hull)

@@ -27,7 +27,9 @@ from shipcosim.models.prediction.helm import LONGEST, Aboard, HelmParameters
 from shipcosim.models.prediction.regions import RegionParameters, widening
 from shipcosim.models.ship.hull import HullParameters
 
-PLACE_GAIN, VELOCITY_GAIN, LOAD_GAIN = 0.2, 0.3, 0.03
+PLACE_GAIN = 0.2
+VELOCITY_GAIN = 0.3
+LOAD_GAIN = 0.03
 """Shares of what was missed a second later that go into place and heading, velocity, and load. [1] Chosen on training
 dockings."""
 POWERS = (0, 1, 2, 3)
@@ -114,7 +116,13 @@ def begin(aboard: Aboard, age: float) -> Own:
 
 
 def follow(
-    own: Own, before: Aboard, now: Aboard, *, hull: HullParameters, wind: WindParameters, helm_: HelmParameters
+    own: Own,
+    before: Aboard,
+    now: Aboard,
+    *,
+    hull: HullParameters,
+    wind: WindParameters,
+    helm_: HelmParameters,
 ) -> Own:
     """Record a second later: an observer of place, velocity and load with constant gains.
 
@@ -139,7 +147,9 @@ def follow(
     missed = [seen - thought for seen, thought in zip(measured, foreseen, strict=True)]
     missed[2] = wrap(missed[2])
     gains = (PLACE_GAIN,) * 3 + (VELOCITY_GAIN,) * 3
-    ship = [thought + gain * one for thought, gain, one in zip(foreseen, gains, missed, strict=True)]
+    ship = [
+        thought + gain * one for thought, gain, one in zip(foreseen, gains, missed, strict=True)
+    ]
     ship[2] = wrap(ship[2])
     i11, i22, _, _, i66 = hull.inverse_mass
     load = tuple(
@@ -169,12 +179,22 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
         Where the quay is now and in 30 s [1], velocities now and then [m/s, rad/s], turn [rad], load [m/s2, rad/s2],
         wind [m/s], what thrusters are told and give [N, rpm, rad].
     """
-    ship, (i11, i22, _, _, i66) = own.ship, hull.inverse_mass
-    found = [*quay(ship), *quay(ahead), *ship[3:], *ahead[3:], wrap(np.asarray(ahead.psi - ship.psi))]
+    ship = own.ship
+    (i11, i22, _, _, i66) = hull.inverse_mass
+    found = [
+        *quay(ship),
+        *quay(ahead),
+        *ship[3:],
+        *ahead[3:],
+        wrap(np.asarray(ahead.psi - ship.psi)),
+    ]
     found += [own.load[0] * i11, own.load[1] * i22, own.load[2] * i66]
     found += [aboard.wind_speed * cos(aboard.wind_from), aboard.wind_speed * sin(aboard.wind_from)]
     for k in (0, 1):
-        for size, angle in ((aboard.thrust_cmd[k], aboard.azimuth_cmd[k]), (aboard.rpm[k], aboard.azimuth[k])):
+        for size, angle in (
+            (aboard.thrust_cmd[k], aboard.azimuth_cmd[k]),
+            (aboard.rpm[k], aboard.azimuth[k]),
+        ):
             found += [size * cos(angle), size * sin(angle)]
         found += [aboard.azimuth[k]]
     found += [aboard.thrust_cmd[2], aboard.rpm[2]]
@@ -219,7 +239,9 @@ def empty(trained: Trained, shape: tuple[int, ...] = ()) -> tuple[tuple[Memory, 
     return tuple(empty_memory(network, shape) for network in trained.networks)
 
 
-def outputs(inputs: np.ndarray, memory: Sequence[tuple[Memory, ...]], trained: Trained) -> tuple[np.ndarray, tuple]:
+def outputs(
+    inputs: np.ndarray, memory: Sequence[tuple[Memory, ...]], trained: Trained
+) -> tuple[np.ndarray, tuple]:
     """Outputs of all members for one sample.
 
     Parameters
@@ -236,7 +258,9 @@ def outputs(inputs: np.ndarray, memory: Sequence[tuple[Memory, ...]], trained: T
     (members, ..., 3 k) array and tuple
         Outputs with their scale, memory after the sample. [m, m, rad; 1]
     """
-    pairs = [evaluate(net, inputs, kept) for net, kept in zip(trained.networks, memory, strict=True)]
+    pairs = [
+        evaluate(net, inputs, kept) for net, kept in zip(trained.networks, memory, strict=True)
+    ]
     return trained.scale * np.stack([pair[0] for pair in pairs]), tuple(pair[1] for pair in pairs)
 
 
@@ -313,7 +337,8 @@ def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmet
     """
     sizes = abs((found - trained.mean) / trained.std)
     return trust(
-        np.moveaxis(np.concatenate((sizes, np.asarray(spread(given))[..., None]), axis=-1), -1, 0), trained.limits
+        np.moveaxis(np.concatenate((sizes, np.asarray(spread(given))[..., None]), axis=-1), -1, 0),
+        trained.limits,
     )
 
 
@@ -338,7 +363,9 @@ def corrected(ship: Motion, motions: Sequence[Motion], given: np.ndarray) -> lis
     found = []
     for k, motion in enumerate(motions):
         north, east = to_ned(ship.psi, forward[..., k], starboard[..., k])
-        found.append((motion.x + north, motion.y + east, wrap(np.asarray(motion.psi + turn[..., k]))))
+        found.append(
+            (motion.x + north, motion.y + east, wrap(np.asarray(motion.psi + turn[..., k])))
+        )
     return found
 
 
@@ -362,12 +389,16 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
     found = []
     for one, other in zip(kinetic, learned, strict=True):
         away = other[0] - one.x, other[1] - one.y, wrap(np.asarray(other[2] - one.psi))
-        x, y, psi = (where(share > 0.0, a + share * d, a) for a, d in zip(one[:3], away, strict=True))
+        x, y, psi = (
+            where(share > 0.0, a + share * d, a) for a, d in zip(one[:3], away, strict=True)
+        )
         found.append((x, y, where(share > 0.0, wrap(np.asarray(psi)), one.psi)))
     return found
 
 
-def regions(widths: np.ndarray, errors: tuple[Arithmetic, Arithmetic]) -> tuple[list[Arithmetic], list[Arithmetic]]:
+def regions(
+    widths: np.ndarray, errors: tuple[Arithmetic, Arithmetic]
+) -> tuple[list[Arithmetic], list[Arithmetic]]:
     """Regions about predictions, widened by the predictor's own record as `regions.widening`.
 
     Parameters
@@ -383,6 +414,10 @@ def regions(widths: np.ndarray, errors: tuple[Arithmetic, Arithmetic]) -> tuple[
     tuple of two lists of three, like errors
         Radii and half-widths. [m, rad]
     """
-    known = RegionParameters(ordinary_position_error=float(widths[6]), ordinary_heading_error=float(widths[7]))
+    known = RegionParameters(
+        ordinary_position_error=float(widths[6]), ordinary_heading_error=float(widths[7])
+    )
     position, heading = widening(errors, 0.0, regions=known)
-    return [position * float(one) for one in widths[:3]], [heading * float(one) for one in widths[3:6]]
+    return [position * float(one) for one in widths[:3]], [
+        heading * float(one) for one in widths[3:6]
+    ]

@@ -99,7 +99,11 @@ class PaperIii(Kinetic):
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
         found = paper_iii.inputs(state.aboard)
         expected, memory = paper_iii.errors(found, state.memory, self.ensemble)
-        return paper_iii.corrected(kinetic(state, model), expected), 1.0, state._replace(memory=memory)
+        return (
+            paper_iii.corrected(kinetic(state, model), expected),
+            1.0,
+            state._replace(memory=memory),
+        )
 
 
 @dataclass(frozen=True)
@@ -123,15 +127,22 @@ class Ours(Kinetic):
     def follow(self, state: State, aboard: Aboard, model: Model) -> State:
         laws = {"hull": model.hull, "wind": model.wind, "helm_": model.helm}
         own = docking.follow(
-            state.own or docking.begin(state.aboard, model.helm.position_age), state.aboard, aboard, **laws
+            state.own or docking.begin(state.aboard, model.helm.position_age),
+            state.aboard,
+            aboard,
+            **laws,
         )
         return super().follow(state, aboard, model)._replace(own=own)
 
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
         own = state.own or docking.begin(state.aboard, model.helm.position_age)
-        motions = helm.predict(state.aboard._replace(ship=own.ship), left=own.load, **model._asdict())
+        motions = helm.predict(
+            state.aboard._replace(ship=own.ship), left=own.load, **model._asdict()
+        )
         found = docking.features(state.aboard, own, motions[-1], model.hull)
-        given, memory = docking.outputs(docking.standardised(found, self.trained), state.memory, self.trained)
+        given, memory = docking.outputs(
+            docking.standardised(found, self.trained), state.memory, self.trained
+        )
         share = float(docking.share_of(found, given, self.trained))
         places = docking.corrected(own.ship, motions, given)
         if share < 1.0:

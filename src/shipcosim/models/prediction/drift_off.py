@@ -31,7 +31,17 @@ STEPS = (5, 5, 8)
 """Steps of the filters' integration up to 10, 30 and 60 s, from the one before. [1]"""
 OUT = 1.5
 """Share of the limits of what was learned at which nothing learned is left. [1]"""
-MEASURES = ("speed ahead", "speed across", "yaw rate", "wind", "current", "force", "moment", "coefficients", "spread")
+MEASURES = (
+    "speed ahead",
+    "speed across",
+    "yaw rate",
+    "wind",
+    "current",
+    "force",
+    "moment",
+    "coefficients",
+    "spread",
+)
 """What is compared with its limit. [m/s, m/s, rad/s, m/s, m/s, standard deviations (3), m]"""
 
 
@@ -78,11 +88,15 @@ def trained_of(arrays: Mapping[str, np.ndarray]) -> Trained:
     Trained
         [as in arrays]
     """
-    values = (arrays[name] if arrays[name].ndim else float(arrays[name]) for name in Learned._fields)
+    values = (
+        arrays[name] if arrays[name].ndim else float(arrays[name]) for name in Learned._fields
+    )
     return Trained(Learned(*values), arrays["limits"])
 
 
-def begin(known: Known, *, trained: Trained, hull: HullParameters, parameters: SurroundingsParameters) -> Hybrid:
+def begin(
+    known: Known, *, trained: Trained, hull: HullParameters, parameters: SurroundingsParameters
+) -> Hybrid:
     """State at the start.
 
     Parameters
@@ -136,8 +150,12 @@ def step(
     Hybrid
         With this sample.
     """
-    kinetic = surroundings.step(state.kinetic, known, h, hull=hull, wind=wind, ship=ship, parameters=parameters)
-    return Hybrid(kinetic, own_record.step(state.own, known, h, learned=trained.learned, hull=hull, wind=wind))
+    kinetic = surroundings.step(
+        state.kinetic, known, h, hull=hull, wind=wind, ship=ship, parameters=parameters
+    )
+    return Hybrid(
+        kinetic, own_record.step(state.own, known, h, learned=trained.learned, hull=hull, wind=wind)
+    )
 
 
 def predict(
@@ -175,9 +193,18 @@ def predict(
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
     )
-    options = {"horizons": horizons, "steps": STEPS, "learned": trained.learned, "hull": hull, "wind": wind}
+    options = {
+        "horizons": horizons,
+        "steps": STEPS,
+        "learned": trained.learned,
+        "hull": hull,
+        "wind": wind,
+    }
     found = _ahead(state.own, known, options)
-    share = trust(measures(state.own, known, found[-1], trained.learned), trained.limits) * known.wind_believed
+    share = (
+        trust(measures(state.own, known, found[-1], trained.learned), trained.limits)
+        * known.wind_believed
+    )
     mixed = (own_record.mixed(state.own, one) for one in found)
     return tuple(blended(a, b, share) for a, b in zip(alone, mixed, strict=True)), share
 
@@ -187,8 +214,15 @@ def _ahead(own, known, options):
     if own.mean.ndim > 2:
         return own_record.predict(own, known, **options)
     try:
-        found = [own_record.predict(own_record.member(own, k), known, **options) for k in range(len(own.mean))]
-    except (ValueError, IndexError, OverflowError):  # what is no number stops floats; in arrays it goes on as NaN
+        found = [
+            own_record.predict(own_record.member(own, k), known, **options)
+            for k in range(len(own.mean))
+        ]
+    except (
+        ValueError,
+        IndexError,
+        OverflowError,
+    ):  # what is no number stops floats; in arrays it goes on as NaN
         return own_record.predict(own, known, **options)
     return [Motion(*np.array(motions).T) for motions in zip(*found, strict=True)]
 
@@ -212,14 +246,28 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     (9, ...) array
         [units of `MEASURES`]
     """
-    share, (x, y) = own_record.weights(own), last[:2]
+    share = own_record.weights(own)
+    (x, y) = last[:2]
     states = (share[..., None] * own.mean).sum(axis=0)
-    u_r, v_r = through_water(known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0))
+    u_r, v_r = through_water(
+        known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0)
+    )
     off = (states[..., COEFFICIENT] - learned.mean) / learned.std[..., COEFFICIENT]
     force = states[..., FORCE] / learned.std[..., FORCE]
     apart = share * ((x - (share * x).sum(axis=0)) ** 2 + (y - (share * y).sum(axis=0)) ** 2)
-    found = [u_r, v_r, known.ship.r, hypot(own.wind_north, own.wind_east), _size(states[..., CURRENT]), _size(force)]
-    found += [states[..., MOMENT] / learned.std[..., MOMENT], sqrt((off * off).mean(axis=-1)), sqrt(apart.sum(axis=0))]
+    found = [
+        u_r,
+        v_r,
+        known.ship.r,
+        hypot(own.wind_north, own.wind_east),
+        _size(states[..., CURRENT]),
+        _size(force),
+    ]
+    found += [
+        states[..., MOMENT] / learned.std[..., MOMENT],
+        sqrt((off * off).mean(axis=-1)),
+        sqrt(apart.sum(axis=0)),
+    ]
     return np.abs(np.stack(np.broadcast_arrays(*found)))
 
 

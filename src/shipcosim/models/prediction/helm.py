@@ -18,7 +18,11 @@ from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin
 from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
-from shipcosim.models.propulsion.propeller import PropellerParameters, bollard_speed, propeller_loads
+from shipcosim.models.propulsion.propeller import (
+    PropellerParameters,
+    bollard_speed,
+    propeller_loads,
+)
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 from shipcosim.models.ship.vessel import accelerations, through_water
@@ -37,26 +41,42 @@ class HelmParameters:
     y: float = required("m", "position of the port azimuth to starboard", maximum=0.0)
     diameter: float = required("m", "propeller diameter of an azimuth", minimum=0.01)
     thrust_polynomial: str = required_table(
-        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"), "KT of an azimuth's propeller, as its own parameter"
+        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"),
+        "KT of an azimuth's propeller, as its own parameter",
     )
     torque_polynomial: str = required_table(
-        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"), "KQ of an azimuth's propeller, as its own parameter"
+        ("end [deg]", "k0 [1]", "k1 [1]", "k2 [1]", "k3 [1]"),
+        "KQ of an azimuth's propeller, as its own parameter",
     )
     thrust_factors: str = required_table(
-        ("angle [deg]", "factor [1]"), "factors on CT of an azimuth's propeller, as its own parameter"
+        ("angle [deg]", "factor [1]"),
+        "factors on CT of an azimuth's propeller, as its own parameter",
     )
     torque_factors: str = required_table(
-        ("angle [deg]", "factor [1]"), "factors on CQ of an azimuth's propeller, as its own parameter"
+        ("angle [deg]", "factor [1]"),
+        "factors on CQ of an azimuth's propeller, as its own parameter",
     )
     thrust_scale_outside: float = quantity(
-        1.0, "1", "factor on the thrust of an azimuth outside the first quadrant", "neutral", minimum=0.0
+        1.0,
+        "1",
+        "factor on the thrust of an azimuth outside the first quadrant",
+        "neutral",
+        minimum=0.0,
     )
-    side_force_coefficient: float = required("1", "side force coefficient of an azimuth", minimum=0.0)
-    thrust_rate: float = required("N/s", "largest rate of the thrust command of an azimuth", minimum=0.0)
+    side_force_coefficient: float = required(
+        "1", "side force coefficient of an azimuth", minimum=0.0
+    )
+    thrust_rate: float = required(
+        "N/s", "largest rate of the thrust command of an azimuth", minimum=0.0
+    )
     azimuth_rate: float = required("rad/s", "largest rate at which an azimuth turns", minimum=0.0)
     tunnel_x: float = required("m", "position of the tunnel thruster forward")
-    tunnel_thrust_coefficient: float = required("N/rpm2", "thrust of the tunnel over squared motor speed", minimum=1e-9)
-    tunnel_thrust_rate: float = required("N/s", "largest rate of the tunnel's thrust command", minimum=0.0)
+    tunnel_thrust_coefficient: float = required(
+        "N/rpm2", "thrust of the tunnel over squared motor speed", minimum=1e-9
+    )
+    tunnel_thrust_rate: float = required(
+        "N/s", "largest rate of the tunnel's thrust command", minimum=0.0
+    )
     position_age: float = quantity(
         0.0,
         "s",
@@ -102,7 +122,16 @@ class Aboard(NamedTuple):
 
 
 KNOWN = (
-    *("x_meas", "y_meas", "psi_meas", "u_meas", "v_meas", "r_meas", "wind_speed_meas", "wind_from_meas"),
+    *(
+        "x_meas",
+        "y_meas",
+        "psi_meas",
+        "u_meas",
+        "v_meas",
+        "r_meas",
+        "wind_speed_meas",
+        "wind_from_meas",
+    ),
     *("port_thrust_cmd", "port_azimuth_cmd", "port_rpm", "port_azimuth"),
     *("starboard_thrust_cmd", "starboard_azimuth_cmd", "starboard_rpm", "starboard_azimuth"),
     *("tunnel_thrust_cmd", "tunnel_rpm"),
@@ -126,7 +155,9 @@ def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
         [as its fields]
     """
     ship = Motion(*(known[name] for name in KNOWN[:6]))
-    wind = wind_from_mast(known["wind_speed_meas"], known["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast)
+    wind = wind_from_mast(
+        known["wind_speed_meas"], known["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast
+    )
     return Aboard(
         ship,
         *wind,
@@ -240,18 +271,25 @@ def thruster_loads(
 
 def _azimuth(aboard, k, y, water, helm):
     """Load of one azimuth over time and velocity, as `azimuth.azimuth_loads` without its losses."""
-    n, azimuth = aboard.rpm[k] / 60.0, aboard.azimuth[k]
+    n = aboard.rpm[k] / 60.0
+    azimuth = aboard.azimuth[k]
     u, v = velocity_at(helm.x, y, water[0], water[1], aboard.ship.r)
-    thrust_now, _ = propeller_loads(cos(azimuth) * u + sin(azimuth) * v, n, propeller=helm.propeller)
-    beyond = n - bollard_speed(thrust_now, propeller=helm.propeller)  # faster than at bollard, for the way that she has
-    turn, D = wrap(aboard.azimuth_cmd[k] - azimuth), helm.diameter
+    thrust_now, _ = propeller_loads(
+        cos(azimuth) * u + sin(azimuth) * v, n, propeller=helm.propeller
+    )
+    beyond = n - bollard_speed(
+        thrust_now, propeller=helm.propeller
+    )  # faster than at bollard, for the way that she has
+    turn = wrap(aboard.azimuth_cmd[k] - azimuth)
+    D = helm.diameter
     side_factor = -helm.side_force_coefficient * helm.propeller.water_density * D * D
 
     def load(t):
         thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
         angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
         wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
-        s, c = sin(angle), cos(angle)
+        s = sin(angle)
+        c = cos(angle)
 
         def at(u_r, v_r, r):
             u, v = velocity_at(helm.x, y, u_r, v_r, r)
@@ -306,7 +344,8 @@ def predict(
     air = _air(aboard)
     x, y, psi, _, _, r = ship
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
-    loads, found = thruster_loads(aboard, (u_r, v_r), helm=helm), []
+    loads = thruster_loads(aboard, (u_r, v_r), helm=helm)
+    found = []
     for second in range(seconds):
         rates = _rates(loads(second + 0.5), psi + 0.5 * r, current, air, left, hull, wind)
         x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
@@ -331,5 +370,8 @@ def _rates(thrusters, heading, current, air, left, hull, wind):
 
 def _air(aboard):
     """Velocity of the air over ground, north and east, as `known.air_velocity`."""
-    ship, speed = aboard.ship, aboard.wind_speed
-    return to_ned(ship.psi, ship.u - speed * cos(aboard.wind_from), ship.v - speed * sin(aboard.wind_from))
+    ship = aboard.ship
+    speed = aboard.wind_speed
+    return to_ned(
+        ship.psi, ship.u - speed * cos(aboard.wind_from), ship.v - speed * sin(aboard.wind_from)
+    )

@@ -169,23 +169,31 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
     Observer with bias load: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
     ch. 13. Gains by the variance of the sea: assumed, of the form that a Kalman gain has over the noise.
     """
-    d, psi, valid = design, measured.psi, measured.valid
+    d = design
+    psi = measured.psi
+    valid = measured.valid
     forward, side = _accelerations(measured, d)
     load = to_body(psi, state.load_north, state.load_east)
     u = _advanced(state.u, forward + load[0], d.surge_time, h)
     v = _advanced(state.v, side + load[1], d.sway_time, h)
     north, east = to_ned(psi, 0.5 * h * (state.u + u), 0.5 * h * (state.v + v))
-    x, y = state.x + north, state.y + east
+    x = state.x + north
+    y = state.y + east
     ahead, beside = (valid * one for one in to_body(psi, measured.x - x, measured.y - y))
-    faster, sideways = valid * (measured.u - u), valid * (measured.v - v)
-    sea = state.sea + h / SEA_TIME * valid * (0.5 * (faster * faster + sideways * sideways) - state.sea)
+    faster = valid * (measured.u - u)
+    sideways = valid * (measured.v - v)
+    sea = state.sea + h / SEA_TIME * valid * (
+        0.5 * (faster * faster + sideways * sideways) - state.sea
+    )
     k = h / (1.0 + d.position_in_sea * sea)
     north, east = to_ned(
         psi,
         k * (d.position_by_position * ahead + d.position_by_velocity * faster),
         k * (d.position_by_position * beside + d.position_by_velocity * sideways),
     )
-    x, y, k = x + north, y + east, h / (1.0 + d.velocity_in_sea * sea)
+    x = x + north
+    y = y + east
+    k = h / (1.0 + d.velocity_in_sea * sea)
     u = u + k * (d.velocity_by_position * ahead + d.velocity_by_velocity * faster)
     v = v + k * (d.velocity_by_position * beside + d.velocity_by_velocity * sideways)
     k = h / (1.0 + d.load_in_sea * sea)
@@ -194,7 +202,8 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
         k * (d.load_by_position * ahead + d.load_by_velocity * faster),
         k * (d.load_by_position * beside + d.load_by_velocity * sideways),
     )
-    fades, follows = (1.0 - valid) * (1.0 - exp(-h / d.load_time)), valid * (1.0 - exp(-h / d.mean_time))
+    fades = (1.0 - valid) * (1.0 - exp(-h / d.load_time))
+    follows = valid * (1.0 - exp(-h / d.mean_time))
     load_north = state.load_north + north + fades * (state.mean_north - state.load_north)
     load_east = state.load_east + east + fades * (state.mean_east - state.load_east)
     mean_north = state.mean_north + follows * (load_north - state.mean_north)
@@ -206,12 +215,21 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
 def _accelerations(measured, d):
     """Of thrust and wind, forward and to starboard."""
     bow_1, bow_2, stern_1, stern_2, port, starboard = measured.commands
-    speed, wind_from = measured.wind_speed, measured.wind_from
+    speed = measured.wind_speed
+    wind_from = measured.wind_from
     square = speed * speed
-    forward = d.ahead * (_ahead(port) + _ahead(starboard)) - d.astern * (_ahead(-port) + _ahead(-starboard))
-    forward = forward + square * (d.wind_surge_1 * cos(wind_from) + d.wind_surge_3 * cos(3.0 * wind_from))
-    side = d.bow * (_signed(bow_1) + _signed(bow_2)) + d.stern * (_signed(stern_1) + _signed(stern_2))
-    return forward, side + square * (d.wind_sway_1 * sin(wind_from) + d.wind_sway_3 * sin(3.0 * wind_from))
+    forward = d.ahead * (_ahead(port) + _ahead(starboard)) - d.astern * (
+        _ahead(-port) + _ahead(-starboard)
+    )
+    forward = forward + square * (
+        d.wind_surge_1 * cos(wind_from) + d.wind_surge_3 * cos(3.0 * wind_from)
+    )
+    side = d.bow * (_signed(bow_1) + _signed(bow_2)) + d.stern * (
+        _signed(stern_1) + _signed(stern_2)
+    )
+    return forward, side + square * (
+        d.wind_sway_1 * sin(wind_from) + d.wind_sway_3 * sin(3.0 * wind_from)
+    )
 
 
 def _ahead(command):

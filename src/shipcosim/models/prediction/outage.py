@@ -109,7 +109,8 @@ def radius(lost_for: Arithmetic, sea: Arithmetic, *, region: Region) -> Arithmet
     ----------
     Calibration: Vovk, Gammerman, Shafer, Algorithmic Learning in a Random World, Springer, 2005, split conformal.
     """
-    times, radii = region.times, region.radii
+    times = region.times
+    radii = region.radii
     slope = (radii[-1] - radii[-2]) / (times[-1] - times[-2])
     beyond = 0.5 * (abs(lost_for - times[-1]) + lost_for - times[-1])
     return (interp(lost_for, times, radii) + slope * beyond) * (1.0 + region.sea_share * sqrt(sea))

@@ -23,9 +23,20 @@ COEFFICIENTS = (
 """Coefficients of the residual load, in their order in the state."""
 MEASURED = ("x", "y", "psi", "u", "v", "r")
 """States that the observer of the DP controller gives. [m, m, rad, m/s, m/s, rad/s]"""
-STATES = (*MEASURED, "current_north", "current_east", "force_north", "force_east", "moment", *COEFFICIENTS)
+STATES = (
+    *MEASURED,
+    "current_north",
+    "current_east",
+    "force_north",
+    "force_east",
+    "moment",
+    *COEFFICIENTS,
+)
 """States of the filter. [as `MEASURED`, m/s, m/s, N, N, N.m, 1]"""
-CURRENT, FORCE, MOMENT, COEFFICIENT = slice(6, 8), slice(8, 10), 10, slice(11, None)
+CURRENT = slice(6, 8)
+FORCE = slice(8, 10)
+MOMENT = 10
+COEFFICIENT = slice(11, None)
 """Where they are among the states. [1]"""
 ARM = 0.42  # of the length, bow and stern thrusters from midships: assumed
 SLOW = 0.2  # m/s, where linear and quadratic damping of one coefficient are alike
@@ -151,10 +162,13 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     share = 1.0 - exp(-h / learned.lag)
     stern = sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
     bow = sqrt((abs(thrust.bow) + _TINY) / HELD)
-    slowed_stern, slowed_bow = 1.0 + h * stern / learned.run_down_stern, 1.0 + h * bow / learned.run_down_bow
+    slowed_stern = 1.0 + h * stern / learned.run_down_stern
+    slowed_bow = 1.0 + h * bow / learned.run_down_bow
     factors = slowed_bow**-2, slowed_stern**-2, slowed_stern**-2
     values = zip(thrust, told, factors, strict=True)
-    return Thrust(*[where(lost, now * factor, now + share * (then - now)) for now, then, factor in values])
+    return Thrust(
+        *[where(lost, now * factor, now + share * (then - now)) for now, then, factor in values]
+    )
 
 
 def residual_load(
@@ -193,16 +207,23 @@ def residual_load(
     Forms of the terms: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6;
     momentum drag of running thrusters in proportion to their speed, as `propulsion.azimuth`.
     """
-    c, length = coefficients, hull.length
-    size, arm = 0.5 * hull.water_density * length * hull.draught, ARM * length
+    c = coefficients
+    length = hull.length
+    size = 0.5 * hull.water_density * length * hull.draught
+    arm = ARM * length
     wash = HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
     drag = -c[17] * wash * (v_r - arm * r)
     turn = length * r
-    X = -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r + c[9] * wind[0] + c[13] * thrust.stern_X
+    X = (
+        -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r
+        + c[9] * wind[0]
+        + c[13] * thrust.stern_X
+    )
     Y = -size * (c[2] * abs(v_r) + c[3] * SLOW) * v_r + c[10] * wind[1] + drag
     N = (c[4] * abs(v_r) + c[5] * SLOW + c[6] * u_r) * v_r + (c[7] * abs(turn) + c[8] * SLOW) * turn
     N = -size * length * N + c[11] * wind[2] + 0.1 * length * c[12] * wind[1] - arm * drag
-    stern, bow = c[14] * thrust.stern_Y, c[15] * thrust.bow
+    stern = c[14] * thrust.stern_Y
+    bow = c[15] * thrust.bow
     return X - c[16] * wash * u_r, Y + stern + bow, N + arm * (bow - stern)
 
 
@@ -246,26 +267,36 @@ def moved(
     ----------
     Equations of motion as `ship.vessel`.
     """
-    half, (x, y, psi, u, v, r) = 0.5 * h, states[:6]
+    half = 0.5 * h
+    (x, y, psi, u, v, r) = states[:6]
     middle = psi + half * r
     u_c, v_c = to_body(middle, *states[CURRENT])
     load = wind_loads(*apparent_wind(middle, u, v, *air), wind=wind)
     force_X, force_Y = to_body(middle, *states[FORCE])
-    X, Y = load[0] + thrust.stern_X + force_X, load[1] + thrust.stern_Y + thrust.bow + force_Y
+    X = load[0] + thrust.stern_X + force_X
+    Y = load[1] + thrust.stern_Y + thrust.bow + force_Y
     N = load[2] + ARM * hull.length * (thrust.bow - thrust.stern_Y) + states[MOMENT]
     coefficients = tuple(states[COEFFICIENT])
 
     def rates(u, v, r):
         more = residual_load(coefficients, u - u_c, v - v_c, r, load, thrust, hull)
-        u_dot, v_dot, r_dot = accelerations(u - u_c, v - v_c, r, X + more[0], Y + more[1], N + more[2], hull=hull)
+        u_dot, v_dot, r_dot = accelerations(
+            u - u_c, v - v_c, r, X + more[0], Y + more[1], N + more[2], hull=hull
+        )
         return u_dot + r * v_c, v_dot - r * u_c, r_dot
 
     first = rates(u, v, r)
-    u_m, v_m, r_m = u + half * first[0], v + half * first[1], r + half * first[2]
+    u_m = u + half * first[0]
+    v_m = v + half * first[1]
+    r_m = r + half * first[2]
     second = rates(u_m, v_m, r_m)
     north, east = to_ned(psi + half * r_m, u_m, v_m)
     place = x + h * north, y + h * east, psi + h * r_m
-    speeds = [clip(now + h * rate, -most, most) for now, rate, most in zip((u, v, r), second, FASTEST, strict=True)]
-    force, moment = exp(-h / learned.force_time), exp(-h / learned.moment_time)
+    speeds = [
+        clip(now + h * rate, -most, most)
+        for now, rate, most in zip((u, v, r), second, FASTEST, strict=True)
+    ]
+    force = exp(-h / learned.force_time)
+    moment = exp(-h / learned.moment_time)
     faded = [force * one for one in states[FORCE]]
     return [*place, *speeds, *states[CURRENT], *faded, moment * states[MOMENT], *coefficients]

@@ -10,7 +10,17 @@ learned over many ships (`learn.prediction.drift`); from there each ship's own r
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, atan2, cos, exp, library_of, maximum, sin, sqrt, where
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    atan2,
+    cos,
+    exp,
+    library_of,
+    maximum,
+    sin,
+    sqrt,
+    where,
+)
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction.own_model import (
@@ -31,7 +41,20 @@ from shipcosim.models.ship.hull import HullParameters
 
 DIRECTIONS = ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 """Current with which each filter begins, north and east, over `Learned.current_away`. [1]"""
-DIFFERENCES = (1e-2, 1e-2, 1e-4, 1e-3, 1e-3, 1e-4, 1e-2, 1e-2, 1e2, 1e2, 1e3, *(0.05,) * len(COEFFICIENTS))
+DIFFERENCES = (
+    1e-2,
+    1e-2,
+    1e-4,
+    1e-3,
+    1e-3,
+    1e-4,
+    1e-2,
+    1e-2,
+    1e2,
+    1e2,
+    1e3,
+    *(0.05,) * len(COEFFICIENTS),
+)
 """Over which slopes are taken. [units of `STATES`]"""
 STRONGEST = 5.0  # m/s, current from which on a filter has gone astray, as from `FASTEST` on
 NO_NUMBER = 1e12  # beyond any sum of states and likelihood
@@ -91,11 +114,14 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     """
     like = 0.0 * (learned.mean[..., 0] + known.ship.u)
     library = library_of(like)
-    mean, std = library.stack(_believed(known, learned, like)), learned.std + like[..., None]
+    mean = library.stack(_believed(known, learned, like))
+    std = learned.std + like[..., None]
     covariance = (std * std)[..., None] * library.eye(len(STATES), dtype=std.dtype)
     air = [like + one for one in air_velocity(known)]
     covariance = library.stack([covariance] * len(DIRECTIONS))
-    return Record(mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), *air, *air)
+    return Record(
+        mean, covariance, 0.0 * mean[..., 0], thrust_told(known.thrusters, hull), *air, *air
+    )
 
 
 def weights(record: Record) -> Arithmetic:
@@ -145,7 +171,13 @@ def mixed(record: Record, motions: Motion) -> Motion:
 
 
 def step(
-    record: Record, known: Known, h: float, *, learned: Learned, hull: HullParameters, wind: WindParameters
+    record: Record,
+    known: Known,
+    h: float,
+    *,
+    learned: Learned,
+    hull: HullParameters,
+    wind: WindParameters,
 ) -> Record:
     """The record a sample later.
 
@@ -179,23 +211,36 @@ def step(
     Jazwinski, Stochastic processes and filtering theory, Academic Press, 1970, ch. 8; Gaussian sum: Alspach and
     Sorenson, Nonlinear Bayesian estimation using Gaussian sum approximations, IEEE Trans. Automatic Control 17, 1972.
     """
-    library, told = library_of(record.mean), thrust_told(known.thrusters, hull)
-    believed, air = known.wind_believed > 0.5, air_velocity(known)
-    air = [where(believed, now, mean) for now, mean in zip(air, (record.wind_north, record.wind_east), strict=True)]
+    library = library_of(record.mean)
+    told = thrust_told(known.thrusters, hull)
+    believed = known.wind_believed > 0.5
+    air = air_velocity(known)
+    air = [
+        where(believed, now, mean)
+        for now, mean in zip(air, (record.wind_north, record.wind_east), strict=True)
+    ]
     thrust = delivered(record.thrust, told, h, learned=learned)
     held = Thrust(*[0.5 * (a + b) for a, b in zip(record.thrust, thrust, strict=True)])
     over = 0.5 * (record.air_north + air[0]), 0.5 * (record.air_east + air[1])
-    then, slopes = _elapsed(record.mean, over, held, h, {"learned": learned, "hull": hull, "wind": wind}, library)
-    covariance = slopes @ record.covariance @ library.swapaxes(slopes, -1, -2) + _grown(h, learned, library)
+    then, slopes = _elapsed(
+        record.mean, over, held, h, {"learned": learned, "hull": hull, "wind": wind}, library
+    )
+    covariance = slopes @ record.covariance @ library.swapaxes(slopes, -1, -2) + _grown(
+        h, learned, library
+    )
     mean, covariance, likelihood = _corrected(then, covariance, known.ship, h, learned, library)
-    likelihood = record.likelihood * exp(-h / learned.evidence_time) + learned.evidence * h * likelihood
+    likelihood = (
+        record.likelihood * exp(-h / learned.evidence_time) + learned.evidence * h * likelihood
+    )
     astray, likelihood = _astray(then, mean, likelihood, library)
     if astray.any():
         fresh = begin(known, learned=learned, hull=hull)
         mean = where(astray[..., None], fresh.mean, mean)
         covariance = where(astray[..., None, None], fresh.covariance, covariance)
     share = 1.0 - exp(-h / learned.wind_time)
-    means = [m + share * (a - m) for m, a in zip((record.wind_north, record.wind_east), air, strict=True)]
+    means = [
+        m + share * (a - m) for m, a in zip((record.wind_north, record.wind_east), air, strict=True)
+    ]
     return Record(mean, covariance, likelihood, thrust, *air, *means)
 
 
@@ -237,14 +282,23 @@ def predict(
     """
     single = record.mean.ndim == 1  # in Python's floats it takes a tenth of the time
     states = record.mean.tolist() if single else [record.mean[..., k] for k in range(len(STATES))]
-    thrust, told = record.thrust, thrust_told(known.thrusters, hull)
-    air, model = (record.wind_north, record.wind_east), {"learned": learned, "hull": hull, "wind": wind}
-    found, before = [], 0.0
+    thrust = record.thrust
+    told = thrust_told(known.thrusters, hull)
+    air = (record.wind_north, record.wind_east)
+    model = {"learned": learned, "hull": hull, "wind": wind}
+    found = []
+    before = 0.0
     for horizon, count in zip(horizons, steps, strict=True):
         h = (horizon - before) / count
         for _ in range(count):
             then = delivered(thrust, told, h, learned=learned)
-            states = moved(states, air, Thrust(*[_mean(a, b) for a, b in zip(thrust, then, strict=True)]), h, **model)
+            states = moved(
+                states,
+                air,
+                Thrust(*[_mean(a, b) for a, b in zip(thrust, then, strict=True)]),
+                h,
+                **model,
+            )
             thrust = then
         found.append(Motion(*states[: len(MEASURED)]))
         before = horizon
@@ -270,16 +324,26 @@ def member(record: Record, index: int) -> Record:
     ----------
     Definition.
     """
-    thrust, rest = Thrust(*map(float, record.thrust)), map(float, record[4:])
-    return Record(record.mean[index], record.covariance[index], float(record.likelihood[index]), thrust, *rest)
+    thrust = Thrust(*map(float, record.thrust))
+    rest = map(float, record[4:])
+    return Record(
+        record.mean[index], record.covariance[index], float(record.likelihood[index]), thrust, *rest
+    )
 
 
 def _believed(known, learned, like):
     """Expected states of each filter before any record."""
-    library, found = library_of(like), []
+    library = library_of(like)
+    found = []
     for directions in DIRECTIONS:
         current = [learned.current_away * one for one in directions]
-        others = [*current, 0.0, 0.0, 0.0, *(learned.mean[..., k] for k in range(len(COEFFICIENTS)))]
+        others = [
+            *current,
+            0.0,
+            0.0,
+            0.0,
+            *(learned.mean[..., k] for k in range(len(COEFFICIENTS))),
+        ]
         found.append(library.stack([like + one for one in (*known.ship, *others)], -1))
     return found
 
@@ -296,19 +360,40 @@ def _elapsed(mean, air, thrust, h, model, library):
         len(STATES), *(1,) * (mean.ndim - 1), len(STATES)
     )
     at = library.concatenate([mean[None], mean[None] + moves])
-    then = library.stack(moved([at[..., k] for k in range(len(STATES))], air, thrust, h, **model), -1)
-    return then[0], library.moveaxis((then[1:] - then[:1]) / differences.reshape((-1,) + (1,) * mean.ndim), 0, -1)
+    then = library.stack(
+        moved([at[..., k] for k in range(len(STATES))], air, thrust, h, **model), -1
+    )
+    return then[0], library.moveaxis(
+        (then[1:] - then[:1]) / differences.reshape((-1,) + (1,) * mean.ndim), 0, -1
+    )
 
 
 def _grown(h, learned, library):
     """Covariance that a step adds."""
-    force, moment = exp(-2.0 * h / learned.force_time), exp(-2.0 * h / learned.moment_time)
-    zero, variances = 0.0 * learned.current_walk, learned.std * learned.std
-    speed, rate = h * learned.disturbance[..., 0] ** 2, h * learned.disturbance[..., 1] ** 2
+    force = exp(-2.0 * h / learned.force_time)
+    moment = exp(-2.0 * h / learned.moment_time)
+    zero = 0.0 * learned.current_walk
+    variances = learned.std * learned.std
+    speed = h * learned.disturbance[..., 0] ** 2
+    rate = h * learned.disturbance[..., 1] ** 2
     current = h * learned.current_walk**2
-    forces = [(1.0 - force) * variances[..., FORCE.start], (1.0 - force) * variances[..., FORCE.start + 1]]
+    forces = [
+        (1.0 - force) * variances[..., FORCE.start],
+        (1.0 - force) * variances[..., FORCE.start + 1],
+    ]
     forces.append((1.0 - moment) * variances[..., MOMENT])
-    diagonal = [zero, zero, zero, speed, speed, rate, current, current, *forces, *(zero,) * len(COEFFICIENTS)]
+    diagonal = [
+        zero,
+        zero,
+        zero,
+        speed,
+        speed,
+        rate,
+        current,
+        current,
+        *forces,
+        *(zero,) * len(COEFFICIENTS),
+    ]
     return library.stack(diagonal, -1)[..., None] * library.eye(len(STATES), dtype=variances.dtype)
 
 

@@ -18,8 +18,25 @@ from shipcosim.models.core.networks import Memory, Network, empty_memory, evalua
 from shipcosim.models.prediction.helm import LONGEST, Aboard
 
 INPUTS = (
-    *("north", "east", "heading", "surge speed", "sway speed", "heading rate", "wind direction", "wind speed"),
-    *("course", "total speed", "port rpm", "port angle", "starboard rpm", "starboard angle", "tunnel rpm"),
+    *(
+        "north",
+        "east",
+        "heading",
+        "surge speed",
+        "sway speed",
+        "heading rate",
+        "wind direction",
+        "wind speed",
+    ),
+    *(
+        "course",
+        "total speed",
+        "port rpm",
+        "port angle",
+        "starboard rpm",
+        "starboard angle",
+        "tunnel rpm",
+    ),
 )
 """Table III without roll, pitch and heave and their rates, which a ship of three degrees of freedom has not."""
 
@@ -75,9 +92,19 @@ def inputs(aboard: Aboard) -> np.ndarray:
     (..., 15) array
         [m, rad, m/s, rad/s, rpm]
     """
-    ship, turn = aboard.ship, 2.0 * pi
+    ship = aboard.ship
+    turn = 2.0 * pi
     north, east = to_ned(ship.psi, ship.u, ship.v)
-    found = [ship.x, ship.y, ship.psi % turn, ship.u, ship.v, ship.r, aboard.wind_from % turn, aboard.wind_speed]
+    found = [
+        ship.x,
+        ship.y,
+        ship.psi % turn,
+        ship.u,
+        ship.v,
+        ship.r,
+        aboard.wind_from % turn,
+        aboard.wind_speed,
+    ]
     found += [atan2(east, north) % turn, hypot(north, east)]
     found += [aboard.rpm[0], aboard.azimuth[0], aboard.rpm[1], aboard.azimuth[1], aboard.rpm[2]]
     return np.stack(np.broadcast_arrays(*found), axis=-1)
@@ -141,4 +168,7 @@ def corrected(motions: Sequence[Motion], expected: np.ndarray) -> list[tuple]:
     list of tuples of three
         North, east, heading, one a second. [m, m, rad]
     """
-    return [(one.x + expected[..., k], one.y + expected[..., LONGEST + k], one.psi) for k, one in enumerate(motions)]
+    return [
+        (one.x + expected[..., k], one.y + expected[..., LONGEST + k], one.psi)
+        for k, one in enumerate(motions)
+    ]

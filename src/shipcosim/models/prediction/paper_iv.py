@@ -104,7 +104,13 @@ def outputs(ensemble: Ensemble, inputs: np.ndarray) -> np.ndarray:
 
 
 def model_acceleration(
-    psi: Arithmetic, nu: tuple, air: tuple, thrusters: tuple, *, hull: HullParameters, wind: WindParameters
+    psi: Arithmetic,
+    nu: tuple,
+    air: tuple,
+    thrusters: tuple,
+    *,
+    hull: HullParameters,
+    wind: WindParameters,
 ) -> Load:
     """Acceleration over ground by the equations of motion, without a current.
 
@@ -174,7 +180,13 @@ def step(past: Past, known: Known, *, hull: HullParameters, wind: WindParameters
 
 
 def predict(
-    past: Past, known: Known, ensemble: Ensemble | None, *, seconds: int, hull: HullParameters, wind: WindParameters
+    past: Past,
+    known: Known,
+    ensemble: Ensemble | None,
+    *,
+    seconds: int,
+    hull: HullParameters,
+    wind: WindParameters,
 ) -> list[Motion]:
     """Motion of each second ahead.
 
@@ -202,7 +214,10 @@ def predict(
     the networks. Wind and thrust are held.
     """
     psi, *nu = (sum(one) / WINDOW for one in zip(*past.states, strict=True))
-    x, y, residual, found = known.ship.x, known.ship.y, past.residual, []
+    x = known.ship.x
+    y = known.ship.y
+    residual = past.residual
+    found = []
     for _ in range(seconds):
         dot = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
         if ensemble is not None:
@@ -213,6 +228,9 @@ def predict(
         then = [value + PERIOD * rate for value, rate in zip(nu, dot, strict=True)]
         u, v, r = (0.5 * (a + b) for a, b in zip(nu, then, strict=True))
         north, east = to_ned(psi + 0.5 * PERIOD * r, u, v)
-        x, y, psi, nu = x + PERIOD * north, y + PERIOD * east, psi + PERIOD * r, then
+        x = x + PERIOD * north
+        y = y + PERIOD * east
+        psi = psi + PERIOD * r
+        nu = then
         found.append(Motion(x, y, psi, *nu))
     return found

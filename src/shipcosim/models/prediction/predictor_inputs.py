@@ -65,5 +65,8 @@ def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:
     ----------
     Definition; the inverse of `wind_loads.apparent_wind`.
     """
-    ship, speed = known.ship, known.wind_speed
-    return to_ned(ship.psi, ship.u - speed * cos(known.wind_from), ship.v - speed * sin(known.wind_from))
+    ship = known.ship
+    speed = known.wind_speed
+    return to_ned(
+        ship.psi, ship.u - speed * cos(known.wind_from), ship.v - speed * sin(known.wind_from)
+    )

@@ -32,9 +32,15 @@ _NONE = "neutral: not calibrated"
 class RegionParameters:
     """Sizes of the regions about predictions 10, 30 and 60 s ahead, of a ship that has just lost all thrust."""
 
-    position_half_width_10: float = quantity(0.0, "m", "radius of 90 % of the places in 10 s", _NONE, minimum=0.0)
-    position_half_width_30: float = quantity(0.0, "m", "radius of 90 % of the places in 30 s", _NONE, minimum=0.0)
-    position_half_width_60: float = quantity(0.0, "m", "radius of 90 % of the places in 60 s", _NONE, minimum=0.0)
+    position_half_width_10: float = quantity(
+        0.0, "m", "radius of 90 % of the places in 10 s", _NONE, minimum=0.0
+    )
+    position_half_width_30: float = quantity(
+        0.0, "m", "radius of 90 % of the places in 30 s", _NONE, minimum=0.0
+    )
+    position_half_width_60: float = quantity(
+        0.0, "m", "radius of 90 % of the places in 60 s", _NONE, minimum=0.0
+    )
     heading_half_width_10: float = quantity(
         0.0, "rad", "half-width of 90 % of the headings in 10 s", _NONE, minimum=0.0
     )
@@ -46,13 +52,25 @@ class RegionParameters:
     )
 
     later_position_share: float = quantity(
-        1.0, "1", "factor on the radii from 20 s after the loss of thrust on", "neutral", minimum=0.0
+        1.0,
+        "1",
+        "factor on the radii from 20 s after the loss of thrust on",
+        "neutral",
+        minimum=0.0,
     )
     later_heading_share: float = quantity(
-        1.0, "1", "factor on the half-widths of heading from 20 s after the loss of thrust on", "neutral", minimum=0.0
+        1.0,
+        "1",
+        "factor on the half-widths of heading from 20 s after the loss of thrust on",
+        "neutral",
+        minimum=0.0,
     )
     ordinary_position_error: float = quantity(
-        0.3, "m", "own error of 10 s at which the radii are 1.4 times as large", "chosen by seeds 300-311", minimum=1e-3
+        0.3,
+        "m",
+        "own error of 10 s at which the radii are 1.4 times as large",
+        "chosen by seeds 300-311",
+        minimum=1e-3,
     )
     ordinary_heading_error: float = quantity(
         0.03,
@@ -61,7 +79,9 @@ class RegionParameters:
         "chosen by seeds 300-311",
         minimum=1e-4,
     )
-    error_time: float = quantity(20.0, "s", "over which own errors are averaged", "assumed", minimum=1.0)
+    error_time: float = quantity(
+        20.0, "s", "over which own errors are averaged", "assumed", minimum=1.0
+    )
 
     @property
     def positions(self) -> tuple[float, float, float]:
@@ -75,7 +95,12 @@ class RegionParameters:
 
 
 def own_errors(
-    errors: tuple[Arithmetic, Arithmetic], ship: Motion, foreseen: Motion, h: float, *, regions: RegionParameters
+    errors: tuple[Arithmetic, Arithmetic],
+    ship: Motion,
+    foreseen: Motion,
+    h: float,
+    *,
+    regions: RegionParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
     """Mean errors of the predictor's own record, a sample later.
 

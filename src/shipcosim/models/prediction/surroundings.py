@@ -29,20 +29,40 @@ class SurroundingsParameters:
     """What is assumed of current, remaining force and wind before they are seen."""
 
     current_std: float = quantity(
-        0.4, "m/s", "standard deviation of the current north and east, before it is estimated", "assumed", minimum=1e-3
+        0.4,
+        "m/s",
+        "standard deviation of the current north and east, before it is estimated",
+        "assumed",
+        minimum=1e-3,
     )
     current_drift: float = quantity(
-        1e-5, "m2/s3", "intensity of the random walk of the current", "assumed: 0.2 m/s in an hour", minimum=0.0
+        1e-5,
+        "m2/s3",
+        "intensity of the random walk of the current",
+        "assumed: 0.2 m/s in an hour",
+        minimum=0.0,
     )
-    force_std: float = required("N", "standard deviation of the remaining force north and east", minimum=1.0)
+    force_std: float = required(
+        "N", "standard deviation of the remaining force north and east", minimum=1.0
+    )
     force_time: float = quantity(
-        100.0, "s", "correlation time of the remaining force", "assumed: slow wave drift", minimum=1.0
+        100.0,
+        "s",
+        "correlation time of the remaining force",
+        "assumed: slow wave drift",
+        minimum=1.0,
     )
     load_noise: float = required(
-        "N2.s", "intensity of the white noise of the load that the observer leaves to explain", minimum=1.0
+        "N2.s",
+        "intensity of the white noise of the load that the observer leaves to explain",
+        minimum=1.0,
     )
     force_lever: float = quantity(
-        0.1, "1", "lever of the remaining force and of the noise, over the length", "assumed", minimum=1e-3
+        0.1,
+        "1",
+        "lever of the remaining force and of the noise, over the length",
+        "assumed",
+        minimum=1e-3,
     )
     thrust_error: float = quantity(
         0.3,
@@ -58,7 +78,9 @@ class SurroundingsParameters:
         "assumed: that of the observer; 25 to 40 s alike on worlds 300-311",
         minimum=1.0,
     )
-    wind_time: float = quantity(30.0, "s", "time constant of the mean of the wind", "assumed: gusts pass", minimum=1e-3)
+    wind_time: float = quantity(
+        30.0, "s", "time constant of the mean of the wind", "assumed: gusts pass", minimum=1e-3
+    )
 
 
 class Surroundings(NamedTuple):
@@ -89,7 +111,9 @@ class Surroundings(NamedTuple):
     thrust_error: Load = (0.0, 0.0, 0.0)
 
 
-def unknown(known: Known, *, hull: HullParameters, parameters: SurroundingsParameters) -> Surroundings:
+def unknown(
+    known: Known, *, hull: HullParameters, parameters: SurroundingsParameters
+) -> Surroundings:
     """Surroundings at the start: the wind as measured, the rest unknown.
 
     Parameters
@@ -111,10 +135,18 @@ def unknown(known: Known, *, hull: HullParameters, parameters: SurroundingsParam
     Definition.
     """
     zero = 0.0 * known.wind_speed
-    variances = (*(parameters.current_std * parameters.current_std,) * 2, *_of_force(hull, parameters), 0.0, 0.0, 0.0)
+    variances = (
+        *(parameters.current_std * parameters.current_std,) * 2,
+        *_of_force(hull, parameters),
+        0.0,
+        0.0,
+        0.0,
+    )
     indices = range(_STATES)
     covariance = tuple(tuple(zero + variances[i] * (i == j) for j in indices) for i in indices)
-    return Surroundings(*air_velocity(known), zero, zero, zero, zero, zero, covariance, (zero, zero, zero))
+    return Surroundings(
+        *air_velocity(known), zero, zero, zero, zero, zero, covariance, (zero, zero, zero)
+    )
 
 
 def step(
@@ -177,42 +209,73 @@ def step(
     left = _left_to_explain(known, wind_load, ship)
     mean, covariance = _elapsed(surroundings, known.thrusters, h, hull, parameters)
     spread = maximum(sqrt(0.5 * (covariance[0][0] + covariance[1][1])), _LEAST)
-    rows, missed = _slopes(known, mean, spread, hull), _missed(known, left, mean, hull)
-    noise, lever, predicted = parameters.load_noise / h, parameters.force_lever * hull.length, mean
+    rows = _slopes(known, mean, spread, hull)
+    missed = _missed(known, left, mean, hull)
+    noise = parameters.load_noise / h
+    lever = parameters.force_lever * hull.length
+    predicted = mean
     for innovation, row, unit in zip(missed, rows, (1.0, 1.0, lever * lever), strict=True):
-        explained = sum(slope * (now - before) for slope, now, before in zip(row, mean, predicted, strict=True))
+        explained = sum(
+            slope * (now - before) for slope, now, before in zip(row, mean, predicted, strict=True)
+        )
         mean, covariance = _corrected(mean, covariance, row, innovation - explained, unit * noise)
     return Surroundings(*air, *mean[:5], covariance=covariance, thrust_error=tuple(mean[5:]))
 
 
 def _of_force(hull, parameters):
     """Variances of remaining force, north and east, and moment."""
-    force, lever = parameters.force_std * parameters.force_std, parameters.force_lever * hull.length
+    force = parameters.force_std * parameters.force_std
+    lever = parameters.force_lever * hull.length
     return force, force, lever * lever * force
 
 
 def _left_to_explain(known, wind_load, ship):
     """Load that the observer leaves to explain in body axes: bias less damping and less a wind not believed."""
-    motion, bias, lost = known.ship, known.bias, 1.0 - known.wind_believed
-    damping = ship.damping_surge * motion.u, ship.damping_sway * motion.v, ship.damping_yaw * motion.r
-    return [load - damped - lost * air for load, damped, air in zip(bias, damping, wind_load, strict=True)]
+    motion = known.ship
+    bias = known.bias
+    lost = 1.0 - known.wind_believed
+    damping = (
+        ship.damping_surge * motion.u,
+        ship.damping_sway * motion.v,
+        ship.damping_yaw * motion.r,
+    )
+    return [
+        load - damped - lost * air
+        for load, damped, air in zip(bias, damping, wind_load, strict=True)
+    ]
 
 
 def _missed(known, left, mean, hull):
     """What current, force, moment and errors of thrust do not explain of a load."""
-    motion, error = known.ship, mean[5:]
+    motion = known.ship
+    error = mean[5:]
     X, Y, N = hull_loads(*through_water(*motion[2:5], *mean[:2]), motion.r, hull=hull)
     force_X, force_Y = to_body(motion.psi, *mean[2:4])
-    return left[0] - X - force_X - error[0], left[1] - Y - force_Y - error[1], left[2] - N - mean[4] - error[2]
+    return (
+        left[0] - X - force_X - error[0],
+        left[1] - Y - force_Y - error[1],
+        left[2] - N - mean[4] - error[2],
+    )
 
 
 def _slopes(known, mean, span, hull):
     """Slopes of the loads forward, to starboard and in yaw over all states."""
-    psi, r = known.ship.psi, known.ship.r
+    psi = known.ship.psi
+    r = known.ship.r
     u_r, v_r = through_water(*known.ship[2:5], *mean[:2])
-    over_u = zip(hull_loads(u_r + span, v_r, r, hull=hull), hull_loads(u_r - span, v_r, r, hull=hull), strict=True)
-    over_v = zip(hull_loads(u_r, v_r + span, r, hull=hull), hull_loads(u_r, v_r - span, r, hull=hull), strict=True)
-    X_u, Y_u, N_u = [(below - above) / (2.0 * span) for above, below in over_u]  # a current takes from u_r
+    over_u = zip(
+        hull_loads(u_r + span, v_r, r, hull=hull),
+        hull_loads(u_r - span, v_r, r, hull=hull),
+        strict=True,
+    )
+    over_v = zip(
+        hull_loads(u_r, v_r + span, r, hull=hull),
+        hull_loads(u_r, v_r - span, r, hull=hull),
+        strict=True,
+    )
+    X_u, Y_u, N_u = [
+        (below - above) / (2.0 * span) for above, below in over_u
+    ]  # a current takes from u_r
     X_v, Y_v, N_v = [(below - above) / (2.0 * span) for above, below in over_v]
     one = 1.0 + 0.0 * psi
     return (
@@ -224,16 +287,25 @@ def _slopes(known, mean, span, hull):
 
 def _elapsed(surroundings, thrusters, h, hull, parameters):
     """Mean and covariance of all states a sample later, before the measurement."""
-    p, (X, Y, N), arm = parameters, thrusters, _ARM * hull.length
-    keep, held, turning = exp(-h / p.force_time), exp(-h / p.thrust_error_time), N / arm
+    p = parameters
+    (X, Y, N) = thrusters
+    arm = _ARM * hull.length
+    keep = exp(-h / p.force_time)
+    held = exp(-h / p.thrust_error_time)
+    turning = N / arm
     kept = (1.0, 1.0, keep, keep, keep, held, held, held)
     force = [(1.0 - keep * keep) * variance for variance in _of_force(hull, p)]
-    error = (1.0 - held * held) * p.thrust_error * p.thrust_error * (X * X + Y * Y + turning * turning)
+    error = (
+        (1.0 - held * held) * p.thrust_error * p.thrust_error * (X * X + Y * Y + turning * turning)
+    )
     grown = (h * p.current_drift, h * p.current_drift, *force, error, error, arm * arm * error)
     before = (*surroundings[2:7], *surroundings.thrust_error)
     mean = [factor * value for factor, value in zip(kept, before, strict=True)]
-    P, indices = surroundings.covariance, range(_STATES)
-    covariance = tuple(tuple(kept[i] * kept[j] * P[i][j] + grown[i] * (i == j) for j in indices) for i in indices)
+    P = surroundings.covariance
+    indices = range(_STATES)
+    covariance = tuple(
+        tuple(kept[i] * kept[j] * P[i][j] + grown[i] * (i == j) for j in indices) for i in indices
+    )
     return mean, covariance
 
 
@@ -254,4 +326,6 @@ def _averaged(surroundings, known, h, parameters):
     """Mean velocity of the air a sample later; held while the measured wind is not believed."""
     keep = 1.0 - known.wind_believed * (1.0 - exp(-h / parameters.wind_time))
     before = surroundings.wind_north, surroundings.wind_east
-    return tuple(now + keep * (mean - now) for now, mean in zip(air_velocity(known), before, strict=True))
+    return tuple(
+        now + keep * (mean - now) for now, mean in zip(air_velocity(known), before, strict=True)
+    )

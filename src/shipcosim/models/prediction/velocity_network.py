@@ -22,7 +22,15 @@ from shipcosim.models.prediction.outage import Measured
 HISTORY = 10
 """Samples that a network sees, one a second. [1] Paper II, III-B."""
 FEATURES = (
-    *("heading", "wind angle", "wind speed", "bow power", "bow action", "stern power", "stern action"),
+    *(
+        "heading",
+        "wind angle",
+        "wind speed",
+        "bow power",
+        "bow action",
+        "stern power",
+        "stern action",
+    ),
     *("main power", "main action"),
 )
 """Inputs that paper II considers, Table III, but for the commands, of which it keeps none."""
@@ -127,7 +135,8 @@ def _regressor(arrays, axis):
     network: Network | tuple[Layer, Layer]
     if f"{axis}.hidden.weights" in arrays:
         first, last = (
-            Layer(arrays[f"{axis}.{name}.weights"], arrays[f"{axis}.{name}.bias"]) for name in ("hidden", "dense")
+            Layer(arrays[f"{axis}.{name}.weights"], arrays[f"{axis}.{name}.bias"])
+            for name in ("hidden", "dense")
         )
         network = first, last
     else:
@@ -180,7 +189,8 @@ def start(measured: Measured, *, design: VelocityNetworks) -> State:
     State
         [as its fields]
     """
-    now, zero = features(measured, design.full_power, design.full_command), 0.0 * measured.x
+    now = features(measured, design.full_power, design.full_command)
+    zero = 0.0 * measured.x
     return State(measured.x, measured.y, zero, zero, zero, zero, np.stack([now] * HISTORY, axis=-2))
 
 
@@ -207,7 +217,8 @@ def step(state: State, measured: Measured, h: float, *, design: VelocityNetworks
     ----------
     Paper II, eq. (4).
     """
-    u, v = velocity(state.history, design.surge), velocity(state.history, design.sway)
+    u = velocity(state.history, design.surge)
+    v = velocity(state.history, design.sway)
     north, east = to_ned(measured.psi, u, v)
     lost = measured.valid < 0.5
     now = features(measured, design.full_power, design.full_command)
@@ -239,7 +250,8 @@ def velocity(history: np.ndarray, regressor: Regressor) -> np.ndarray:
     """
     x = (history[..., regressor.inputs] - regressor.mean) / regressor.std
     if isinstance(regressor.network, Network):
-        memory, given = empty_memory(regressor.network, x.shape[:-2]), x[..., 0, :1]
+        memory = empty_memory(regressor.network, x.shape[:-2])
+        given = x[..., 0, :1]
         for k in range(x.shape[-2]):
             given, memory = evaluate(regressor.network, x[..., k, :], memory)
     else:

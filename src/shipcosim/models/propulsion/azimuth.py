@@ -52,7 +52,9 @@ class AzimuthParameters(PropellerParameters):
     friction: float = required("N.m.s/rad", "friction torque over shaft speed", minimum=0.0)
     proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
     integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
-    regeneration: float = quantity(0.0, "1", REGENERATION, "neutral: diode rectifier", minimum=0.0, maximum=1.0)
+    regeneration: float = quantity(
+        0.0, "1", REGENERATION, "neutral: diode rectifier", minimum=0.0, maximum=1.0
+    )
 
     thrust_loss: float = quantity(0.0, "1", LOSS, "neutral", tolerance=0.01, maximum=1.0)
     reverse_loss: float = quantity(
@@ -64,9 +66,15 @@ class AzimuthParameters(PropellerParameters):
         maximum=1.0,
     )
     azimuth_offset: float = quantity(
-        0.0, "rad", "real direction of the thrust minus the given one", "neutral", tolerance=0.2 * pi / 180.0
+        0.0,
+        "rad",
+        "real direction of the thrust minus the given one",
+        "neutral",
+        tolerance=0.2 * pi / 180.0,
     )
-    rpm_offset: float = quantity(0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", share=5e-4)
+    rpm_offset: float = quantity(
+        0.0, "rpm", "given shaft speed of a replay minus the real one", "neutral", share=5e-4
+    )
     angle_loss: float = quantity(
         0.0,
         "1",
@@ -75,7 +83,11 @@ class AzimuthParameters(PropellerParameters):
         maximum=1.0,
     )
     interaction_loss: float = quantity(
-        0.0, "1", "share of the thrust that is lost on the axis of the neighbour's slipstream", "neutral", maximum=1.0
+        0.0,
+        "1",
+        "share of the thrust that is lost on the axis of the neighbour's slipstream",
+        "neutral",
+        maximum=1.0,
     )
     interaction_width: float = quantity(
         20.0 * pi / 180.0,
@@ -84,13 +96,19 @@ class AzimuthParameters(PropellerParameters):
         "some 20 deg, assumed",
         minimum=1e-3,
     )
-    neighbour_x: float = quantity(0.0, "m", "position of the neighbour forward", "set by the system")
-    neighbour_y: float = quantity(0.0, "m", "position of the neighbour to starboard", "set by the system")
+    neighbour_x: float = quantity(
+        0.0, "m", "position of the neighbour forward", "set by the system"
+    )
+    neighbour_y: float = quantity(
+        0.0, "m", "position of the neighbour to starboard", "set by the system"
+    )
 
     @cached_property
     def loses(self):
         """Whether some of the thrust of the propeller is lost."""
-        return any(map(acts, (self.thrust_loss, self.reverse_loss, self.angle_loss, self.interaction_loss)))
+        return any(
+            map(acts, (self.thrust_loss, self.reverse_loss, self.angle_loss, self.interaction_loss))
+        )
 
 
 def azimuth_step(
@@ -133,8 +151,12 @@ def azimuth_step(
     """
     azimuth = thruster.azimuth
     still = failures.stopped | failures.azimuth_frozen
-    towards = where(failures.azimuth_reversed, azimuth_cmd + 2.0 * azimuth, azimuth_cmd)  # it measures -azimuth
-    azimuth = turned(azimuth, towards, where(still, 0.0, failures.rate_share * unit.azimuth_rate * h))
+    towards = where(
+        failures.azimuth_reversed, azimuth_cmd + 2.0 * azimuth, azimuth_cmd
+    )  # it measures -azimuth
+    azimuth = turned(
+        azimuth, towards, where(still, 0.0, failures.rate_share * unit.azimuth_rate * h)
+    )
     u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
     return drive_step(
         thruster,
@@ -150,7 +172,13 @@ def azimuth_step(
 
 
 def azimuth_replay(
-    n: Arithmetic, azimuth: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, unit: AzimuthParameters
+    n: Arithmetic,
+    azimuth: Arithmetic,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    *,
+    unit: AzimuthParameters,
 ) -> Thruster:
     """State of an azimuth thruster at a given shaft speed and direction, for replays.
 
@@ -178,7 +206,9 @@ def azimuth_replay(
     n = thruster.n
     u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
     thrust, torque = propeller_loads(u_a, n, propeller=unit)
-    return thruster._replace(thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n, reported=thrust)
+    return thruster._replace(
+        thrust_cmd=thrust, torque=torque + unit.friction * _TURN * n, reported=thrust
+    )
 
 
 def azimuth_given(n: Arithmetic, azimuth: Arithmetic, *, unit: AzimuthParameters) -> Thruster:
@@ -249,9 +279,12 @@ def azimuth_loads(
     across the hull loses thrust: Dang and Laheij, Hydrodynamic aspects of steerable thrusters, DP Conference 2004; the
     squared sine is assumed.
     """
-    n, (s, c) = thruster.n, sincos(thruster.azimuth + unit.azimuth_offset)
+    n = thruster.n
+    (s, c) = sincos(thruster.azimuth + unit.azimuth_offset)
     u_a, u_s = _inflow(s, c, u_r, v_r, r, unit)
-    thrust = propeller_loads(u_a, n, propeller=unit)[0] if propeller_thrust is None else propeller_thrust
+    thrust = (
+        propeller_loads(u_a, n, propeller=unit)[0] if propeller_thrust is None else propeller_thrust
+    )
     if unit.loses:
         thrust = thrust * _kept(n, s, neighbour_azimuth, neighbour_rpm, unit)
     thrust = thrust * thrust_share
@@ -259,8 +292,12 @@ def azimuth_loads(
     wash = abs(n) * D
     if acts(unit.side_force_astern, neutral=1.0):
         wash = wash * where(n < 0.0, unit.side_force_astern, 1.0)
-    side = -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + wash) * u_s
-    return Loads(thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c))
+    side = (
+        -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + wash) * u_s
+    )
+    return Loads(
+        thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c)
+    )
 
 
 def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Arithmetic:
@@ -306,6 +343,7 @@ def _kept(n, s, neighbour_azimuth, neighbour_rpm, unit):
         kept = kept * (1.0 - unit.angle_loss * s * s)
     if not acts(unit.interaction_loss):
         return kept
-    x, y = unit.x - unit.neighbour_x, unit.y - unit.neighbour_y
+    x = unit.x - unit.neighbour_x
+    y = unit.y - unit.neighbour_y
     share = slipstream_share(x, y, neighbour_azimuth, neighbour_rpm, width=unit.interaction_width)
     return kept * (1.0 - unit.interaction_loss * share)

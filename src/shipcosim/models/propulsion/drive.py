@@ -118,12 +118,16 @@ def drive_step(
     Thruster
         State at the end.
     """
-    running, sign = where(failures.stopped, 0.0, 1.0), where(failures.rpm_reversed, -1.0, 1.0)
+    running = where(failures.stopped, 0.0, 1.0)
+    sign = where(failures.rpm_reversed, -1.0, 1.0)
     start = running * thruster.thrust_cmd
     wanted, rate = _set_point(thruster, thrust_cmd, failures, drive)
     change = clip(running * wanted - start, -rate * h, rate * h)
-    gain, ratio = drive.proportional_gain * _TURN, drive.integral_gain / drive.proportional_gain
-    integral_gain, friction, inertia = drive.integral_gain * _TURN, drive.friction * _TURN, drive.inertia * _TURN
+    gain = drive.proportional_gain * _TURN
+    ratio = drive.integral_gain / drive.proportional_gain
+    integral_gain = drive.integral_gain * _TURN
+    friction = drive.friction * _TURN
+    inertia = drive.inertia * _TURN
     motor = _motor(drive, gain, running, sign, failures.power_limit)
 
     def demand(share):
@@ -140,7 +144,8 @@ def drive_step(
 
     def turn(state):
         part, n, integral, before = state
-        middle, after = demand((part + 0.5) / parts), demand((part + 1.0) / parts)
+        middle = demand((part + 0.5) / parts)
+        after = demand((part + 1.0) / parts)
         return part + 1.0, *rk4_pair(rates, n, integral, h / parts, before, middle, after), after
 
     state = 0.0, thruster.n, running * thruster.integral, demand(0.0)
@@ -148,13 +153,19 @@ def drive_step(
     reached = start + change
     thrust, load = loads(n)
     asked, given = motor(n, integral, now[1], load)
-    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (running > 0.0)
+    at_limit = ((abs(reached - thrust_cmd) > _THRUST_TOLERANCE) | (asked != given)) & (
+        running > 0.0
+    )
     return Thruster(n, running * integral, reached, azimuth, given, at_limit, sign * thrust)
 
 
 def _set_point(thruster, thrust_cmd, failures, drive):
     """Thrust that the drive heads for, and the rate at which it does. [N, N/s]"""
-    wanted = where(failures.rpm_frozen, thruster.thrust_cmd, clip(thrust_cmd, drive.thrust_min, drive.thrust_max))
+    wanted = where(
+        failures.rpm_frozen,
+        thruster.thrust_cmd,
+        clip(thrust_cmd, drive.thrust_min, drive.thrust_max),
+    )
     wanted = where(failures.full_thrust, drive.thrust_max, wanted)
     return wanted, where(failures.full_thrust, _AT_ONCE, failures.rate_share * drive.thrust_rate)
 
@@ -181,7 +192,8 @@ def powers(thruster: Thruster, drive: Any) -> tuple[Arithmetic, Arithmetic]:
     Balance of energy; that drive and motor have no losses is assumed.
     """
     shaft = _TURN * thruster.n * thruster.torque
-    driving, braking = maximum(shaft, 0.0), maximum(-shaft, 0.0)
+    driving = maximum(shaft, 0.0)
+    braking = maximum(-shaft, 0.0)
     return driving - drive.regeneration * braking, (1.0 - drive.regeneration) * braking
 
 
@@ -190,13 +202,15 @@ def _motor(drive, gain, running, sign, power_limit):
 
     The motor keeps within its limits of torque, power and speed.
     """
-    n_max, torque_max = drive.rpm_max / 60.0, drive.torque_max
+    n_max = drive.rpm_max / 60.0
+    torque_max = drive.torque_max
     power = minimum(drive.power_max, power_limit) / _TURN
 
     def motor(n, integral, forward, load):
         asked = forward - gain * (sign * n) + integral
         most = minimum(torque_max, power / maximum(abs(n), _SLOW))
-        least, most = maximum(-most, load - gain * (n_max + n)), minimum(most, load + gain * (n_max - n))
+        least = maximum(-most, load - gain * (n_max + n))
+        most = minimum(most, load + gain * (n_max - n))
         return asked, running * clip(asked, least, most)
 
     return motor

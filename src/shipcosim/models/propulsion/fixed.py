@@ -14,21 +14,41 @@ class FixedParameters:
 
     x: float = required("m", "position forward", share=0.02)
     y: float = required("m", "position to starboard", share=0.02)
-    direction: float = quantity(0.0, "rad", "direction of positive thrust, clockwise from the bow", "ahead")
-    gain_ahead: float = quantity(1.0, "1", "thrust over commanded force, ahead", "neutral", tolerance=0.02, minimum=0.0)
+    direction: float = quantity(
+        0.0, "rad", "direction of positive thrust, clockwise from the bow", "ahead"
+    )
+    gain_ahead: float = quantity(
+        1.0, "1", "thrust over commanded force, ahead", "neutral", tolerance=0.02, minimum=0.0
+    )
     gain_astern: float = quantity(
         1.0, "1", "thrust over commanded force, astern", "neutral", tolerance=0.02, minimum=0.0
     )
     coefficient_ahead: float = quantity(
-        0.0, "N.s2/rad2", "thrust over squared speed of the shaft, ahead", "not used", share=0.02, minimum=0.0
+        0.0,
+        "N.s2/rad2",
+        "thrust over squared speed of the shaft, ahead",
+        "not used",
+        share=0.02,
+        minimum=0.0,
     )
     coefficient_astern: float = quantity(
-        0.0, "N.s2/rad2", "thrust over squared speed of the shaft, astern", "not used", share=0.02, minimum=0.0
+        0.0,
+        "N.s2/rad2",
+        "thrust over squared speed of the shaft, astern",
+        "not used",
+        share=0.02,
+        minimum=0.0,
     )
     speed_loss: float = quantity(
-        0.0, "s/m", "share of the thrust that each m/s of advance in its direction takes", "neutral", minimum=0.0
+        0.0,
+        "s/m",
+        "share of the thrust that each m/s of advance in its direction takes",
+        "neutral",
+        minimum=0.0,
     )
-    thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; gains and coefficients have the tolerance", maximum=1.0)
+    thrust_loss: float = quantity(
+        0.0, "1", LOSS, "neutral; gains and coefficients have the tolerance", maximum=1.0
+    )
 
 
 def fixed_loads(
@@ -79,8 +99,11 @@ def fixed_loads(
     """
     p = thruster
     thrust = force * where(force < 0.0, p.gain_astern, p.gain_ahead)
-    thrust = thrust + speed * abs(speed) * where(speed < 0.0, p.coefficient_astern, p.coefficient_ahead)
-    c, s = cos(p.direction), sin(p.direction)
+    thrust = thrust + speed * abs(speed) * where(
+        speed < 0.0, p.coefficient_astern, p.coefficient_ahead
+    )
+    c = cos(p.direction)
+    s = sin(p.direction)
     u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
     along = c * u_a + s * v_a
     kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)

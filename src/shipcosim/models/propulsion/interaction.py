@@ -29,7 +29,13 @@ def _place(number, towards):
 
 
 def _diameter(number):
-    return quantity(0.0, "m", f"propeller diameter of unit {number}; 0: there is none", "no such unit", minimum=0.0)
+    return quantity(
+        0.0,
+        "m",
+        f"propeller diameter of unit {number}; 0: there is none",
+        "no such unit",
+        minimum=0.0,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +60,9 @@ class InteractionParameters:
     x_6: float = _place(6, "forward")
     y_6: float = _place(6, "to starboard")
     diameter_6: float = _diameter(6)
-    loss_scale: float = quantity(1.0, "1", "factor on all losses; 0: no interaction", "as published", minimum=0.0)
+    loss_scale: float = quantity(
+        1.0, "1", "factor on all losses; 0: no interaction", "as published", minimum=0.0
+    )
 
     def of_units(self, name: str) -> list[float]:
         """A parameter of all units, in their order."""
@@ -167,13 +175,17 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
                 continue
             distance = hypot(other_x - x, other_y - y)
             if distance == 0.0:
-                raise ValueError(f"units {front + 1} and {behind + 1} are in the same place: x {x} m, y {y} m")
+                raise ValueError(
+                    f"units {front + 1} and {behind + 1} are in the same place: x {x} m, y {y} m"
+                )
             bearing = atan2(other_y - y, other_x - x)
             found.append(Pair(front, behind, bearing, tandem_share(distance / diameter)))
     return tuple(found)
 
 
-def pair_table(parameters: InteractionParameters, numbers: tuple[int, ...]) -> tuple[np.ndarray, np.ndarray]:
+def pair_table(
+    parameters: InteractionParameters, numbers: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray]:
     """The pairs of some units as tables.
 
     Parameters

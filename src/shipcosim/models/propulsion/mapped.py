@@ -17,19 +17,33 @@ class MapParameters:
 
     x: float = required("m", "position forward", share=0.02)
     y: float = required("m", "position to starboard", share=0.02)
-    direction: float = quantity(0.0, "rad", "direction of positive thrust, clockwise from the bow", "ahead")
+    direction: float = quantity(
+        0.0, "rad", "direction of positive thrust, clockwise from the bow", "ahead"
+    )
     thrust_table: str = required_table(
         ("command [1]", "thrust [N]"),
         "rows 'command thrust': thrust at no speed over the command in any unit, both increasing; constant beyond",
     )
-    time_constant: float = quantity(0.0, "s", "time constant of the thrust", "neutral: at once", minimum=0.0)
+    time_constant: float = quantity(
+        0.0, "s", "time constant of the thrust", "neutral: at once", minimum=0.0
+    )
     command_rate: float = quantity(
-        0.0, "1/s", "quickest change of the command, in the unit of the map; 0: no limit", "neutral", minimum=0.0
+        0.0,
+        "1/s",
+        "quickest change of the command, in the unit of the map; 0: no limit",
+        "neutral",
+        minimum=0.0,
     )
     speed_loss: float = quantity(
-        0.0, "s/m", "share of the thrust that each m/s of advance in its direction takes", "neutral", minimum=0.0
+        0.0,
+        "s/m",
+        "share of the thrust that each m/s of advance in its direction takes",
+        "neutral",
+        minimum=0.0,
     )
-    thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; 5 % of the map", tolerance=0.05, maximum=1.0)
+    thrust_loss: float = quantity(
+        0.0, "1", LOSS, "neutral; 5 % of the map", tolerance=0.05, maximum=1.0
+    )
 
 
 def mapped_thrust(command: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
@@ -120,7 +134,9 @@ def mapped_command(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic
     return interp(thrust, thrusts, commands)
 
 
-def commanded(command: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters) -> Arithmetic:
+def commanded(
+    command: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters
+) -> Arithmetic:
     """Command a step later, which changes no quicker than the thruster allows.
 
     Parameters
@@ -147,7 +163,9 @@ def commanded(command: Arithmetic, wanted: Arithmetic, h: float, *, thruster: Ma
     return command + clip(wanted - command, -most, most)
 
 
-def mapped_step(thrust: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters) -> Arithmetic:
+def mapped_step(
+    thrust: Arithmetic, wanted: Arithmetic, h: float, *, thruster: MapParameters
+) -> Arithmetic:
     """Thrust at no speed a step later: a lag of first order, integrated exactly.
 
     Parameters
@@ -203,7 +221,8 @@ def mapped_loads(
     27.5
     """
     p = thruster
-    c, s = cos(p.direction), sin(p.direction)
+    c = cos(p.direction)
+    s = sin(p.direction)
     u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
     along = c * u_a + s * v_a
     kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
@@ -217,5 +236,7 @@ def _map(text):
     commands, thrusts = columns(text, 2)
     for number, (before, after) in enumerate(zip(thrusts, thrusts[1:], strict=False), 2):
         if after < before:
-            raise ValueError(f"table, row {number}: {after:g} N after {before:g} N. The thrust must not fall.")
+            raise ValueError(
+                f"table, row {number}: {after:g} N after {before:g} N. The thrust must not fall."
+            )
     return commands, thrusts

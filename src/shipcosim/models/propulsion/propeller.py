@@ -103,7 +103,9 @@ class PropellerParameters:
         _FACTORS,
         "rows 'angle factor': factor on CQ of B4-70, P/D 1.4, by the hydrodynamic pitch angle, deg",
     )
-    water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
+    water_density: float = quantity(
+        1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0
+    )
     inflow: float = quantity(
         1.0,
         "1",
@@ -112,10 +114,20 @@ class PropellerParameters:
         minimum=0.0,
     )
     thrust_scale: float = quantity(
-        1.0, "1", "factor on the thrust; 1 for propeller with nozzle", "neutral", tolerance=0.01, minimum=0.0
+        1.0,
+        "1",
+        "factor on the thrust; 1 for propeller with nozzle",
+        "neutral",
+        tolerance=0.01,
+        minimum=0.0,
     )
     thrust_scale_outside: float = quantity(
-        1.0, "1", "further factor on the thrust outside the first quadrant", "neutral", tolerance=0.05, minimum=0.0
+        1.0,
+        "1",
+        "further factor on the thrust outside the first quadrant",
+        "neutral",
+        tolerance=0.05,
+        minimum=0.0,
     )
     torque_scale: float = quantity(1.0, "1", "factor on the torque", "neutral", minimum=0.0)
 
@@ -127,19 +139,25 @@ class PropellerParameters:
     @property
     def curves(self):
         """CT and CQ over the whole circle, and bollard coefficients; remembered by their tables, no state."""
-        return _curves(self.thrust_polynomial, self.thrust_factors, self.torque_polynomial, self.torque_factors)
+        return _curves(
+            self.thrust_polynomial, self.thrust_factors, self.torque_polynomial, self.torque_factors
+        )
 
     @cached_property
     def bollard(self):
         """Thrust, then torque, over squared shaft speed at no speed, each ahead and astern. [N.s2, N.m.s2]"""
-        D, (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.diameter, self.curves.bollard
+        D = self.diameter
+        (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.curves.bollard
         K = self.water_density * D**4
-        thrust, torque = K * self.thrust_scale, K * D * self.torque_scale
+        thrust = K * self.thrust_scale
+        torque = K * D * self.torque_scale
         astern = thrust * self.thrust_scale_outside * KT_astern
         return thrust * KT_ahead, astern, torque * KQ_ahead, torque * KQ_astern
 
 
-def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParameters) -> tuple[Arithmetic, Arithmetic]:
+def propeller_loads(
+    u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParameters
+) -> tuple[Arithmetic, Arithmetic]:
     """Thrust and torque in all four quadrants.
 
     Parameters
@@ -184,9 +202,13 @@ def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Ar
     callable
         ``loads(n)`` gives thrust and torque at a shaft speed. [N, N.m]
     """
-    D, disc, table = propeller.diameter, propeller.disc, propeller.curves.table
-    outside_more, tip_per_n = propeller.thrust_scale_outside - 1.0, _TIP * D
-    thrust_scale, torque_scale = propeller.thrust_scale, propeller.torque_scale
+    D = propeller.diameter
+    disc = propeller.disc
+    table = propeller.curves.table
+    outside_more = propeller.thrust_scale_outside - 1.0
+    tip_per_n = _TIP * D
+    thrust_scale = propeller.thrust_scale
+    torque_scale = propeller.torque_scale
     u_a = propeller.inflow * u_a
     square = u_a * u_a
 
@@ -253,7 +275,8 @@ def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         CT, CQ. [1, 1]
     """
     order = np.arange(len(_CT_COS))
-    c, s = np.cos(np.outer(beta, order)), np.sin(np.outer(beta, order))
+    c = np.cos(np.outer(beta, order))
+    s = np.sin(np.outer(beta, order))
     return c @ _CT_COS + s @ _CT_SIN, c @ _CQ_COS + s @ _CQ_SIN
 
 
@@ -264,7 +287,9 @@ def _curves(thrust_polynomial, thrust_factors, torque_polynomial, torque_factors
     ct, cq = series(np.radians(degrees))
     ct, end = _coefficient(ct, degrees, thrust_factors, thrust_polynomial)
     cq, _ = _coefficient(cq, degrees, torque_factors, torque_polynomial)
-    outside = np.interp(degrees, (-180.0, -30.0, 0.0, end, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0))
+    outside = np.interp(
+        degrees, (-180.0, -30.0, 0.0, end, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0)
+    )
     factor = 0.5 * _AREA * _TIP**2
     middle = len(ct) // 2
     bollard = (factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist()
@@ -278,5 +303,7 @@ def _coefficient(of_series, degrees, factors, polynomial):
     ((end, *k),) = parse(polynomial)
     first = (degrees > -0.5 * _STEP) & (degrees < end + 0.5 * _STEP)
     J = _TIP * np.tan(np.radians(degrees[first]))
-    found[first] = np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
+    found[first] = (
+        np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
+    )
     return found, end

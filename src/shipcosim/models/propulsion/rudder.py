@@ -29,34 +29,68 @@ class PropellerRudderParameters:
     k1: float = required("1", "KT over the advance ratio", share=0.03)
     k2: float = required("1", "KT over the squared advance ratio", share=0.05)
     astern: float = quantity(
-        0.5, "1", "thrust astern over ahead at no advance", "assumed, open propeller", tolerance=0.1, minimum=0.0
+        0.5,
+        "1",
+        "thrust astern over ahead at no advance",
+        "assumed, open propeller",
+        tolerance=0.1,
+        minimum=0.0,
     )
-    wake: float = required("1", "wake fraction at the propeller, straight ahead", tolerance=0.03, maximum=1.0)
-    wake_rate: float = quantity(0.0, "1", "C1: how soon drift thins the wake", "wake as straight ahead", share=0.1)
+    wake: float = required(
+        "1", "wake fraction at the propeller, straight ahead", tolerance=0.03, maximum=1.0
+    )
+    wake_rate: float = quantity(
+        0.0, "1", "C1: how soon drift thins the wake", "wake as straight ahead", share=0.1
+    )
     wake_change_starboard: float = quantity(
-        1.0, "1", "C2 for drift to starboard of the propeller's flow, beta_P > 0", "no change", tolerance=0.1
+        1.0,
+        "1",
+        "C2 for drift to starboard of the propeller's flow, beta_P > 0",
+        "no change",
+        tolerance=0.1,
     )
     wake_change_port: float = quantity(1.0, "1", "C2 for beta_P < 0", "no change", tolerance=0.1)
     thrust_deduction: float = required("1", "t_P", tolerance=0.03, maximum=1.0)
 
     rudder_x: float = required("m", "position of the rudder forward", share=0.02)
     rudder_area: float = required("m2", "area of the movable rudder", share=0.02, minimum=1e-6)
-    lift_gradient: float = required("1", "f_alpha: normal force over the sine of the inflow angle", share=0.05)
-    covered: float = required("1", "eta: propeller diameter over rudder span", share=0.02, minimum=0.0)
-    race_gain: float = required("1", "kappa: share of the race's gain of speed at the rudder", share=0.1, minimum=0.0)
-    wake_ratio: float = required("1", "epsilon: 1 - wake at the rudder over that at the propeller", share=0.05)
+    lift_gradient: float = required(
+        "1", "f_alpha: normal force over the sine of the inflow angle", share=0.05
+    )
+    covered: float = required(
+        "1", "eta: propeller diameter over rudder span", share=0.02, minimum=0.0
+    )
+    race_gain: float = required(
+        "1", "kappa: share of the race's gain of speed at the rudder", share=0.1, minimum=0.0
+    )
+    wake_ratio: float = required(
+        "1", "epsilon: 1 - wake at the rudder over that at the propeller", share=0.05
+    )
     straightening_starboard: float = required("1", "gamma_R for beta_R > 0", share=0.1)
     straightening_port: float = required("1", "gamma_R for beta_R < 0", share=0.1)
-    straightening_x: float = required("m", "l_R: where the yaw rate counts for the rudder's inflow", share=0.1)
-    rudder_deduction: float = required("1", "t_R: loss of the rudder's drag", tolerance=0.05, maximum=1.0)
-    hull_share: float = required("1", "a_H: side force on the hull over that on the rudder", share=0.1)
+    straightening_x: float = required(
+        "m", "l_R: where the yaw rate counts for the rudder's inflow", share=0.1
+    )
+    rudder_deduction: float = required(
+        "1", "t_R: loss of the rudder's drag", tolerance=0.05, maximum=1.0
+    )
+    hull_share: float = required(
+        "1", "a_H: side force on the hull over that on the rudder", share=0.1
+    )
     hull_x: float = required("m", "x_H: where the side force on the hull acts", share=0.05)
-    water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
+    water_density: float = quantity(
+        1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0
+    )
     thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; k0 has the tolerance", maximum=1.0)
 
 
 def propeller_in_wake(
-    n: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, unit: PropellerRudderParameters
+    n: Arithmetic,
+    u_r: Arithmetic,
+    v_r: Arithmetic,
+    r: Arithmetic,
+    *,
+    unit: PropellerRudderParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
     """Thrust of a propeller behind a hull, and the speed of the water that reaches it.
 
@@ -85,7 +119,8 @@ def propeller_in_wake(
     ----------
     As the module; that the angle is of the velocity at the propeller, and the law astern, are assumed.
     """
-    p, D = unit, unit.diameter
+    p = unit
+    D = unit.diameter
     drift = atan2(-(v_r + p.propeller_x * r), abs(u_r))
     change = where(drift < 0.0, p.wake_change_port, p.wake_change_starboard)
     u_p = u_r * (1.0 - p.wake) * (1.0 + (1.0 - exp(-p.wake_rate * abs(drift))) * (change - 1.0))
@@ -136,7 +171,9 @@ def rudder_normal_force(
     race = 8.0 * maximum(thrust, 0.0 * thrust) / (pi * p.water_density * p.diameter**2)
     behind = sqrt(ahead * ahead + race + _TINY)
     inner = ahead + p.race_gain * (behind - ahead)
-    u_rudder = p.wake_ratio * sqrt(p.covered * inner * inner + (1.0 - p.covered) * ahead * ahead + _TINY)
+    u_rudder = p.wake_ratio * sqrt(
+        p.covered * inner * inner + (1.0 - p.covered) * ahead * ahead + _TINY
+    )
     across = -v_r - p.straightening_x * r
     v_rudder = across * where(across < 0.0, p.straightening_port, p.straightening_starboard)
     square = u_rudder * u_rudder + v_rudder * v_rudder
@@ -182,4 +219,10 @@ def propeller_rudder_loads(
     side = -normal * cos(azimuth)
     given = (1.0 - p.thrust_deduction) * thrust
     surge = given + (1.0 - p.rudder_deduction) * normal * sin(azimuth)
-    return Loads(given, side, surge, (1.0 + p.hull_share) * side, (p.rudder_x + p.hull_share * p.hull_x) * side)
+    return Loads(
+        given,
+        side,
+        surge,
+        (1.0 + p.hull_share) * side,
+        (p.rudder_x + p.hull_share * p.hull_x) * side,
+    )

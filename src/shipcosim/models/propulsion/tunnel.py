@@ -20,10 +20,16 @@ class TunnelParameters:
     """A tunnel thruster with its drive, speeds and torques on the motor's side."""
 
     x: float = required("m", "position forward", share=0.0014)
-    thrust_coefficient: float = required("N/rpm2", "thrust over squared motor speed", share=0.02, minimum=1e-9)
+    thrust_coefficient: float = required(
+        "N/rpm2", "thrust over squared motor speed", share=0.02, minimum=1e-9
+    )
     torque_coefficient: float = required("N.m/rpm2", "torque over squared motor speed", minimum=0.0)
     speed_loss: float = quantity(
-        0.0, "s2/m2", "thrust falls with exp(-speed_loss u_r^2) under way; (1/2.2)^2 is typical", "neutral", minimum=0.0
+        0.0,
+        "s2/m2",
+        "thrust falls with exp(-speed_loss u_r^2) under way; (1/2.2)^2 is typical",
+        "neutral",
+        minimum=0.0,
     )
     thrust_min: float = required("N", "largest thrust to port, negative", maximum=0.0)
     thrust_max: float = required("N", "largest thrust to starboard", minimum=0.0)
@@ -35,9 +41,13 @@ class TunnelParameters:
     friction: float = required("N.m.s/rad", "friction torque over motor speed", minimum=0.0)
     proportional_gain: float = required("N.m.s/rad", "k_p of the drive", minimum=0.0)
     integral_gain: float = required("N.m/rad", "k_i of the drive", minimum=0.0)
-    regeneration: float = quantity(0.0, "1", REGENERATION, "neutral: diode rectifier", minimum=0.0, maximum=1.0)
+    regeneration: float = quantity(
+        0.0, "1", REGENERATION, "neutral: diode rectifier", minimum=0.0, maximum=1.0
+    )
 
-    thrust_loss: float = quantity(0.0, "1", LOSS, "neutral; thrust_coefficient has the tolerance", maximum=1.0)
+    thrust_loss: float = quantity(
+        0.0, "1", LOSS, "neutral; thrust_coefficient has the tolerance", maximum=1.0
+    )
     rpm_offset: float = quantity(
         0.0, "rpm", "given motor speed of a replay minus the real one", "neutral", share=5.6e-4
     )
@@ -79,7 +89,8 @@ def tunnel_step(
     As `drive.drive_step`; quadratic thrust and torque curves: nominal model, tunnel thruster.
     """
     loss = exp(-tunnel.speed_loss * u_r * u_r)
-    k_T, k_Q = 3600.0 * tunnel.thrust_coefficient, 3600.0 * tunnel.torque_coefficient
+    k_T = 3600.0 * tunnel.thrust_coefficient
+    k_Q = 3600.0 * tunnel.torque_coefficient
 
     def speed(thrust):
         n = sqrt((abs(thrust) + _ALMOST_NONE) / k_T)
@@ -90,7 +101,15 @@ def tunnel_step(
         return loss * k_T * square, k_Q * square
 
     return drive_step(
-        thruster, thruster.azimuth, thrust_cmd, failures, h, tunnel, loads, speed, lambda n: k_Q * n * abs(n)
+        thruster,
+        thruster.azimuth,
+        thrust_cmd,
+        failures,
+        h,
+        tunnel,
+        loads,
+        speed,
+        lambda n: k_Q * n * abs(n),
     )
 
 
@@ -117,7 +136,9 @@ def tunnel_replay(n: Arithmetic, *, tunnel: TunnelParameters) -> Thruster:
     square = 3600.0 * n * abs(n)
     torque = tunnel.torque_coefficient * square + tunnel.friction * _TURN * n
     thrust = tunnel.thrust_coefficient * square
-    return at_rest(0.5 * pi + 0.0 * n)._replace(n=n, thrust_cmd=thrust, torque=torque, reported=thrust)
+    return at_rest(0.5 * pi + 0.0 * n)._replace(
+        n=n, thrust_cmd=thrust, torque=torque, reported=thrust
+    )
 
 
 def tunnel_loads(thruster: Thruster, u_r: Arithmetic, *, tunnel: TunnelParameters) -> Loads:

@@ -13,7 +13,8 @@ from shipcosim.models.core.parameters import acts, quantity, required
 
 _UNUSED = "not used by this ship"
 _TINY = 1e-30
-_SPEED_SQUARED, _SLOW = 0.25**2 * 9.81, 0.02**2  # m/s2: of Froude number 0.25 over the length; 1
+_SPEED_SQUARED = 0.25**2 * 9.81  # m/s2: of Froude number 0.25 over the length; 1
+_SLOW = 0.02**2
 
 
 def _unused(unit, description):
@@ -22,7 +23,12 @@ def _unused(unit, description):
 
 def _mmg(product):
     """A hydrodynamic derivative of the MMG standard method."""
-    return quantity(0.0, "1", f"MMG derivative, {product}, over rho/2 L d U^2, of N over rho/2 L^2 d U^2", _UNUSED)
+    return quantity(
+        0.0,
+        "1",
+        f"MMG derivative, {product}, over rho/2 L d U^2, of N over rho/2 L^2 d U^2",
+        _UNUSED,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,14 +41,20 @@ class HullParameters:
 
     mass: float = required("kg", "mass", share=0.01, minimum=1.0)
     inertia_yaw: float = required("kg.m2", "moment of inertia in yaw", share=0.01, minimum=1.0)
-    centre_of_gravity_x: float = quantity(0.0, "m", "centre of gravity forward of the origin", "origin in it")
+    centre_of_gravity_x: float = quantity(
+        0.0, "m", "centre of gravity forward of the origin", "origin in it"
+    )
     A11: float = required("kg", "added mass in surge", share=0.03)
     A22: float = required("kg", "added mass in sway", share=0.03)
     A26: float = required("kg.m", "added mass, sway by yaw", share=0.03)
     A62: float = required("kg.m", "added mass, yaw by sway", share=0.03)
     A66: float = required("kg.m2", "added moment of inertia", share=0.03)
     added_mass_coriolis: float = quantity(
-        1.0, "1", "share of C_A(nu_r) nu_r; 0 for coefficients that contain it already", "Fossen 2021", minimum=0.0
+        1.0,
+        "1",
+        "share of C_A(nu_r) nu_r; 0 for coefficients that contain it already",
+        "Fossen 2021",
+        minimum=0.0,
     )
 
     current_acceleration: float = quantity(
@@ -53,15 +65,26 @@ class HullParameters:
         minimum=0.0,
         maximum=1.0,
     )
-    water_density: float = quantity(1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0)
+    water_density: float = quantity(
+        1025.0, "kg/m3", "density of the water", "sea water", minimum=1.0
+    )
     length: float = required("m", "length between perpendiculars", minimum=0.1)
     breadth: float = required("m", "breadth", minimum=0.1)
     draught: float = required("m", "draught", minimum=0.1)
     cross_flow_drag: float = quantity(
-        0.0, "1", "cross-flow drag coefficient, uniform over the length", _UNUSED, share=0.05, minimum=0.0
+        0.0,
+        "1",
+        "cross-flow drag coefficient, uniform over the length",
+        _UNUSED,
+        share=0.05,
+        minimum=0.0,
     )
-    lift: float = quantity(0.0, "N.s2/m2", "side force of lift over abs(u_r) v_r", _UNUSED, share=0.1, maximum=0.0)
-    lift_x: float = quantity(0.0, "m", "where the lift acts, forward of the origin", _UNUSED, share=0.1)
+    lift: float = quantity(
+        0.0, "N.s2/m2", "side force of lift over abs(u_r) v_r", _UNUSED, share=0.1, maximum=0.0
+    )
+    lift_x: float = quantity(
+        0.0, "m", "where the lift acts, forward of the origin", _UNUSED, share=0.1
+    )
 
     X_u: float = _unused("N.s/m", "linear damping in surge")
     Y_v: float = _unused("N.s/m", "linear damping in sway")
@@ -69,7 +92,9 @@ class HullParameters:
     N_v: float = _unused("N.s", "linear damping, yaw by sway")
     N_r: float = _unused("N.m.s/rad", "linear damping in yaw")
 
-    X_uu: float = quantity(0.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", _UNUSED, share=0.05)
+    X_uu: float = quantity(
+        0.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", _UNUSED, share=0.05
+    )
     Y_modvv: float = _unused("N.s2/m2", "quadratic damping in sway, v abs(v)")
     N_modrr: float = _unused("N.m.s2/rad2", "quadratic damping in yaw, r abs(r)")
 
@@ -121,7 +146,11 @@ class HullParameters:
     mmg_N_rrr: float = _mmg("r' r' r'")
 
     mass_scale: float = quantity(
-        1.0, "1", "factor on mass and moment of inertia together; added mass stays", "neutral", minimum=0.01
+        1.0,
+        "1",
+        "factor on mass and moment of inertia together; added mass stays",
+        "neutral",
+        minimum=0.01,
     )
     drag_growth: float = quantity(
         0.0,
@@ -131,7 +160,9 @@ class HullParameters:
         minimum=-1.0,
         maximum=4.0,
     )
-    drag_scale: float = quantity(1.0, "1", "factor on linear and quadratic damping in surge", "neutral", minimum=0.0)
+    drag_scale: float = quantity(
+        1.0, "1", "factor on linear and quadratic damping in surge", "neutral", minimum=0.0
+    )
     cross_flow_scale: float = quantity(
         1.0,
         "1",
@@ -145,7 +176,9 @@ class HullParameters:
     def contributions(self):
         """Names of the contributions that this hull has coefficients for."""
         return tuple(
-            name for name, (_, names) in CONTRIBUTIONS.items() if any(acts(getattr(self, one)) for one in names)
+            name
+            for name, (_, names) in CONTRIBUTIONS.items()
+            if any(acts(getattr(self, one)) for one in names)
         )
 
     @cached_property
@@ -163,7 +196,13 @@ class HullParameters:
     def linear(self):
         """Coefficients X_u, Y_v, Y_r, N_v, N_r with their scales."""
         along, across = self._damping_scales
-        return along * self.X_u, across * self.Y_v, across * self.Y_r, across * self.N_v, across * self.N_r
+        return (
+            along * self.X_u,
+            across * self.Y_v,
+            across * self.Y_r,
+            across * self.N_v,
+            across * self.N_r,
+        )
 
     @cached_property
     def quadratic(self):
@@ -175,7 +214,15 @@ class HullParameters:
     def strips(self):
         """Half the length l, and k l with k = rho C_d T / 2, of the cross flow. [m, kg/m]"""
         half = 0.5 * self.length
-        return half, 0.5 * self.water_density * self.cross_flow_drag * self.draught * half * self.cross_flow_scale
+        return (
+            half,
+            0.5
+            * self.water_density
+            * self.cross_flow_drag
+            * self.draught
+            * half
+            * self.cross_flow_scale,
+        )
 
     @property
     def _damping_scales(self):
@@ -186,8 +233,10 @@ class HullParameters:
         """Elements 11, 22, 26, 62, 66 of the inverse of M_RB + M_A."""
         mass, inertia = self.rigid_body
         static = mass * self.centre_of_gravity_x
-        m22, m26 = mass + self.A22, static + self.A26
-        m62, m66 = static + self.A62, inertia + self.A66
+        m22 = mass + self.A22
+        m26 = static + self.A26
+        m62 = static + self.A62
+        m66 = inertia + self.A66
         determinant = m22 * m66 - m26 * m62
         return (
             1.0 / (mass + self.A11),
@@ -221,11 +270,15 @@ def hull_loads(u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, hull: HullPar
     X = Y = N = 0.0 * u_r
     for name in hull.contributions:
         dX, dY, dN = _LOADS[name](u_r, v_r, r, hull=hull)
-        X, Y, N = X + dX, Y + dY, N + dN
+        X = X + dX
+        Y = Y + dY
+        N = N + dN
     return X, Y, N
 
 
-def added_mass_coriolis(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
+def added_mass_coriolis(
+    u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters
+) -> Load:
     """Coriolis and centripetal loads of the added mass, -C_A(ν_r) ν_r.
 
     Parameters and returns as `hull_loads`.
@@ -307,8 +360,10 @@ def cross_flow(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     """
     half, k = hull.strips
     w = r * half
-    sway, yaw = abs(v), abs(w)
-    larger, smaller = maximum(sway, yaw), minimum(sway, yaw)
+    sway = abs(v)
+    yaw = abs(w)
+    larger = maximum(sway, yaw)
+    smaller = minimum(sway, yaw)
     q = smaller / (yaw + _TINY)
     q = q * q
     Y = -2.0 * k * v * (larger + smaller * smaller / (3.0 * larger + _TINY))
@@ -326,9 +381,21 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     ----------
     Structure after OMAE2015-41789, as in MCSim_python, RVG_maneuvering_3DOF_python/vesselmodel.py.
     """
-    p, av, ar = hull, abs(v), abs(r)
-    uv, ur, rv, vv, rr, uu = u * v, u * r, r * v, v * v, r * r, u * u
-    X = p.X_vv * vv + p.X_rr * rr + p.X_rv * rv + u * (p.X_uvv * vv + p.X_rvu * rv + p.X_urr * rr + p.X_umodv * av)
+    p = hull
+    av = abs(v)
+    ar = abs(r)
+    uv = u * v
+    ur = u * r
+    rv = r * v
+    vv = v * v
+    rr = r * r
+    uu = u * u
+    X = (
+        p.X_vv * vv
+        + p.X_rr * rr
+        + p.X_rv * rv
+        + u * (p.X_uvv * vv + p.X_rvu * rv + p.X_urr * rr + p.X_umodv * av)
+    )
     Y = (
         p.Y_uv * uv
         + p.Y_ur * ur
@@ -370,11 +437,15 @@ def mmg(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) ->
     Yasukawa and Yoshimura, Introduction of MMG standard method for ship maneuvering predictions, J Mar Sci Technol 20,
     2015, 37-52; the bound on r' is assumed.
     """
-    p, length, scale = hull, hull.length, hull.cross_flow_scale
+    p = hull
+    length = hull.length
+    scale = hull.cross_flow_scale
     size = 0.5 * hull.water_density * length * hull.draught
     w = length * r
     U = maximum(hypot(u, v), 0.5 * abs(w)) + _TINY
-    vv, vw, ww = v * v, v * w, w * w
+    vv = v * v
+    vw = v * w
+    ww = w * w
     X = p.mmg_X_vv * vv + p.mmg_X_vr * vw + p.mmg_X_rr * ww + p.mmg_X_vvvv * (vv / U) * (vv / U)
     Y = p.mmg_Y_vvv * vv * v + p.mmg_Y_vvr * vv * w + p.mmg_Y_vrr * v * ww + p.mmg_Y_rrr * ww * w
     N = p.mmg_N_vvv * vv * v + p.mmg_N_vvr * vv * w + p.mmg_N_vrr * v * ww + p.mmg_N_rrr * ww * w

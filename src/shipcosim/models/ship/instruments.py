@@ -24,7 +24,9 @@ class InstrumentParameters:
     heading_bias: float = quantity(0.0, "rad", "measured heading minus the true one", "neutral")
     lever_x: float = quantity(0.0, "m", "antenna forward of the origin", "neutral")
     lever_y: float = quantity(0.0, "m", "antenna to starboard of the origin", "neutral")
-    velocity_scale: float = quantity(1.0, "1", "logged over true surge and sway", "neutral", minimum=0.01)
+    velocity_scale: float = quantity(
+        1.0, "1", "logged over true surge and sway", "neutral", minimum=0.01
+    )
     lag: float = quantity(0.0, "s", "by how much all of it is late", "neutral", minimum=0.0)
 
 
@@ -157,8 +159,11 @@ def motion_at(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
     >>> half_way.x, round(half_way.psi, 3)
     (2.0, -3.142)
     """
-    later = next((number for number, (time, _) in enumerate(history) if time >= t), len(history) - 1)
-    (t_0, a), (t_1, b) = history[max(later - 1, 0)], history[later]
+    later = next(
+        (number for number, (time, _) in enumerate(history) if time >= t), len(history) - 1
+    )
+    (t_0, a) = history[max(later - 1, 0)]
+    (t_1, b) = history[later]
     share = max((t - t_0) / (t_1 - t_0), 0.0) if t_1 > t_0 else 1.0
     between = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
     between[2] = wrap(a.psi + share * wrap(b.psi - a.psi))

@@ -23,7 +23,11 @@ class MastParameters:
     mast_y: float = required("m", "anemometer to starboard of the origin")
     mast_height: float = required("m", "anemometer above the water", minimum=1.0)
     wind_exponent: float = quantity(
-        0.12, "1", "exponent of the wind's profile over height", "DNV-RP-C205, open sea, from memory", minimum=0.0
+        0.12,
+        "1",
+        "exponent of the wind's profile over height",
+        "DNV-RP-C205, open sea, from memory",
+        minimum=0.0,
     )
 
     @cached_property
@@ -33,7 +37,13 @@ class MastParameters:
 
 
 def wind_at_mast(
-    speed: Arithmetic, wind_from: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic, *, mast: MastParameters
+    speed: Arithmetic,
+    wind_from: Arithmetic,
+    u: Arithmetic,
+    v: Arithmetic,
+    r: Arithmetic,
+    *,
+    mast: MastParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
     """Components of the apparent wind at the anemometer of a ship with a given apparent wind at 10 m above her origin.
 
@@ -70,7 +80,13 @@ def wind_at_mast(
 
 
 def wind_from_mast(
-    speed: Arithmetic, wind_from: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic, *, mast: MastParameters
+    speed: Arithmetic,
+    wind_from: Arithmetic,
+    u: Arithmetic,
+    v: Arithmetic,
+    r: Arithmetic,
+    *,
+    mast: MastParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
     """Apparent wind at 10 m above the origin of a ship with a given apparent wind at the anemometer.
 
@@ -93,7 +109,8 @@ def wind_from_mast(
         Speed and direction at 10 m above the origin. [m/s, rad in [-π, π]]
     """
     gain = mast.gain
-    more, share = gain - 1.0, 1.0 / gain
+    more = gain - 1.0
+    share = 1.0 / gain
     ahead = share * (speed * cos(wind_from) + more * u + r * mast.mast_y)
     starboard = share * (speed * sin(wind_from) + more * v - r * mast.mast_x)
     return hypot(ahead, starboard), atan2(starboard, ahead)

@@ -19,11 +19,13 @@ from shipcosim.models.core.tables import columns
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.hull import HullParameters
 
-DRAG_SPEED, CROSS_SPEED = 1.2, 0.3
+DRAG_SPEED = 1.2
+CROSS_SPEED = 0.3
 """Speeds at which resistance and cross flow by another power are those of the hull's law. [m/s]"""
 STRIPS = 15
 _SLOW = 1e-3  # m/s, below which a power below 2 grows no more
-_NO_STRIPS, _NO_WIND = "-1 1; 1 1", "0 1 1 1; 360 1 1 1"
+_NO_STRIPS = "-1 1; 1 1"
+_NO_WIND = "0 1 1 1; 360 1 1 1"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,10 +40,20 @@ class RoughFormParameters:
         "neutral",
     )
     cross_flow_power: float = quantity(
-        2.0, "1", "power of speed of the cross-flow drag, equal at 0.3 m/s", "neutral", minimum=1.0, maximum=3.0
+        2.0,
+        "1",
+        "power of speed of the cross-flow drag, equal at 0.3 m/s",
+        "neutral",
+        minimum=1.0,
+        maximum=3.0,
     )
     drag_power: float = quantity(
-        2.0, "1", "power of speed of the resistance, equal at 1.2 m/s", "neutral", minimum=1.0, maximum=3.0
+        2.0,
+        "1",
+        "power of speed of the resistance, equal at 1.2 m/s",
+        "neutral",
+        minimum=1.0,
+        maximum=3.0,
     )
     wind_factors: str = quantity(
         _NO_WIND,
@@ -51,15 +63,29 @@ class RoughFormParameters:
         "neutral",
     )
     memory_surge: float = quantity(
-        0.0, "1", "share of A11 that the force with a memory adds in slow motion", "neutral", minimum=0.0
+        0.0,
+        "1",
+        "share of A11 that the force with a memory adds in slow motion",
+        "neutral",
+        minimum=0.0,
     )
     memory_sway: float = quantity(
-        0.0, "1", "share of A22 that the force with a memory adds in slow motion", "neutral", minimum=0.0
+        0.0,
+        "1",
+        "share of A22 that the force with a memory adds in slow motion",
+        "neutral",
+        minimum=0.0,
     )
     memory_yaw: float = quantity(
-        0.0, "1", "share of A66 that the moment with a memory adds in slow motion", "neutral", minimum=0.0
+        0.0,
+        "1",
+        "share of A66 that the moment with a memory adds in slow motion",
+        "neutral",
+        minimum=0.0,
     )
-    memory_time: float = quantity(6.0, "s", "time over which the force remembers", "neutral", minimum=0.1)
+    memory_time: float = quantity(
+        6.0, "s", "time over which the force remembers", "neutral", minimum=0.1
+    )
 
     @cached_property
     def strips(self):
@@ -77,7 +103,9 @@ class RoughFormParameters:
         return shares if any(map(acts, shares)) else ()
 
 
-def form_loads(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters, form: RoughFormParameters) -> Load:
+def form_loads(
+    u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters, form: RoughFormParameters
+) -> Load:
     """Loads on a hull of this form less those of the hull's law.
 
     Parameters
@@ -105,8 +133,16 @@ def form_loads(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     half, k = hull.strips
     for place, factor in form.strips:
         w = v + place * half * r
-        drag = -2.0 * k / STRIPS * w * abs(w) * (factor * _power(w, CROSS_SPEED, form.cross_flow_power) - 1.0)
-        Y, N = Y + drag, N + place * half * drag
+        drag = (
+            -2.0
+            * k
+            / STRIPS
+            * w
+            * abs(w)
+            * (factor * _power(w, CROSS_SPEED, form.cross_flow_power) - 1.0)
+        )
+        Y = Y + drag
+        N = N + place * half * drag
     return X, Y, N
 
 
@@ -187,7 +223,9 @@ def rough_wind_loads(
     if form.wind_factors == _NO_WIND:
         return X, Y, N
     angles, *factors = _round(form.wind_factors)
-    x, y, n = interp_columns(where(wind_from < 0.0, wind_from + 2.0 * pi, wind_from), angles, *factors)
+    x, y, n = interp_columns(
+        where(wind_from < 0.0, wind_from + 2.0 * pi, wind_from), angles, *factors
+    )
     return x * X, y * Y, n * N
 
 
@@ -196,5 +234,7 @@ def _round(text):
     """Columns of the factors, the angle in rad."""
     angles, *factors = columns(text, 4)
     if angles[0] != 0.0 or angles[-1] != 360.0:
-        raise ValueError(f"wind factors: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 360 deg.")
+        raise ValueError(
+            f"wind factors: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 360 deg."
+        )
     return tuple(angle * pi / 180.0 for angle in angles), *factors

@@ -16,7 +16,18 @@ from functools import cached_property
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.maths import Arithmetic, atan2, exp, hypot, maximum, minimum, repeat, row_of, sqrt, where
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    atan2,
+    exp,
+    hypot,
+    maximum,
+    minimum,
+    repeat,
+    row_of,
+    sqrt,
+    where,
+)
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.core.sampling import normals, samples_due
 from shipcosim.models.ship.mast import MastParameters, wind_at_mast
@@ -27,18 +38,28 @@ from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 class SensorParameters:
     """Periods, latencies and errors of three position references, two compasses, a rate gyro and an anemometer."""
 
-    period: float = required("s", "sample period of compasses and rate gyro, the clock of all sensors", minimum=1e-3)
+    period: float = required(
+        "s", "sample period of compasses and rate gyro, the clock of all sensors", minimum=1e-3
+    )
     heading_latency: float = required(
         "s", "age of headings and yaw rate when they are given out, whole periods", minimum=0.0
     )
-    position_period: float = required("s", "sample period of the position references, whole periods", minimum=1e-3)
+    position_period: float = required(
+        "s", "sample period of the position references, whole periods", minimum=1e-3
+    )
     position_latency: float = required(
         "s", "age of positions and velocities when they are given out, whole periods", minimum=0.0
     )
-    wind_period: float = required("s", "period at which the anemometer gives a mean, whole periods", minimum=1e-3)
-    wind_latency: float = required("s", "age of that mean when it is given out, whole periods", minimum=0.0)
+    wind_period: float = required(
+        "s", "period at which the anemometer gives a mean, whole periods", minimum=1e-3
+    )
+    wind_latency: float = required(
+        "s", "age of that mean when it is given out, whole periods", minimum=0.0
+    )
     position_drift_std: float = required(
-        "m", "stationary standard deviation of the Gauss-Markov error, north and east each", minimum=0.0
+        "m",
+        "stationary standard deviation of the Gauss-Markov error, north and east each",
+        minimum=0.0,
     )
     position_drift_time: float = required("s", "its correlation time", minimum=1e-3)
     position_noise_std: float = required("m", "white noise of north and east each", minimum=0.0)
@@ -49,8 +70,12 @@ class SensorParameters:
     heading_drift_time: float = required("s", "its correlation time", minimum=1e-3)
     heading_noise_std: float = required("rad", "white noise of the heading", minimum=0.0)
     yaw_rate_noise_std: float = required("rad/s", "white noise of the yaw rate", minimum=0.0)
-    wind_average_time: float = required("s", "span of the mean that the anemometer gives", minimum=0.0)
-    wind_speed_noise: float = required("1", "white noise of the wind speed, over the wind speed", minimum=0.0)
+    wind_average_time: float = required(
+        "s", "span of the mean that the anemometer gives", minimum=0.0
+    )
+    wind_speed_noise: float = required(
+        "1", "white noise of the wind speed, over the wind speed", minimum=0.0
+    )
     wind_from_noise_std: float = required("rad", "white noise of the wind direction", minimum=0.0)
     seed: int = quantity(1, "1", "seed of all errors", "any", minimum=0)
 
@@ -235,7 +260,12 @@ class SensorState(NamedTuple):
 
 
 def start(
-    t: float, truth: Truth, failures: SensorFailures, *, parameters: SensorParameters, mast: MastParameters
+    t: float,
+    truth: Truth,
+    failures: SensorFailures,
+    *,
+    parameters: SensorParameters,
+    mast: MastParameters,
 ) -> SensorState:
     """First sample of every channel, given out at once, with Gauss-Markov errors of their stationary distribution.
 
@@ -257,22 +287,30 @@ def start(
     SensorState
         State after the first tick.
     """
-    p, k, clocks = parameters, samples_due(t, parameters.period) - 1, parameters.clocks
+    p = parameters
+    k = samples_due(t, parameters.period) - 1
+    clocks = parameters.clocks
     numbers = [_numbers(p, k, channel) for channel in range(3)]
     fixes = (Fix(truth.x, truth.y, truth.u, truth.v, 1.0),) * 3
     headings = ((Heading(truth.psi, 1.0),) * 2, truth.r)
     wander = tuple(p.position_drift_std * number for number in numbers[0][:6])
     positions = Channel(wander, (0.0,) * 6, (fixes,))
-    positions = positions._replace(history=(_fixes(positions, numbers[0], truth, failures, p),) * _length(clocks[0]))
+    positions = positions._replace(
+        history=(_fixes(positions, numbers[0], truth, failures, p),) * _length(clocks[0])
+    )
     wander = tuple(p.heading_drift_std * number for number in numbers[1][:2])
     compasses = Channel(wander, (0.0,) * 2, (headings,))
-    compasses = compasses._replace(history=(_headings(compasses, numbers[1], truth, failures, p),) * _length(clocks[1]))
+    compasses = compasses._replace(
+        history=(_headings(compasses, numbers[1], truth, failures, p),) * _length(clocks[1])
+    )
     air = _air(truth, mast)
     # Samples of the wind in its mean.
     spans = max(1, round(p.wind_average_time / p.period))
     wind = Anemometer((*((0.0, 0.0),) * (spans - 1), air), 1.0, (Wind(*air, 1.0),))
     wind = wind._replace(history=(_wind(wind, numbers[2], failures, p),) * _length(clocks[2]))
-    return SensorState(k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, p))
+    return SensorState(
+        k + 1, positions, compasses, wind, _telegrams(k, positions, compasses, wind, p)
+    )
 
 
 def step(
@@ -308,19 +346,25 @@ def step(
     """
     due = samples_due(t, parameters.period)
     return repeat(
-        lambda state: state.taken < due, lambda state: _ticked(state, truth, failures, parameters, mast), state
+        lambda state: state.taken < due,
+        lambda state: _ticked(state, truth, failures, parameters, mast),
+        state,
     )
 
 
 def _ticked(state, truth, failures, p, mast):
     """State after one more tick, at which every channel whose turn it is takes a sample."""
-    k, positions, headings, wind = state.taken, state.positions, state.headings, state.wind
+    k = state.taken
+    positions = state.positions
+    headings = state.headings
+    wind = state.wind
     if k % p.clocks[0][0] == 0:
         numbers = _numbers(p, k, 0)
         rates = [rate for failure in failures.positions for rate in failure[4:]]
         positions = _moved(positions, numbers, p.position_wander, rates, p.position_period)
         positions = _noted(positions, _fixes(positions, numbers, truth, failures, p))
-    numbers, rates = _numbers(p, k, 1), [failure.rate for failure in failures.compasses]
+    numbers = _numbers(p, k, 1)
+    rates = [failure.rate for failure in failures.compasses]
     headings = _moved(headings, numbers, p.heading_wander, rates, p.period)
     headings = _noted(headings, _headings(headings, numbers, truth, failures, p))
     # The anemometer measures at every tick: the oldest sample of its mean gives way to the newest.
@@ -328,7 +372,9 @@ def _ticked(state, truth, failures, p, mast):
     wind = Anemometer((*wind.components[1:], _air(truth, mast)), count, wind.history)
     if k % p.clocks[2][0] == 0:
         wind = _noted(wind, _wind(wind, _numbers(p, k, 2), failures, p))
-    return SensorState(k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p))
+    return SensorState(
+        k + 1, positions, headings, wind, _telegrams(k, positions, headings, wind, p)
+    )
 
 
 def _length(clock):
@@ -355,7 +401,12 @@ def _moved(channel, numbers, wander, rates, period):
     """Gauss-Markov errors and drifts by failure one period later; the latter start and end with their rates."""
     phi, kick = wander
     errors = tuple([phi * b + kick * w for b, w in zip(channel.wander, numbers, strict=False)])
-    drift = tuple([where(rate == 0.0, 0.0, d + period * rate) for d, rate in zip(channel.drift, rates, strict=True)])
+    drift = tuple(
+        [
+            where(rate == 0.0, 0.0, d + period * rate)
+            for d, rate in zip(channel.drift, rates, strict=True)
+        ]
+    )
     return Channel(errors, drift, channel.history)
 
 
@@ -366,10 +417,13 @@ def _noted(channel, sample):
 
 def _fixes(channel, numbers, truth, failures, p):
     """Sample of all position references; numbers: six of the Gauss-Markov errors, then four for each of them."""
-    (fixes, wander, drift), p_std, v_std = _last(channel), p.position_noise_std, p.velocity_noise_std
+    (fixes, wander, drift) = _last(channel)
+    p_std = p.position_noise_std
+    v_std = p.velocity_noise_std
     found = []
     for i, (failure, last) in enumerate(zip(failures.positions, fixes, strict=True)):
-        n, e = 2 * i, 2 * i + 1
+        n = 2 * i
+        e = 2 * i + 1
         a, b, c, d = numbers[6 + 4 * i : 10 + 4 * i]
         fresh = (
             truth.x + wander[n] + drift[n] + p_std * a + failure.north,
@@ -386,14 +440,17 @@ def _headings(channel, numbers, truth, failures, p):
     (headings, _), wander, drift = _last(channel)
     found = []
     for i, (failure, last) in enumerate(zip(failures.compasses, headings, strict=True)):
-        fresh = wrap(truth.psi + wander[i] + drift[i] + p.heading_noise_std * numbers[2 + i] + failure.offset)
+        fresh = wrap(
+            truth.psi + wander[i] + drift[i] + p.heading_noise_std * numbers[2 + i] + failure.offset
+        )
         found.append(Heading._make(_held(failure, (fresh,), last)))
     return tuple(found), truth.r + p.yaw_rate_noise_std * numbers[4]
 
 
 def _wind(anemometer, numbers, failures, p):
     """Mean over the averaging window, with noise and failure."""
-    failure, last = failures.wind, anemometer.history[-1]
+    failure = failures.wind
+    last = anemometer.history[-1]
     # Mean of the components, not of speed and direction, which has no mean across the bow.
     samples = zip(*anemometer.components, strict=True)
     ahead, starboard = (sum(component) / anemometer.count for component in samples)
@@ -411,8 +468,12 @@ def _last(channel):
 
 def _held(failure, fresh, last):
     """Fresh values, or where a sensor is frozen or lost its last ones; then whether it is valid."""
-    lost, held = failure.lost, failure.frozen | failure.lost
-    return [*[where(held, old, new) for new, old in zip(fresh, last, strict=False)], where(lost, 0.0, 1.0)]
+    lost = failure.lost
+    held = failure.frozen | failure.lost
+    return [
+        *[where(held, old, new) for new, old in zip(fresh, last, strict=False)],
+        where(lost, 0.0, 1.0),
+    ]
 
 
 def _air(truth, mast):

@@ -16,7 +16,9 @@ from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.core.parameters import required_table
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 
-_LONGEST_SUBSTEP = 0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
+_LONGEST_SUBSTEP = (
+    0.1  # s; the fastest mode of both hulls, sway with yaw at full speed, decays in about 2 s
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +72,10 @@ def step(
         return accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, hull=hull)
 
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
-    x, y, psi, r = vessel.x + h * current_north, vessel.y + h * current_east, vessel.psi, vessel.r
+    x = vessel.x + h * current_north
+    y = vessel.y + h * current_east
+    psi = vessel.psi
+    r = vessel.r
     parts = substeps(h, _LONGEST_SUBSTEP)
 
     def turn(now):
@@ -82,7 +87,9 @@ def step(
     return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 
 
-def carried(vessel: Motion, change_north: Arithmetic, change_east: Arithmetic, *, hull: HullParameters) -> Motion:
+def carried(
+    vessel: Motion, change_north: Arithmetic, change_east: Arithmetic, *, hull: HullParameters
+) -> Motion:
     """Motion of the ship right after the water has changed its velocity.
 
     Water that accelerates as one carries the ship: its pressure acts on her as on the water that she displaces, and the
@@ -141,13 +148,16 @@ def accelerations(
     tuple of three, like u_r
         Rates of u_r, v_r, r in body axes. [m/s2, m/s2, rad/s2]
     """
-    return _accelerations(hull_loads(u_r, v_r, r, hull=hull), u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
+    return _accelerations(
+        hull_loads(u_r, v_r, r, hull=hull), u_r, v_r, r, tau_X, tau_Y, tau_N, hull
+    )
 
 
 def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
     """`accelerations` from known hull loads."""
     X, Y, N = loads
-    m, xg = hull.rigid_body[0], hull.centre_of_gravity_x
+    m = hull.rigid_body[0]
+    xg = hull.centre_of_gravity_x
     X = X + tau_X + m * r * (v_r + xg * r)
     Y = Y + tau_Y - m * r * u_r
     N = N + tau_N - m * xg * r * u_r
@@ -156,7 +166,11 @@ def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
 
 
 def through_water(
-    psi: Arithmetic, u: Arithmetic, v: Arithmetic, current_north: Arithmetic, current_east: Arithmetic
+    psi: Arithmetic,
+    u: Arithmetic,
+    v: Arithmetic,
+    current_north: Arithmetic,
+    current_east: Arithmetic,
 ) -> tuple[Arithmetic, Arithmetic]:
     """Velocity of the ship relative to the water.
 
@@ -249,7 +263,9 @@ def at_present(
         Loads of the water on the hull, as `hull.hull_loads`. [N, N, N.m]
     """
     u_c, v_c = to_body(vessel.psi, current_north, current_east)
-    u_r, v_r, r = vessel.u - u_c, vessel.v - v_c, vessel.r
+    u_r = vessel.u - u_c
+    v_r = vessel.v - v_c
+    r = vessel.r
     loads = hull_loads(u_r, v_r, r, hull=hull)
     u_dot, v_dot, r_dot = _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
     return (u_r, v_r), (u_dot + r * v_c, v_dot - r * u_c, r_dot), loads

@@ -7,7 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.native.symbols import Maths, SymbolArray, Untraceable, as_symbols, first_symbol, primitive
+from shipcosim.native.symbols import (
+    Maths,
+    SymbolArray,
+    Untraceable,
+    as_symbols,
+    first_symbol,
+    primitive,
+)
 
 
 class _OrNumPy:
@@ -39,7 +46,8 @@ class _LinearAlgebra(_OrNumPy):
         return self.solve(a, np.broadcast_to(np.eye(a.shape[-1]), a.shape))
 
     def solve(self, a: Any, b: Any) -> np.ndarray:
-        a, b = np.asarray(a), np.asarray(b)
+        a = np.asarray(a)
+        b = np.asarray(b)
         symbol = first_symbol(a, b)
         if symbol is None:
             return np.linalg.solve(a, b)
@@ -48,7 +56,9 @@ class _LinearAlgebra(_OrNumPy):
 
         def of_one(a, b):
             n, m = b.shape
-            return primitive(symbol, "solved", (n, m), [n, m, *a.ravel().tolist(), *b.ravel().tolist()])
+            return primitive(
+                symbol, "solved", (n, m), [n, m, *a.ravel().tolist(), *b.ravel().tolist()]
+            )
 
         return _each(of_one, a, b)
 
@@ -69,7 +79,8 @@ class _Generator:
     """A random generator whose seeds are symbols."""
 
     def __init__(self, seeds: Sequence[Any]):
-        self._seeds, self._drawn = list(seeds), []
+        self._seeds = list(seeds)
+        self._drawn = []
 
     def random(self, size: Any = None) -> Any:
         return self._draw(0, size)
@@ -84,14 +95,20 @@ class _Generator:
         return loc + scale * self._draw(1, size)
 
     def __getattr__(self, name: str) -> Any:
-        raise Untraceable(f"it draws random numbers by {name}: random, uniform and normal ones can be compiled")
+        raise Untraceable(
+            f"it draws random numbers by {name}: random, uniform and normal ones can be compiled"
+        )
 
     def _draw(self, kind, size):
-        shape: Any = () if size is None else (size,) if isinstance(size, (int, np.integer)) else tuple(size)
+        shape: Any = (
+            () if size is None else (size,) if isinstance(size, (int, np.integer)) else tuple(size)
+        )
         self._drawn += [kind, int(np.prod(shape, dtype=int))]
         symbol = first_symbol(self._seeds)
         assert symbol is not None
-        found = primitive(symbol, "random_numbers", shape, [len(self._seeds), *self._seeds, *self._drawn])
+        found = primitive(
+            symbol, "random_numbers", shape, [len(self._seeds), *self._seeds, *self._drawn]
+        )
         return found if shape else found.item()
 
 
@@ -113,11 +130,13 @@ def _clipped(x, low, high):
 
 
 def _interpolated(x, xs, ys):
-    symbol, x = first_symbol(x, xs, ys), np.asarray(x)
+    symbol = first_symbol(x, xs, ys)
+    x = np.asarray(x)
     if first_symbol(xs, ys) is None and x.ndim == 0:
         return Maths.interp(x.item(), xs, ys)
     assert symbol is not None
-    xs, ys = np.asarray(xs), np.asarray(ys)
+    xs = np.asarray(xs)
+    ys = np.asarray(ys)
     given = [x.size, xs.size, *x.ravel().tolist(), *xs.tolist(), *ys.tolist()]
     found = primitive(symbol, "interpolated_in", x.shape, given)
     return found if x.ndim else found.item()
@@ -129,10 +148,13 @@ def _as_array(value, dtype=None, **_):
 
 def _elementwise(function):
     many = np.frompyfunc(function, 2, 1)
-    return lambda a, b: many(a, b) if isinstance(a, np.ndarray) or isinstance(b, np.ndarray) else function(a, b)
+    return lambda a, b: (
+        many(a, b) if isinstance(a, np.ndarray) or isinstance(b, np.ndarray) else function(a, b)
+    )
 
 
-_smaller, _larger = _elementwise(Maths.minimum), _elementwise(Maths.maximum)
+_smaller = _elementwise(Maths.minimum)
+_larger = _elementwise(Maths.maximum)
 
 
 class NumPy(_OrNumPy):
@@ -140,10 +162,17 @@ class NumPy(_OrNumPy):
 
     def __init__(self):
         super().__init__(np)
-        self.linalg, self.random = _LinearAlgebra(np.linalg), _Random(np.random)
-        self.where = _with_symbols(np.where, lambda c, a, b: np.frompyfunc(Maths.where, 3, 1)(c, a, b))
-        self.minimum, self.maximum = _with_symbols(np.minimum, _smaller), _with_symbols(np.maximum, _larger)
-        self.clip, self.interp = _with_symbols(np.clip, _clipped), _with_symbols(np.interp, _interpolated)
-        self.zeros = self.empty = lambda shape, *_, **__: np.zeros(shape).astype(object).view(SymbolArray)
+        self.linalg = _LinearAlgebra(np.linalg)
+        self.random = _Random(np.random)
+        self.where = _with_symbols(
+            np.where, lambda c, a, b: np.frompyfunc(Maths.where, 3, 1)(c, a, b)
+        )
+        self.minimum = _with_symbols(np.minimum, _smaller)
+        self.maximum = _with_symbols(np.maximum, _larger)
+        self.clip = _with_symbols(np.clip, _clipped)
+        self.interp = _with_symbols(np.interp, _interpolated)
+        self.zeros = self.empty = lambda shape, *_, **__: (
+            np.zeros(shape).astype(object).view(SymbolArray)
+        )
         self.array = _with_symbols(np.array, _as_array)
         self.asarray = _with_symbols(np.asarray, _as_array)

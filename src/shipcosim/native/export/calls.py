@@ -38,10 +38,12 @@ def procedure_of(call: Call) -> Procedure:
 
     def run():
         numbers: list[Any] = [
-            typed(number, leaf.kind) for number, leaf in zip(given.numbers, given.leaves, strict=True)
+            typed(number, leaf.kind)
+            for number, leaf in zip(given.numbers, given.leaves, strict=True)
         ]
         symbols = [
-            recording.value("load", given.leaves[place].kind, number) for number, place in enumerate(call.changing)
+            recording.value("load", given.leaves[place].kind, number)
+            for number, place in enumerate(call.changing)
         ]
         for place, symbol in zip(call.changing, symbols, strict=True):
             numbers[place] = symbol

@@ -36,7 +36,9 @@ SIZES = {"N": 2e4, "N.m": 1e5, "W": 1e5, "rad": 0.7, "rpm": 60.0, "m": 3.0, "s":
 """Of random inputs, by unit; 0.5 of others."""
 
 
-def refuse_other_results(cls: Any, library: bytes, guid: str, examples: Sequence[Mapping[str, Any]]) -> None:
+def refuse_other_results(
+    cls: Any, library: bytes, guid: str, examples: Sequence[Mapping[str, Any]]
+) -> None:
     """Start and step the FMU in Python and in C, from the same random numbers.
 
     Parameters
@@ -63,12 +65,21 @@ def refuse_other_results(cls: Any, library: bytes, guid: str, examples: Sequence
         loaded = ctypes.CDLL(str(path))
         for example in examples:
             for number in range(len(SHARES)):
-                _compare_run(cls, loaded, guid, _near(cls, example, random if number else None), random, number)
+                _compare_run(
+                    cls,
+                    loaded,
+                    guid,
+                    _near(cls, example, random if number else None),
+                    random,
+                    number,
+                )
 
 
 def _compare_run(cls, library, guid, parameters, random, number):
-    python, compiled = cls("it"), _Compiled(cls, library, guid)
-    inputs, is_near = {v.name: v.start for v in cls.variables if v.causality == "input"}, number > 0
+    python = cls("it")
+    compiled = _Compiled(cls, library, guid)
+    inputs = {v.name: v.start for v in cls.variables if v.causality == "input"}
+    is_near = number > 0
     try:
         time = float(random.integers(0, 3)) * 100.0
         python.setup_experiment(time)
@@ -78,7 +89,9 @@ def _compare_run(cls, library, guid, parameters, random, number):
         _draw(cls, inputs, random, SHARES[number])
         _set(python, inputs)
         compiled.set(inputs)
-        if not _both(lambda: _initialise(python), compiled.initialise, "at the start", compiled, is_near):
+        if not _both(
+            lambda: _initialise(python), compiled.initialise, "at the start", compiled, is_near
+        ):
             return
         _compare(cls, python, compiled, "at the start")
         h = cls.default_step_size
@@ -88,7 +101,13 @@ def _compare_run(cls, library, guid, parameters, random, number):
             compiled.set(inputs)
             step = f"in step {step_number + 1}"
             t = time + step_number * h
-            if not _both(lambda t=t: python.advance(t, h), lambda t=t: compiled.step(t, h), step, compiled, is_near):
+            if not _both(
+                lambda t=t: python.advance(t, h),
+                lambda t=t: compiled.step(t, h),
+                step,
+                compiled,
+                is_near,
+            ):
                 return
             if _is_lost(cls, python):
                 return
@@ -127,7 +146,12 @@ def _near(cls, example, random) -> dict[str, Any]:
         if v.causality != "parameter":
             continue
         value = example.get(v.name, v.start)
-        if random is not None and v.type == "Real" and not v.is_left_out(value) and abs(value) < 1e12:
+        if (
+            random is not None
+            and v.type == "Real"
+            and not v.is_left_out(value)
+            and abs(value) < 1e12
+        ):
             low = -math.inf if v.minimum is None else v.minimum
             high = math.inf if v.maximum is None else v.maximum
             value = float(min(max(value * (1.0 + SPREAD * random.standard_normal()), low), high))
@@ -154,7 +178,10 @@ def _draw(cls, inputs, random, share):
             if abs(v.start) >= 1e12 and random.random() < 0.9:
                 continue  # plenty of power and the like stays so, mostly
             start = v.start if abs(v.start) < 1e12 else 2e5
-            value = 0.9 * (value - start if abs(value) < 1e12 else 0.0) + share * size * random.standard_normal()
+            value = (
+                0.9 * (value - start if abs(value) < 1e12 else 0.0)
+                + share * size * random.standard_normal()
+            )
             inputs[v.name] = float(min(max(start + value, low), high))
         elif v.type == "Boolean":
             inputs[v.name] = bool(value) ^ bool(random.random() < 0.04)
@@ -175,16 +202,21 @@ class _Compiled:
     """An instance of the FMU in C, by the functions of FMI."""
 
     def __init__(self, cls, library, guid):
-        self._library, self.said = library, ""
+        self._library = library
+        self.said = ""
         self._of_type = {
-            kind: [(v.name, reference) for reference, v in enumerate(cls.variables) if v.type == kind]
+            kind: [
+                (v.name, reference) for reference, v in enumerate(cls.variables) if v.type == kind
+            ]
             for kind in ("Real", "Integer", "Boolean", "String")
         }
         self._outputs = {v.name for v in cls.variables if v.causality == "output"}
         self._callbacks = _Callbacks(_LOGGER(self._log), None, None, None, None)
         library.fmi2Instantiate.restype = ctypes.c_void_p
         callbacks = ctypes.byref(self._callbacks)
-        self._o = ctypes.c_void_p(library.fmi2Instantiate(b"it", 1, guid.encode(), b"", callbacks, 0, 0))
+        self._o = ctypes.c_void_p(
+            library.fmi2Instantiate(b"it", 1, guid.encode(), b"", callbacks, 0, 0)
+        )
         if not self._o:
             raise Untraceable(f"the compiled FMU cannot be instantiated: {self.said}")
 
@@ -197,16 +229,24 @@ class _Compiled:
             found = [(reference, values[name]) for name, reference in variables if name in values]
             if found:
                 given = [value.encode() if kind == "String" else value for _, value in found]
-                self._done(getattr(self._library, f"fmi2Set{kind}")(*self._lists(kind, [r for r, _ in found], given)))
+                self._done(
+                    getattr(self._library, f"fmi2Set{kind}")(
+                        *self._lists(kind, [r for r, _ in found], given)
+                    )
+                )
 
     def outputs(self) -> dict[str, float]:
         found = {}
         for kind, variables in self._of_type.items():
             wanted = [(name, reference) for name, reference in variables if name in self._outputs]
             if wanted and kind != "String":
-                o, references, n, values = self._lists(kind, [r for _, r in wanted], [0] * len(wanted))
+                o, references, n, values = self._lists(
+                    kind, [r for _, r in wanted], [0] * len(wanted)
+                )
                 self._done(getattr(self._library, f"fmi2Get{kind}")(o, references, n, values))
-                found |= {name: float(value) for (name, _), value in zip(wanted, values, strict=True)}
+                found |= {
+                    name: float(value) for (name, _), value in zip(wanted, values, strict=True)
+                }
         return found
 
     def initialise(self) -> bool:
@@ -214,7 +254,10 @@ class _Compiled:
         return self._library.fmi2ExitInitializationMode(self._o) == 0
 
     def step(self, time, step_size) -> bool:
-        return self._library.fmi2DoStep(self._o, ctypes.c_double(time), ctypes.c_double(step_size), 1) == 0
+        return (
+            self._library.fmi2DoStep(self._o, ctypes.c_double(time), ctypes.c_double(step_size), 1)
+            == 0
+        )
 
     def free(self):
         self._library.fmi2FreeInstance(self._o)
@@ -233,7 +276,13 @@ class _Compiled:
 
 
 _LOGGER = ctypes.CFUNCTYPE(
-    None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p
+    None,
+    ctypes.c_void_p,
+    ctypes.c_char_p,
+    ctypes.c_int,
+    ctypes.c_char_p,
+    ctypes.c_char_p,
+    ctypes.c_char_p,
 )
 
 

@@ -15,7 +15,21 @@ import numpy as np
 from shipcosim.native.export.arrays import NumPy
 from shipcosim.native.symbols import Maths, Symbol, first_symbol
 
-NAMED = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "asin", "acos", "atan", "sinh", "cosh", "log10")
+NAMED = (
+    "sin",
+    "cos",
+    "tan",
+    "exp",
+    "log",
+    "sqrt",
+    "tanh",
+    "asin",
+    "acos",
+    "atan",
+    "sinh",
+    "cosh",
+    "log10",
+)
 
 
 def _of(original: Callable, of_symbols: Callable) -> Callable:
@@ -40,14 +54,18 @@ class _AsType(type):
 
 
 class _Int(metaclass=_AsType):
-    original, of_symbol = int, staticmethod(Maths.whole)
+    original = int
+    of_symbol = staticmethod(Maths.whole)
 
 
 class _Float(metaclass=_AsType):
-    original, of_symbol = float, staticmethod(Maths.number)
+    original = float
+    of_symbol = staticmethod(Maths.number)
 
 
-_FUNCTIONS: dict[str, Callable] = {name: lambda x, name=name: x.function(name) for name in NAMED} | {
+_FUNCTIONS: dict[str, Callable] = {
+    name: lambda x, name=name: x.function(name) for name in NAMED
+} | {
     "atan2": Maths.atan2,
     "hypot": lambda x, y: Maths.sqrt(x * x + y * y),
     "fabs": abs,
@@ -56,8 +74,12 @@ _FUNCTIONS: dict[str, Callable] = {name: lambda x, name=name: x.function(name) f
     "radians": lambda x: x * (math.pi / 180.0),
     "degrees": lambda x: x * (180.0 / math.pi),
 }
-_REPLACED = {getattr(math, name): _of(getattr(math, name), function) for name, function in _FUNCTIONS.items()}
-_MATH = SimpleNamespace(**(vars(math) | {f.__name__: replaced for f, replaced in _REPLACED.items()}))
+_REPLACED = {
+    getattr(math, name): _of(getattr(math, name), function) for name, function in _FUNCTIONS.items()
+}
+_MATH = SimpleNamespace(
+    **(vars(math) | {f.__name__: replaced for f, replaced in _REPLACED.items()})
+)
 
 _NUMPY = NumPy()
 
@@ -65,7 +87,11 @@ _NUMPY = NumPy()
 @contextmanager
 def understood(package: str) -> Iterator[None]:
     """Let int, float and the functions of `math` and NumPy take symbols in the modules of a package, for a while."""
-    modules = [vars(module) for name, module in list(sys.modules.items()) if name.partition(".")[0] == package]
+    modules = [
+        vars(module)
+        for name, module in list(sys.modules.items())
+        if name.partition(".")[0] == package
+    ]
     before = [dict(module) for module in modules]
     for module in modules:
         for name, value in list(module.items()):

@@ -25,7 +25,10 @@ MOST_FLAGS = 2
 
 
 def build_native_fmu(
-    source: Path | str, out: Path | str, examples: Sequence[Mapping[str, Any]] = (), targets: Sequence[str] = ()
+    source: Path | str,
+    out: Path | str,
+    examples: Sequence[Mapping[str, Any]] = (),
+    targets: Sequence[str] = (),
 ) -> Path:
     """Build an FMU with its model in C, and compare it with the one in Python.
 
@@ -57,12 +60,15 @@ def build_native_fmu(
         words = sys.modules[f"{bundled.package}.shipcosim.fmi.failures"].text_of
         with understood(bundled.package):
             found = list(_variants(cls, examples))
-            variants, values = [variant for variant, _ in found], [given for _, given in found]
+            variants = [variant for variant, _ in found]
+            values = [given for _, given in found]
             text = source_of_model(cls, script.stem, "", variants, words)
         try:
             blank = _description(cls, script.stem, "")
             guid = f"{{{hashlib.sha256(blank + text.encode()).hexdigest()[:32]}}}"
-            files = {"modelDescription.xml": _description(cls, script.stem, guid)} | documentation(script)
+            files = {"modelDescription.xml": _description(cls, script.stem, guid)} | documentation(
+                script
+            )
         except ValueError as error:
             raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
         text = text.replace('#define GUID ""', f'#define GUID "{guid}"')
@@ -75,7 +81,9 @@ def build_native_fmu(
     return write_archive(Path(out) / f"{script.stem}.fmu", files)
 
 
-def _variants(cls: Any, examples: Sequence[Mapping[str, Any]]) -> Iterator[tuple[Variant, dict[str, Any]]]:
+def _variants(
+    cls: Any, examples: Sequence[Mapping[str, Any]]
+) -> Iterator[tuple[Variant, dict[str, Any]]]:
     """Variants for the examples and the FMU's own start values, each with its parameters.
 
     The first one that cannot be recorded ends it; of the flags' other values those that can be recorded are taken.
@@ -91,7 +99,9 @@ def _variants(cls: Any, examples: Sequence[Mapping[str, Any]]) -> Iterator[tuple
         yield variant, values
         seen.append(variant.fixed)
         flags = [v.name for v in cls.variables if v.type == "Boolean" and v.name in variant.fixed]
-        for chosen in itertools.product([False, True], repeat=len(flags)) if len(flags) <= MOST_FLAGS else ():
+        for chosen in (
+            itertools.product([False, True], repeat=len(flags)) if len(flags) <= MOST_FLAGS else ()
+        ):
             flagged = dict(zip(flags, chosen, strict=True))
             if variant.fixed | flagged in seen:
                 continue

@@ -64,7 +64,10 @@ def targets_of(given: str) -> list[str]:
     unknown = [name for name in names if name not in TARGETS]
     if unknown:
         raise ShipcosimError(
-            [Problem("--targets", f"There is no '{name}'.", suggestion(name, list(TARGETS))) for name in unknown]
+            [
+                Problem("--targets", f"There is no '{name}'.", suggestion(name, list(TARGETS)))
+                for name in unknown
+            ]
         )
     return names
 
@@ -100,20 +103,35 @@ def _compiled(source, triple, suffix) -> bytes:
 
 def _from_compiler(source, triple, suffix) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
-        text, library = Path(folder, "all.c"), Path(folder, f"all{suffix}")
+        text = Path(folder, "all.c")
+        library = Path(folder, f"all{suffix}")
         text.write_text(source, encoding="utf-8")
-        command = [sys.executable, "-m", "ziglang", "cc", "-target", triple, *OPTIONS, "all.c", "-o", library.name]
+        command = [
+            sys.executable,
+            "-m",
+            "ziglang",
+            "cc",
+            "-target",
+            triple,
+            *OPTIONS,
+            "all.c",
+            "-o",
+            library.name,
+        ]
         command += [] if "windows" in triple else ["-lm"]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise ShipcosimError(Problem(f"compiler for {triple}", f"fails: {done.stderr.strip()[:1000]}"))
+            raise ShipcosimError(
+                Problem(f"compiler for {triple}", f"fails: {done.stderr.strip()[:1000]}")
+            )
         return library.read_bytes()
 
 
 def _universal(libraries: list[bytes]) -> bytes:
     """Apple's file of several libraries: a table of processors, offsets and sizes, then each at an even page."""
     page = 1 << 14
-    head, body = struct.pack(">II", 0xCAFEBABE, len(libraries)), b""
+    head = struct.pack(">II", 0xCAFEBABE, len(libraries))
+    body = b""
     for library in libraries:
         processor, kind = struct.unpack_from("<II", library, 4)
         offset = page + len(body)

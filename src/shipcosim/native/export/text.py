@@ -23,7 +23,9 @@ _VALUES = re.compile(r"\b(?:[vpc]|start_|step_)[0-9]+\b")
 TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "STRING"}
 
 
-def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Variant], words: Callable) -> str:
+def source_of_model(
+    cls: Any, identifier: str, guid: str, variants: Sequence[Variant], words: Callable
+) -> str:
     """The whole C text of an FMU.
 
     Parameters
@@ -37,7 +39,11 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
     words : callable
         ``words(error)`` is what the FMU in Python says of an error.
     """
-    functions, kept, others, written, found = [], [], {}, set(), []
+    functions = []
+    kept = []
+    others = {}
+    written = set()
+    found = []
     for variant in variants:
         text, size = _functions(variant, len(found), words, others)
         plain = (*variant.fixed.items(), _plain(text))
@@ -48,7 +54,9 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
         functions.append(text)
         kept.append(size)
     variants = found
-    outputs = [str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"]
+    outputs = [
+        str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"
+    ]
     head = [
         f"#define IDENTIFIER {_text(identifier)}",
         f"#define GUID {_text(guid)}",
@@ -63,7 +71,8 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
         "",
     ]
     table = [
-        _variant(cls, number, variant, size) for number, (variant, size) in enumerate(zip(variants, kept, strict=True))
+        _variant(cls, number, variant, size)
+        for number, (variant, size) in enumerate(zip(variants, kept, strict=True))
     ]
     rows = [*(choices for choices, _ in table), "static const Variant variants[N_VARIANTS] = {"]
     rows += [*(row for _, row in table), "};", ""]
@@ -80,11 +89,15 @@ def source_of_model(cls: Any, identifier: str, guid: str, variants: Sequence[Var
     )
 
 
-def _functions(variant: Variant, number: int, words: Callable, others: dict[str, str]) -> tuple[str, int]:
+def _functions(
+    variant: Variant, number: int, words: Callable, others: dict[str, str]
+) -> tuple[str, int]:
     """Start and step of a variant as C, and how many numbers they keep together."""
     n = len(variant.places)
     start = ModelWriter(variant.start, f"start_{number}", words, lambda place: place, 0, others)
-    step = ModelWriter(variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept, others)
+    step = ModelWriter(
+        variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept, others
+    )
     assert n == len(variant.places)
     return "\n".join([start.function(), step.function()]), start.n_kept + step.n_kept
 
@@ -118,8 +131,11 @@ class ModelWriter(Writer):
         others: dict[str, str],
     ):
         super().__init__(step)
-        self.name, self._words, self._where = name, words, place
-        self._others, self._names = others, []
+        self.name = name
+        self._words = words
+        self._where = place
+        self._others = others
+        self._names = []
         self.n_kept = sum(a + b for a, b in kept_sizes(step.recording))
         self.arguments = [first_kept + first for first in self.arguments]
         self.results = [first_kept + first for first in self.results]
@@ -128,7 +144,9 @@ class ModelWriter(Writer):
         """The function, behind those that it calls."""
         called = []
         for call in self.recording.calls:
-            name, text = _Procedure(procedure_of(call), "kept", self._words, self._others).named_function()
+            name, text = _Procedure(
+                procedure_of(call), "kept", self._words, self._others
+            ).named_function()
             self._names.append(name)
             called.append(text)
         self._block(self.step.root, 1, self._finish)
@@ -138,7 +156,9 @@ class ModelWriter(Writer):
             f"    static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
             for number, table in enumerate(self.recording.tables)
         ]
-        return "\n".join([*called, head, "{", *tables, "    (void)m, (void)k, (void)o;", *self.lines, "}", ""])
+        return "\n".join(
+            [*called, head, "{", *tables, "    (void)m, (void)k, (void)o;", *self.lines, "}", ""]
+        )
 
     def _place(self, place):
         return self._where(place)
@@ -165,7 +185,10 @@ class ModelWriter(Writer):
             name, size, *arguments = symbol.operands
             given = ", ".join(map(operand, arguments))
             self._put(depth, f"double p{symbol.number}[{size}];")
-            self._put(depth, f"{{ const double a[] = {{{given}}}; {name}(p{symbol.number}, a, {len(arguments)}); }}")
+            self._put(
+                depth,
+                f"{{ const double a[] = {{{given}}}; {name}(p{symbol.number}, a, {len(arguments)}); }}",
+            )
         else:
             super()._value(symbol, depth)
 
@@ -178,11 +201,15 @@ class ModelWriter(Writer):
     def _call(self, operands, depth):
         number, *arguments = operands
         first = self.arguments[number]
-        same = " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
+        same = (
+            " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
+        )
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
             self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
-        self._put(depth + 1, f"if ({self._names[number]}(k + {first}, k + {self.results[number]}, o)) {{")
+        self._put(
+            depth + 1, f"if ({self._names[number]}(k + {first}, k + {self.results[number]}, o)) {{"
+        )
         self._put(depth + 2, f"{f'k[{first}] = NAN; ' if arguments else ''}return GIVEN_UP;")
         self._put(depth + 1, "}")
         self._put(depth, "}")
@@ -214,7 +241,9 @@ class _Procedure(ModelWriter):
 
 def _plain(text: str) -> str:
     """The text of functions with other names: the same for those that compute the same."""
-    numbers = {found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))}
+    numbers = {
+        found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))
+    }
     return _VALUES.sub(lambda found: numbers[found[0]], text)
 
 
@@ -227,11 +256,15 @@ def say(text: str, recording: Recording) -> str:
             continue
         symbol = recording.said[int(words)]
         if how != "r":
-            said.append(f"say_number(o, {operand(symbol)}, {_text('%' + how.replace('d', '.0f'))});")
+            said.append(
+                f"say_number(o, {operand(symbol)}, {_text('%' + how.replace('d', '.0f'))});"
+            )
         elif symbol.kind == "i":
             said.append(f'say_number(o, {operand(symbol)}, "%.0f");')
         else:
-            said.append(f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {operand(symbol)});")
+            said.append(
+                f"{'say_truth' if symbol.kind == 'b' else 'say_float'}(o, {operand(symbol)});"
+            )
     return "".join(f"{one} " for one in said)
 
 
@@ -259,7 +292,9 @@ def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
         f"{_text(value) if isinstance(value, str) else 'NULL'}}}"
         for name, value in variant.fixed.items()
     ]
-    table = f"static const Choice choices_{number}[] = {{{', '.join([*choices, '{0, 0.0, NULL}'])}}};"
+    table = (
+        f"static const Choice choices_{number}[] = {{{', '.join([*choices, '{0, 0.0, NULL}'])}}};"
+    )
     row = f"{len(choices)}, {variant.size}, {kept}, choices_{number}, start_{number}, step_{number}"
     return table, f"    {{{row}}},"
 
@@ -267,8 +302,14 @@ def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
 def _text(value: str) -> str:
     """A text as a literal of C, in parts of a length that every compiler takes."""
     escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "?": "\\?"}
-    letters = [escapes.get(c, c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode())) for c in value]
-    return " ".join('"' + "".join(letters[i : i + 500]) + '"' for i in range(0, len(letters), 500)) or '""'
+    letters = [
+        escapes.get(c, c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode()))
+        for c in value
+    ]
+    return (
+        " ".join('"' + "".join(letters[i : i + 500]) + '"' for i in range(0, len(letters), 500))
+        or '""'
+    )
 
 
 def _runtime(name: str) -> str:

@@ -73,7 +73,12 @@ def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Varian
     texts = [variable.name for variable in parameters if variable.type == "String"]
     whole = [variable.name for variable in parameters if variable.type in ("Integer", "Boolean")]
     reasons = []
-    for names, decided in ((texts, False), ([*texts, *whole], False), (texts, True), ([*texts, *whole], True)):
+    for names, decided in (
+        (texts, False),
+        ([*texts, *whole], False),
+        (texts, True),
+        ([*texts, *whole], True),
+    ):
         try:
             return _recorded(cls, given, names, step_size, decided)
         except Untraceable as reason:
@@ -100,11 +105,64 @@ def with_its_line(function: Callable) -> Callable:
 def _recorded(cls, given, names, step_size, decided) -> Variant:
     """With `decided`, questions that parameters alone answer belong to the code, answered as for the example."""
     fixed = {name: given[name] for name in names}
-    constant, unchanging = frozenset(fixed), frozenset(group.name for group in cls.groups)
+    constant = frozenset(fixed)
+    unchanging = frozenset(group.name for group in cls.groups)
     n = len(cls.variables)
     example = [0.0 if v.type == "String" else given.get(v.name, v.start) for v in cls.variables]
-    settled = {place for place, v in enumerate(cls.variables) if v.causality == "parameter"} if decided else set()
-    recording, made = ExportRecording([*example, 0.0], settled), []
+    settled = (
+        {place for place, v in enumerate(cls.variables) if v.causality == "parameter"}
+        if decided
+        else set()
+    )
+    recording = ExportRecording([*example, 0.0], settled)
+    root, clone, flat = _recorded_start(cls, fixed, recording)
+
+    # Every number of the state has a place: that of the FMU's variable of its name, or one of its own behind them.
+    references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
+    state = iter(range(n + STATE, n + STATE + len(flat.leaves)))
+    places = [
+        references[leaf.path[0]]
+        if len(leaf.path) == 1 and leaf.path[0] in references
+        else next(state)
+        for leaf in flat.leaves
+    ]
+
+    # Choices are numbers by which the code takes one way or another, and which no step changes.
+    numbers = _numbers(flat, recording)
+    pairs = enumerate(zip(flat.leaves, places, strict=True))
+    choices = {
+        number for number, (leaf, place) in pairs if leaf.path[0] in unchanging or place in settled
+    }
+    shape = Shape(
+        _widest(flat, root),
+        numbers,
+        constant,
+        unchanging,
+        frozenset(choices) if decided else frozenset(),
+    )
+
+    # The step is recorded on the state that the start left.
+    step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
+    for end in ends(root):
+        if isinstance(end.result, Flat):
+            end.result = _written(end.result, flat, places)
+    size = max([n + STATE, *(place + 1 for place in places)])
+    names = [text_of(leaf.path) for leaf in flat.leaves]
+    return Variant(
+        fixed,
+        Step(recording, root, frozenset()),
+        step,
+        [*places, n + TIME, n + STEP_SIZE],
+        names,
+        size,
+    )
+
+
+def _recorded_start(cls, fixed, recording):
+    """The tree of ways that the start can go, and instance and flat state of the first that gets to its end."""
+    constant = frozenset(fixed)
+    unchanging = frozenset(group.name for group in cls.groups)
+    made = []
 
     def run():
         clone = _with_symbols(cls, fixed, recording)
@@ -122,24 +180,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
     root = recording.record(run)
     if not made:
         raise next(end.result for end in ends(root))
-    clone, flat = made[0]
-    references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
-    state = iter(range(n + STATE, n + STATE + len(flat.leaves)))
-    places = [
-        references[leaf.path[0]] if len(leaf.path) == 1 and leaf.path[0] in references else next(state)
-        for leaf in flat.leaves
-    ]
-    numbers = _numbers(flat, recording)
-    pairs = enumerate(zip(flat.leaves, places, strict=True))
-    choices = {number for number, (leaf, place) in pairs if leaf.path[0] in unchanging or place in settled}
-    shape = Shape(_widest(flat, root), numbers, constant, unchanging, frozenset(choices) if decided else frozenset())
-    step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
-    for end in ends(root):
-        if isinstance(end.result, Flat):
-            end.result = _written(end.result, flat, places)
-    size = max([n + STATE, *(place + 1 for place in places)])
-    names = [text_of(leaf.path) for leaf in flat.leaves]
-    return Variant(fixed, Step(recording, root, frozenset()), step, [*places, n + TIME, n + STEP_SIZE], names, size)
+    return root, *made[0]
 
 
 def _put_in_order(clone):
@@ -147,7 +188,9 @@ def _put_in_order(clone):
     values = dict(vars(clone))
     first = [*(item.name for item in (*clone.variables, *clone.groups))]
     vars(clone).clear()
-    vars(clone).update({name: values[name] for name in [*first, *sorted(values.keys() - set(first))]})
+    vars(clone).update(
+        {name: values[name] for name in [*first, *sorted(values.keys() - set(first))]}
+    )
 
 
 @contextmanager
@@ -198,10 +241,13 @@ def _widest(flat: Flat, root) -> Flat:
     for end in ends(root):
         if isinstance(end.result, Flat):
             if not end.result.same_shape(flat):
-                raise Untraceable(f"its start gives states of several shapes: {flat.difference(end.result)}")
+                raise Untraceable(
+                    f"its start gives states of several shapes: {flat.difference(end.result)}"
+                )
             kinds = [kind_of(number) for number in end.result.numbers]
             flat.leaves = [
-                leaf._replace(kind="d") if k == "d" else leaf for leaf, k in zip(flat.leaves, kinds, strict=True)
+                leaf._replace(kind="d") if k == "d" else leaf
+                for leaf, k in zip(flat.leaves, kinds, strict=True)
             ]
     return flat
 

@@ -4,7 +4,14 @@ import os
 from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
-from shipcosim.report.calibration.words import error_rows, log_rows, moved, moved_rows, sentence, untold
+from shipcosim.report.calibration.words import (
+    error_rows,
+    log_rows,
+    moved,
+    moved_rows,
+    sentence,
+    untold,
+)
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars, rounded
 from shipcosim.report.theme.numbers import metres
@@ -61,15 +68,21 @@ def write_calibration(ship: CalibratedShip, path: str | os.PathLike[str]) -> Non
 
 
 def _page(ship: CalibratedShip) -> CalibrationPage:
-    what, errors = (_moved_figure(ship),), _error_figures(ship)
-    reference, refused = ship.reference, bool(ship.refusals)
+    what = (_moved_figure(ship),)
+    errors = _error_figures(ship)
+    reference = ship.reference
+    refused = bool(ship.refusals)
     facts = {"System": reference.system, "Logs": ", ".join(log.name for log in ship.logs)}
     scale = reference.tolerance_scale
     facts["Tolerances"] = "as stated" if scale == 1.0 else f"{scale:g} times as stated"
     return CalibrationPage(
         title=f"Calibration of {reference.system}",
         facts=tuple(Fact(name, text) for name, text in facts.items()),
-        outcome=Outcome("unknown" if refused else "consistent", "refused" if refused else "calibrated", sentence(ship)),
+        outcome=Outcome(
+            "unknown" if refused else "consistent",
+            "refused" if refused else "calibrated",
+            sentence(ship),
+        ),
         links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
         data=tuple(figure.drawn for figure in (*what, *errors)),
         refusals=ship.refusals,
@@ -78,11 +91,18 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         moved=what,
         errors=errors,
         figures=(*what, *errors),
-        numbers=Table(tuple(moved_rows(ship)), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)),
-        error_table=Table(
-            tuple(error_rows(ship)), ("Log", "After", "As it is", "Calibrated", "This log fitted too", ""), (1, 2, 3, 4)
+        numbers=Table(
+            tuple(moved_rows(ship)), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
         ),
-        logs=Table(tuple(log_rows(ship)), ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left")),
+        error_table=Table(
+            tuple(error_rows(ship)),
+            ("Log", "After", "As it is", "Calibrated", "This log fitted too", ""),
+            (1, 2, 3, 4),
+        ),
+        logs=Table(
+            tuple(log_rows(ship)),
+            ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),
+        ),
         untold=untold(ship),
     )
 
@@ -90,14 +110,21 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
 def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
     errors = [log.errors for log in ship.logs if log.errors]
     most = max(ship.reference.numbers, key=lambda number: abs(moved(number)))
-    found = [KeyFigure(f"{moved(most):+.1f}".replace("-", "−"), f"tolerances: most that a number moved, {most.name}")]
+    found = [
+        KeyFigure(
+            f"{moved(most):+.1f}".replace("-", "−"),
+            f"tolerances: most that a number moved, {most.name}",
+        )
+    ]
     if errors:
         worst = max(errors, key=lambda one: one.after[-1])
         by = "by the other logs" if worst.fitted_on else "by the first part of the log"
         after = f"position error after {worst.horizon[-1]:.2g} s"
         found += [
             KeyFigure(metres(worst.before[-1]), f"{after}, as the system is"),
-            KeyFigure(metres(worst.after[-1]), f"the same, calibrated {by}: the error that remains"),
+            KeyFigure(
+                metres(worst.after[-1]), f"the same, calibrated {by}: the error that remains"
+            ),
             KeyFigure(metres(worst.floor[-1]), "the same, with this log fitted too"),
         ]
     return tuple(found)
@@ -106,7 +133,8 @@ def _key_figures(ship: CalibratedShip) -> tuple[KeyFigure, ...]:
 def _moved_figure(ship: CalibratedShip) -> Figure:
     """How far each number is from that of the system, in tolerances, with its standard deviation before and after."""
     ranked = sorted(ship.reference.numbers, key=lambda number: abs(moved(number)))
-    names, at = [number.name for number in ranked], [moved(number) for number in ranked]
+    names = [number.name for number in ranked]
+    at = [moved(number) for number in ranked]
     spread = rounded([number.std / number.tolerance for number in ranked], 3)
     look = {"color": palette.BLUE, "thickness": 1.5, "width": 0}
     dots = {
@@ -143,8 +171,16 @@ def _error_figures(ship: CalibratedShip) -> tuple[Figure, ...]:
                 "calibrated": (one.after, palette.BLUE),
                 "with this log fitted too": (one.floor, palette.FAINT),
             }
-            traces = tuple(bars(name, horizons, sizes, colour, "m") for name, (sizes, colour) in looks.items())
-            by = f"Calibrated by {', '.join(one.fitted_on)}" if one.fitted_on else "Calibrated by its first two thirds"
+            traces = tuple(
+                bars(name, horizons, sizes, colour, "m") for name, (sizes, colour) in looks.items()
+            )
+            by = (
+                f"Calibrated by {', '.join(one.fitted_on)}"
+                if one.fitted_on
+                else "Calibrated by its first two thirds"
+            )
             note = f"{by}; root mean square over open-loop predictions, noise of the log and all."
-            found.append(Figure(f"Position error, {log.name}", "m", traces, {"barmode": "group"}, note))
+            found.append(
+                Figure(f"Position error, {log.name}", "m", traces, {"barmode": "group"}, note)
+            )
     return tuple(found)

@@ -52,7 +52,12 @@ def _row(number: KnownNumber) -> tuple[str, ...]:
 def error_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
     """Errors by log and horizon: name, horizon, before, calibrated, with this log fitted too, and what judged it."""
     return [
-        (log.name, f"{horizon:.2g} s", *map(metres, (one.before[k], one.after[k], one.floor[k])), _judged_by(one))
+        (
+            log.name,
+            f"{horizon:.2g} s",
+            *map(metres, (one.before[k], one.after[k], one.floor[k])),
+            _judged_by(one),
+        )
         for log in ship.logs
         for one in [log.errors]
         if one
@@ -61,7 +66,11 @@ def error_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
 
 
 def _judged_by(one: RemainingErrors) -> str:
-    return f"calibrated by {', '.join(one.fitted_on)}" if one.fitted_on else "calibrated by its first part"
+    return (
+        f"calibrated by {', '.join(one.fitted_on)}"
+        if one.fitted_on
+        else "calibrated by its first part"
+    )
 
 
 def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
@@ -75,7 +84,8 @@ def _faults(log: CalibratedLog) -> str:
 
 def _weather(log: CalibratedLog) -> str:
     parts = (
-        f"{path.removeprefix('water.').replace('_', ' ')} {plain(value, 2)}" for path, value in log.weather.items()
+        f"{path.removeprefix('water.').replace('_', ' ')} {plain(value, 2)}"
+        for path, value in log.weather.items()
     )
     return ", ".join(parts) or "as logged"
 

@@ -36,7 +36,9 @@ def capability_figures(capability: Capability) -> tuple[Figure, ...]:
         _curve("simulator, one thruster lost", single[SIMULATOR], palette.PURPLE, dash="dot"),
     )
     each = tuple(
-        _curve(case.name, row, palette.CYCLE[k % len(palette.CYCLE)], dash="solid" if k == 0 else "dot")
+        _curve(
+            case.name, row, palette.CYCLE[k % len(palette.CYCLE)], dash="solid" if k == 0 else "dot"
+        )
         for k, (case, row) in enumerate(zip(capability.cases, numbers[LEVEL_1], strict=True))
     )
     note = "DP capability number over the direction that the weather comes from; bow up, 90° from starboard."
@@ -45,7 +47,9 @@ def capability_figures(capability: Capability) -> tuple[Figure, ...]:
         _polar("Level 1: intact, and after the worst single failure", level_1, note),
         _polar("Level 1 beside the simulator's own models", beside, other),
         _polar(
-            "Level 1 after each failure", each, "The worst failure above is the lowest of these, from each direction."
+            "Level 1 after each failure",
+            each,
+            "The worst failure above is the lowest of these, from each direction.",
         ),
     )
 
@@ -63,15 +67,17 @@ def load_figures(capability: Capability) -> tuple[Figure, ...]:
         LEVEL_1: level_1_parts(vessel.hull, condition, DIRECTIONS),
         SIMULATOR: simulated_parts(vessel.simulated, condition, DIRECTIONS),
     }
-    note = (
-        f"Condition {condition.number}, dynamic factor {DYNAMIC_FACTOR:g} included. Solid: Level 1, dotted: simulator."
-    )
+    note = f"Condition {condition.number}, dynamic factor {DYNAMIC_FACTOR:g} included. Solid: Level 1, dotted: simulator."
     axes = {"Force to starboard": ("kN", 1, 1e3), "Yaw moment, bow to starboard": ("kN m", 2, 1e3)}
     return tuple(
         Figure(
             title,
             unit,
-            tuple(trace for method, loads in parts.items() for trace in _lines(loads, axis, size, method == LEVEL_1)),
+            tuple(
+                trace
+                for method, loads in parts.items()
+                for trace in _lines(loads, axis, size, method == LEVEL_1)
+            ),
             {"xaxis": {"dtick": 45, "ticksuffix": "°", "range": [0, 350]}},
             note,
         )
@@ -79,14 +85,20 @@ def load_figures(capability: Capability) -> tuple[Figure, ...]:
     )
 
 
-def _lines(loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool) -> list[dict[str, Any]]:
-    angles, factor, dash = np.degrees(DIRECTIONS), DYNAMIC_FACTOR / size, "solid" if is_level_1 else "dot"
+def _lines(
+    loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool
+) -> list[dict[str, Any]]:
+    angles = np.degrees(DIRECTIONS)
+    factor = DYNAMIC_FACTOR / size
+    dash = "solid" if is_level_1 else "dot"
     more = {"showlegend": is_level_1, "hovertemplate": "%{y:.3~g}"}
     word = "" if is_level_1 else ", simulator"
     curves = [(name, part, SOURCES[name], 1.5) for name, part in loads.items()]
     curves.append(("sum", sum(loads.values(), np.zeros((len(angles), 3))), palette.INK, 2.5))
     return [
-        line(f"{name}{word}", angles, factor * part[:, axis], colour, width=width, dash=dash, **more)
+        line(
+            f"{name}{word}", angles, factor * part[:, axis], colour, width=width, dash=dash, **more
+        )
         for name, part, colour, width in curves
     ]
 
@@ -95,10 +107,16 @@ def _curve(
     name: str, numbers: NDArray, colour: str, *, dash: str = "solid", fill: float | None = None
 ) -> dict[str, Any]:
     """A closed curve of numbers around the ship."""
-    angles, values = np.degrees(DIRECTIONS), np.asarray(numbers, float)
+    angles = np.degrees(DIRECTIONS)
+    values = np.asarray(numbers, float)
     filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
     return {
-        **{"type": "scatterpolar", "mode": "lines", "name": name, "hovertemplate": "%{r} from %{theta}"},
+        **{
+            "type": "scatterpolar",
+            "mode": "lines",
+            "name": name,
+            "hovertemplate": "%{r} from %{theta}",
+        },
         **{"theta": rounded([*angles, 360.0]), "r": rounded([*values, values[0]])},
         "line": {"color": colour, "width": 2, "dash": dash},
         **filled,
@@ -109,7 +127,19 @@ def _polar(title: str, traces: tuple[dict[str, Any], ...], note: str) -> Figure:
     look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
     polar = {
         "bgcolor": "@card",
-        "angularaxis": {"rotation": 90, "direction": "clockwise", "dtick": 30, "ticksuffix": "°", **look},
-        "radialaxis": {"range": [0, 11], "tickvals": [2, 4, 6, 8, 10], "angle": 45, "tickangle": 45, **look},
+        "angularaxis": {
+            "rotation": 90,
+            "direction": "clockwise",
+            "dtick": 30,
+            "ticksuffix": "°",
+            **look,
+        },
+        "radialaxis": {
+            "range": [0, 11],
+            "tickvals": [2, 4, 6, 8, 10],
+            "angle": 45,
+            "tickangle": 45,
+            **look,
+        },
     }
     return Figure(title, "", traces, {"polar": polar}, note, TALL)

@@ -18,7 +18,13 @@ from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
 from shipcosim.series import write_file
 
-SECTIONS = {"plot": "Plot", "numbers": "Numbers", "loads": "Loads", "thrusters": "Thrusters", "basis": "Basis"}
+SECTIONS = {
+    "plot": "Plot",
+    "numbers": "Numbers",
+    "loads": "Loads",
+    "thrusters": "Thrusters",
+    "basis": "Basis",
+}
 
 
 @dataclass(frozen=True)
@@ -66,13 +72,17 @@ def write_capability(capability: Capability, path: str | os.PathLike[str]) -> No
     ShipcosimError
         If the file cannot be written.
     """
-    write_file(path, render("capability/templates/capability.html.jinja", page_of(capability)).encode())
+    write_file(
+        path, render("capability/templates/capability.html.jinja", page_of(capability)).encode()
+    )
 
 
 def page_of(capability: Capability) -> CapabilityPage:
     """What the page of a capability shows."""
-    plots, loads = capability_figures(capability), load_figures(capability)
-    vessel, figures = capability.vessel, (*plots, *loads)
+    plots = capability_figures(capability)
+    loads = load_figures(capability)
+    vessel = capability.vessel
+    figures = (*plots, *loads)
     said = [one for one in vessel.particulars if one.origin != "neutral"]
     facts = {
         "Ship": vessel.description or vessel.name,
@@ -102,19 +112,26 @@ def page_of(capability: Capability) -> CapabilityPage:
 def _outcome(capability: Capability) -> Outcome:
     a, b, c, d = capability.elements()
     intact = f"With all thrusters she keeps position and heading {_weather(a)} from within 30° of the bow"
-    failed = (
-        f"After the worst single failure{_always_worst(capability)} it is number {c} from ahead and {d} from anywhere"
-    )
+    failed = f"After the worst single failure{_always_worst(capability)} it is number {c} from ahead and {d} from anywhere"
     if any(len(case.failed) > 1 for case in capability.cases):
         *_, c, d = capability.elements(most_lost=1)
         failed += f"; where only one thruster is lost, {c} and {d}"
-    return Outcome("named", notation(capability), f"{intact}, and {_weather(b)} from anywhere. {failed}.")
+    return Outcome(
+        "named", notation(capability), f"{intact}, and {_weather(b)} from anywhere. {failed}."
+    )
 
 
 def _always_worst(capability: Capability) -> str:
     """Name of the failure that is the worst from every direction, between commas; nothing where there is none."""
     same = (capability.numbers() == capability.worst()).all(axis=1)
-    return next((f", {case.name}," for case, is_worst in zip(capability.cases, same, strict=True) if is_worst), "")
+    return next(
+        (
+            f", {case.name},"
+            for case, is_worst in zip(capability.cases, same, strict=True)
+            if is_worst
+        ),
+        "",
+    )
 
 
 def _weather(number: int) -> str:
@@ -132,12 +149,15 @@ def _key_figures(capability: Capability) -> tuple[KeyFigure, ...]:
         "C: worst single failure, within 30° of the bow",
         "D: worst single failure, from anywhere",
     )
-    return tuple(KeyFigure(str(n), text) for n, text in zip(capability.elements(), meanings, strict=True))
+    return tuple(
+        KeyFigure(str(n), text) for n, text in zip(capability.elements(), meanings, strict=True)
+    )
 
 
 def _numbers(capability: Capability) -> Table:
     """A row a direction: wind that the intact ship holds, numbers of each case, of the simulator."""
-    level_1, simulator = capability.numbers(LEVEL_1), capability.numbers(SIMULATOR)
+    level_1 = capability.numbers(LEVEL_1)
+    simulator = capability.numbers(SIMULATOR)
     columns = [*level_1, capability.worst(LEVEL_1), simulator[0], capability.worst(SIMULATOR)]
     names = [
         *(case.name for case in capability.cases),
@@ -147,7 +167,11 @@ def _numbers(capability: Capability) -> Table:
     ]
     speeds = (0.0, *(condition.wind_speed for condition in CONDITIONS))
     rows = tuple(
-        (f"{np.degrees(angle):.0f}°", f"{speeds[level_1[0][k]]:g} m/s", *(str(int(column[k])) for column in columns))
+        (
+            f"{np.degrees(angle):.0f}°",
+            f"{speeds[level_1[0][k]]:g} m/s",
+            *(str(int(column[k])) for column in columns),
+        )
         for k, angle in enumerate(DIRECTIONS)
     )
     return Table(rows, ("weather from", "wind, intact", *names), tight=(0, 1))
@@ -155,7 +179,8 @@ def _numbers(capability: Capability) -> Table:
 
 def _thrusters(capability: Capability) -> Table:
     """Thrust by Level 1, nominal and in weather that she holds from anywhere; limits of the simulator's thrusters."""
-    limits, hull = capability.vessel.simulated.limits, capability.vessel.hull
+    limits = capability.vessel.simulated.limits
+    hull = capability.vessel.hull
     condition = limiting_condition(capability)
     rows = []
     for thruster in capability.vessel.thrusters:
@@ -164,7 +189,12 @@ def _thrusters(capability: Capability) -> Table:
         ends = (plain(left.min()), plain(left.max()))
         # Directions in which a thruster must not push, since its race would hit another that works.
         found = sectors(thruster, capability.vessel.thrusters, ())
-        forbidden = ", ".join(f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in found) or "–"
+        forbidden = (
+            ", ".join(
+                f"{np.degrees(s.middle) % 360:.0f}° ± {np.degrees(s.half):.0f}°" for s in found
+            )
+            or "–"
+        )
         rows.append(
             (
                 thruster.name,
@@ -206,5 +236,8 @@ def _conditions() -> Table:
 
 
 def _particulars(said: Sequence[Particular]) -> Table:
-    rows = ((p.file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin) for p in said)
+    rows = (
+        (p.file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
+        for p in said
+    )
     return Table(tuple(rows), ("file", "what", "value", "from"), tight=(2,))

@@ -29,7 +29,9 @@ UNMODELLED_KINDS = {
 def evidence_figure(evidence: Evidence) -> Figure:
     """How much likelier the log is with each set of causes than with none."""
     sets = evidence.sets[:MOST_SETS][::-1]
-    names = ["\n+ ".join(title(cause, component) for cause, component in one.causes) for one in sets]
+    names = [
+        "\n+ ".join(title(cause, component) for cause, component in one.causes) for one in sets
+    ]
     gains = [max(one.gain, 0.0) for one in sets]
     bars = {
         **{"type": "bar", "orientation": "h", "y": names, "x": rounded(gains, 4)},
@@ -42,7 +44,10 @@ def evidence_figure(evidence: Evidence) -> Figure:
         "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
     )
     height = 90 + (12 + 16 * max([1, *(len(one.causes) for one in sets)])) * max(len(sets), 2)
-    axes = {"xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"}, "yaxis": {"automargin": True}}
+    axes = {
+        "xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"},
+        "yaxis": {"automargin": True},
+    }
     layout = {"shapes": [limit(ENOUGH)], **axes}
     return Figure("Evidence of the best sets of causes", "nats", (bars,), layout, note, height)
 
@@ -50,11 +55,25 @@ def evidence_figure(evidence: Evidence) -> Figure:
 def estimate_figure(evidence: Evidence) -> Figure:
     """Estimates of a set's parameters, in units of the size that matters, with two standard deviations."""
     parameters = evidence.sizes[::-1]
-    names = [f"{title(of.cause, of.component)}:\n{of.parameter.replace('_', ' ')}" for of in parameters]
-    size, wide = [of.size for of in parameters], [2.0 * of.std for of in parameters]
+    names = [
+        f"{title(of.cause, of.component)}:\n{of.parameter.replace('_', ' ')}" for of in parameters
+    ]
+    size = [of.size for of in parameters]
+    wide = [2.0 * of.std for of in parameters]
     marks = {
-        **{"type": "scatter", "mode": "markers", "x": rounded(size, 4), "y": names, "showlegend": False},
-        "error_x": {"type": "data", "array": rounded(wide, 3), "color": palette.BLUE, "thickness": 2},
+        **{
+            "type": "scatter",
+            "mode": "markers",
+            "x": rounded(size, 4),
+            "y": names,
+            "showlegend": False,
+        },
+        "error_x": {
+            "type": "data",
+            "array": rounded(wide, 3),
+            "color": palette.BLUE,
+            "thickness": 2,
+        },
         **{"marker": {"color": palette.BLUE, "size": 9}, "hovertemplate": "%{x:.2f} typical sizes"},
         "named": False,
     }
@@ -62,8 +81,12 @@ def estimate_figure(evidence: Evidence) -> Figure:
         "xaxis": {"title": {"text": "typical sizes"}, "zeroline": True, "rangemode": "tozero"},
         "yaxis": {"range": [-0.6, len(parameters) - 0.4]},
     }
-    note = "From what the model has, at 0; 1 is a size that matters. Bars are two standard deviations."
-    return Figure("How large, and how sure", "", (marks,), axes, note, height=110 + 40 * len(parameters))
+    note = (
+        "From what the model has, at 0; 1 is a size that matters. Bars are two standard deviations."
+    )
+    return Figure(
+        "How large, and how sure", "", (marks,), axes, note, height=110 + 40 * len(parameters)
+    )
 
 
 def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
@@ -77,18 +100,29 @@ def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
             "x": rounded([max(gain, 0.0) for gain in unmodelled.values()], 4),
         },
         "marker": {
-            "color": [palette.VERMILLION if gain > UNMODELLED else palette.FAINT for gain in unmodelled.values()]
+            "color": [
+                palette.VERMILLION if gain > UNMODELLED else palette.FAINT
+                for gain in unmodelled.values()
+            ]
         },
         **{"showlegend": False, "named": False, "hovertemplate": "%{x:.1f} nats"},
-        **{"text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()], "textposition": "outside"},
+        **{
+            "text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()],
+            "textposition": "outside",
+        },
     }
     axes = {
-        "xaxis": {"title": {"text": "nats"}, "range": [0.0, 1.15 * max(UNMODELLED, *unmodelled.values())]},
+        "xaxis": {
+            "title": {"text": "nats"},
+            "range": [0.0, 1.15 * max(UNMODELLED, *unmodelled.values())],
+        },
         "yaxis": {"automargin": True},
     }
     note = "Beyond the dotted line something acts that no known cause explains: the verdict is then unknown."
     layout = {"shapes": [limit(UNMODELLED)], **axes}
-    return Figure("Errors without a name", "nats", (bars,), layout, note, height=90 + 34 * len(names))
+    return Figure(
+        "Errors without a name", "nats", (bars,), layout, note, height=90 + 34 * len(names)
+    )
 
 
 def whiteness_figures(evidence: Evidence) -> tuple[Figure, ...]:
@@ -112,8 +146,17 @@ def _whiteness_figure(
         for i, name in enumerate(CHANNELS)
         if np.isfinite(correlation[:, i]).any()
     ]
-    band = {"type": "rect", "x0": 0, "x1": 1, "xref": "paper", "y0": -2 / np.sqrt(rows), "y1": 2 / np.sqrt(rows)}
+    band = {
+        "type": "rect",
+        "x0": 0,
+        "x1": 1,
+        "xref": "paper",
+        "y0": -2 / np.sqrt(rows),
+        "y1": 2 / np.sqrt(rows),
+    }
     shape = {**band, "layer": "below", "fillcolor": palette.BAND, "line": {"width": 0}}
-    note = "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
+    note = (
+        "Autocorrelation of the whitened innovations; inside the band they are as white as noise."
+    )
     layout = {"shapes": [shape], "xaxis": TIME, "yaxis": {"range": between}}
     return Figure(f"White? {heading}", "", tuple(traces), layout, note)

@@ -74,7 +74,9 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     began = sorted({f.onset for f in diagnosis.findings if f.onset is not None})
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable
-    others = [c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in alike]
+    others = [
+        c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in alike
+    ]
     hidden = diagnosis.form.hides if diagnosis.form else ()
     weak = not_testable_rows(diagnosis.not_testable, diagnosis.causes, diagnosis.facts, hidden)
     figures = [evidence_figure(evidence)] if evidence.sets else []
@@ -97,14 +99,24 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
 
 def _found(diagnosis: Diagnosis) -> str:
     names = [title(f.cause, f.component) for f in diagnosis.findings if f.kind == "physics"]
-    return ", ".join(names) or {"consistent": "none", "named": "none"}.get(diagnosis.verdict, diagnosis.verdict)
+    return ", ".join(names) or {"consistent": "none", "named": "none"}.get(
+        diagnosis.verdict, diagnosis.verdict
+    )
 
 
 def _estimates(diagnosis: Diagnosis) -> Table:
     physics = [finding for finding in diagnosis.findings if finding.kind == "physics"]
     if any(finding.at_reference for finding in physics):
-        rows = [(title(f.cause, f.component), *row, percent(f.probability)) for f in physics for row in size_rows(f)]
-        return Table(tuple(rows), head=("Cause", "Parameter", "At the reference → now", "Probability"), tight=(1, 2, 3))
+        rows = [
+            (title(f.cause, f.component), *row, percent(f.probability))
+            for f in physics
+            for row in size_rows(f)
+        ]
+        return Table(
+            tuple(rows),
+            head=("Cause", "Parameter", "At the reference → now", "Probability"),
+            tight=(1, 2, 3),
+        )
     rows = [
         (title(f.cause, f.component), name, value, f"± {std}", unit, percent(f.probability))
         for f in physics
@@ -119,7 +131,9 @@ def _gains(evidence: Evidence) -> Table:
     rows = []
     for of in evidence.gains:
         known = of.null_gain is not None
-        healthy = f"up to {plain(of.null_gain, 2)} nats" if known else "far above what healthy ships show"
+        healthy = (
+            f"up to {plain(of.null_gain, 2)} nats" if known else "far above what healthy ships show"
+        )
         rows.append((title(of.cause, of.component), plain(of.gain), healthy))
     head = ("Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track")
     return Table(tuple(rows), head, tight=(1,))
@@ -132,12 +146,15 @@ def _chances(candidates: Iterable[Candidate]) -> Table:
 
 def _sail(diagnosis: Diagnosis) -> Sail | None:
     """The prescribed manoeuvre step by step."""
-    prescription, manoeuvre = diagnosis.prescription, diagnosis.manoeuvre
+    prescription = diagnosis.prescription
+    manoeuvre = diagnosis.manoeuvre
     if prescription is None or manoeuvre is None:
         return None
     return Sail(
         name=manoeuvre.name,
         minutes=f"{prescription.minutes:g}",
-        separates=tuple(f"It tells {a} from {b}.".replace("_", " ") for a, b in prescription.separates),
+        separates=tuple(
+            f"It tells {a} from {b}.".replace("_", " ") for a, b in prescription.separates
+        ),
         steps=Table(tuple(manoeuvre_steps(manoeuvre)), head=("When", "What"), tight=(0,)),
     )

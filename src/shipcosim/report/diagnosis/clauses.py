@@ -8,7 +8,9 @@ from shipcosim.report.diagnosis.estimates import plus_minus, vector
 __all__ = ["filled"]
 
 
-def filled(text: str, parameters: Mapping[str, ParameterEstimate], component: str | None = None) -> str:
+def filled(
+    text: str, parameters: Mapping[str, ParameterEstimate], component: str | None = None
+) -> str:
     """A text with placeholders for the parameters of a cause, with their estimates.
 
     Parameters
@@ -44,7 +46,9 @@ class _Values(dict):
     """What the placeholders of a text stand for."""
 
     def __init__(self, parameters: Mapping[str, ParameterEstimate], component: str | None) -> None:
-        super().__init__({name: _Value(estimate) for name, estimate in parameters.items()}, component=component)
+        super().__init__(
+            {name: _Value(estimate) for name, estimate in parameters.items()}, component=component
+        )
 
     def __missing__(self, key: str) -> str:
         first, plus, second = key.partition("+")
@@ -62,7 +66,8 @@ class _Value:
     def __format__(self, wanted: str) -> str:
         form, _, words = wanted.partition(" ")
         above, _, below = words.partition("|")
-        value, std = self.estimate.estimate, self.estimate.std
+        value = self.estimate.estimate
+        std = self.estimate.std
         if form == "percent":
             return _percent(value, std)
         if form == "excess":

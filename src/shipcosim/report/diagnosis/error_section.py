@@ -35,10 +35,13 @@ class ErrorSection:
 
 def error_section(diagnosis: Diagnosis) -> ErrorSection:
     """The section as the template fills it in."""
-    base, errors = diagnosis.baseline, diagnosis.predictions
+    base = diagnosis.baseline
+    errors = diagnosis.predictions
     models = models_to_show(("plain", "floor"), diagnosis)
     return ErrorSection(
-        found=f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:g} s" if base else "not measured",
+        found=f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:g} s"
+        if base
+        else "not measured",
         figures=() if errors is None else tuple(error_figures(errors.overall, models)),
         errors=Table(()) if errors is None else error_table(errors, models),
         has_floor="floor" in models,

@@ -25,7 +25,9 @@ def plus_minus(estimate: ParameterEstimate, absolute: bool = False) -> str:
     return f"{value} ± {std} {unit}".rstrip().replace(" °", "°")
 
 
-def amount(estimate: ParameterEstimate, absolute: bool = False, largest: float = 0.0) -> tuple[str, str, str]:
+def amount(
+    estimate: ParameterEstimate, absolute: bool = False, largest: float = 0.0
+) -> tuple[str, str, str]:
     """Value, standard deviation and unit of an estimate, as texts; `largest` decides on the unit if it is larger.
 
     Returns
@@ -33,7 +35,8 @@ def amount(estimate: ParameterEstimate, absolute: bool = False, largest: float =
     tuple of three str
     """
     unit, factor = _scaled(estimate, max(abs(estimate.estimate), largest))
-    value, std = factor * estimate.estimate, factor * estimate.std
+    value = factor * estimate.estimate
+    std = factor * estimate.std
     digits = _digits(std, value)
     value = abs(value) if absolute else value
     return f"{value:.{digits}f}".replace("-", "−"), f"{std:.{digits}f}", unit

@@ -41,10 +41,14 @@ class ExtensionSection:
 
 def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     """The section as the template fills it in."""
-    return section_of(diagnosis.extension, diagnosis.changes, any(f.kind == "physics" for f in diagnosis.findings))
+    return section_of(
+        diagnosis.extension, diagnosis.changes, any(f.kind == "physics" for f in diagnosis.findings)
+    )
 
 
-def section_of(extension: Extension | None, changes: Sequence[NumberChange], is_found: bool) -> ExtensionSection:
+def section_of(
+    extension: Extension | None, changes: Sequence[NumberChange], is_found: bool
+) -> ExtensionSection:
     """The section of an extended system.
 
     Parameters
@@ -57,7 +61,8 @@ def section_of(extension: Extension | None, changes: Sequence[NumberChange], is_
     if extension is None:
         return ExtensionSection("none", "failed" if is_found else "no cause")
     rows = tuple(
-        (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit) for of in changes
+        (of.name, "–" if of.before is None else plain(of.before, 5), plain(of.after, 5), of.unit)
+        for of in changes
     )
     return ExtensionSection(
         found="extended.ssp",

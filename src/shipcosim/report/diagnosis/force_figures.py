@@ -12,7 +12,10 @@ from shipcosim.report.theme.figures import TIME, line, rounded
 from shipcosim.report.theme.views import Figure
 
 FORCES = (
-    ("Missing force, body frame", (("surge", "forward", palette.BLUE), ("sway", "to starboard", palette.ORANGE))),
+    (
+        "Missing force, body frame",
+        (("surge", "forward", palette.BLUE), ("sway", "to starboard", palette.ORANGE)),
+    ),
     ("Missing moment", (("yaw", "clockwise", palette.PURPLE),)),
     (
         "Missing force, earth frame",
@@ -34,17 +37,24 @@ def force_figures(force: MissingForce) -> list[Figure]:
         pair = (along, (f"{name}_across", "across", palette.ORANGE))
         groups.append((f"Missing force, frame of {name}", pair))
     figures = [_over_time(force.plain, force.extended, title, lines) for title, lines in groups]
-    return figures + [_against(sectors, *AGAINST[angle]) for angle, sectors in force.by_angle.items()]
+    return figures + [
+        _against(sectors, *AGAINST[angle]) for angle, sectors in force.by_angle.items()
+    ]
 
 
-def _over_time(force: Dataset, left: Dataset | None, title: str, lines: Sequence[tuple[str, str, str]]) -> Figure:
-    traces, (middle, edges) = [], _stretches(force["time"].values)
+def _over_time(
+    force: Dataset, left: Dataset | None, title: str, lines: Sequence[tuple[str, str, str]]
+) -> Figure:
+    traces = []
+    (middle, edges) = _stretches(force["time"].values)
     for name, label, colour in lines:
         if name in force:
             traces.append(line(label, middle, _averaged(force[name], edges), colour))
             if left is not None:
                 after = _averaged(left[name], edges)
-                traces.append(line(f"{label}, cause in", middle, after, colour, dash="dot", width=1.2))
+                traces.append(
+                    line(f"{label}, cause in", middle, after, colour, dash="dot", width=1.2)
+                )
     unit = "kN·m" if force[lines[0][0]].attrs["units"] == "N.m" else "kN"
     return Figure(title, unit, tuple(traces), {"xaxis": TIME, "yaxis": {"zeroline": True}})
 
@@ -57,19 +67,32 @@ def _stretches(time: NDArray, most: int = MOST_POINTS) -> tuple[NDArray, NDArray
 
 def _averaged(series: DataArray, edges: NDArray) -> NDArray:
     """Averages over stretches of rows. [kN]"""
-    values, pairs = 1e-3 * series.values, zip(edges[:-1], edges[1:], strict=True)
+    values = 1e-3 * series.values
+    pairs = zip(edges[:-1], edges[1:], strict=True)
     return np.array([values[a:b].mean() for a, b in pairs])
 
 
 def _against(sectors: Dataset, label: str, title: str) -> Figure:
     """Mean and scatter of the missing force in sectors of an angle."""
-    traces, middle = [], sectors["sector"].values
+    traces = []
+    middle = sectors["sector"].values
     for name, text, colour in FORCES[0][1]:
         mean, spread = (1e-3 * sectors[key].values for key in (name, f"{name}_std"))
         traces.append(
             {
-                **{"type": "scatter", "mode": "lines+markers", "name": text, "x": rounded(middle), "y": rounded(mean)},
-                "error_y": {"type": "data", "array": rounded(spread), "color": colour, "thickness": 1},
+                **{
+                    "type": "scatter",
+                    "mode": "lines+markers",
+                    "name": text,
+                    "x": rounded(middle),
+                    "y": rounded(mean),
+                },
+                "error_y": {
+                    "type": "data",
+                    "array": rounded(spread),
+                    "color": colour,
+                    "thickness": 1,
+                },
                 **{"line": {"color": colour, "width": 1.5}, "marker": {"color": colour, "size": 6}},
             }
         )

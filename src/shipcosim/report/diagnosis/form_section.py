@@ -21,7 +21,9 @@ class FormSection:
 def form_section(form: LoadForm) -> FormSection:
     """The part of the page as the template fills it in."""
     scale = SCALES.get(form.scale, f"{form.scale:g} times")
-    functions = tuple((name[0].upper() + name[1:], percent(size)) for name, size in form.differs.items())
+    functions = tuple(
+        (name[0].upper() + name[1:], percent(size)) for name, size in form.differs.items()
+    )
     head = ("Number", "In the model", "As logged", "Std", "Unit")
     return FormSection(
         f"Over place, angle and speed the loads on this ship have another shape than the model's. They differ {scale} "
@@ -33,5 +35,12 @@ def form_section(form: LoadForm) -> FormSection:
 
 def _row(number: FormNumber) -> tuple[str, str, str, str, str]:
     thruster, of_form, _ = number.number.rpartition(".form.")
-    what, unit = f"{thruster}: {number.what}" if of_form else number.what, "" if number.unit == "1" else number.unit
-    return what[0].upper() + what[1:], plain(number.model), plain(number.estimate), f"± {plain(number.std, 2)}", unit
+    what = f"{thruster}: {number.what}" if of_form else number.what
+    unit = "" if number.unit == "1" else number.unit
+    return (
+        what[0].upper() + what[1:],
+        plain(number.model),
+        plain(number.estimate),
+        f"± {plain(number.std, 2)}",
+        unit,
+    )

@@ -5,7 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.report.diagnosis.prediction_errors import MODELS, condition_table, gain_figures, models_to_show, removed
+from shipcosim.report.diagnosis.prediction_errors import (
+    MODELS,
+    condition_table,
+    gain_figures,
+    models_to_show,
+    removed,
+)
 from shipcosim.report.theme.numbers import metres, percent
 from shipcosim.report.theme.views import Figure, Table
 
@@ -53,13 +59,15 @@ class GainSection:
 
 def gain_section(diagnosis: Diagnosis) -> GainSection:
     """The section as the template fills it in."""
-    gain, errors = diagnosis.gain, diagnosis.predictions
+    gain = diagnosis.gain
+    errors = diagnosis.predictions
     if gain and "error_ratio" in gain:
         return _of_crude_model(gain)
     models = models_to_show(tuple(MODELS), diagnosis)
     if diagnosis.extension is None or gain is None:
         models = [model for model in models if not model.startswith("extended")]
-    found, is_extended = _found(gain, diagnosis.verdict), "extended" in models
+    found = _found(gain, diagnosis.verdict)
+    is_extended = "extended" in models
     if errors is None:
         return GainSection(found, False, is_extended)
     held_out = {one.condition for one in errors.held_out}
@@ -86,7 +94,9 @@ def _of_crude_model(gain: Mapping[str, Any]) -> GainSection:
         ("Error left", f"{percent(gain['error_ratio'])} (95 % sure: {low} to {high})"),
     )
     table = Table(rows, head=(f"Position error after {after}", "Root mean square"))
-    return GainSection(f"{percent(1.0 - gain['error_ratio'])} of the error", False, True, after, table)
+    return GainSection(
+        f"{percent(1.0 - gain['error_ratio'])} of the error", False, True, after, table
+    )
 
 
 def _found(gain: Mapping[str, Any] | None, verdict: str) -> str:

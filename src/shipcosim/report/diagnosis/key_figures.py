@@ -30,7 +30,8 @@ def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
 
 def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
     """Errors of predictions before and after, or before only where nothing was gained."""
-    gain, base = diagnosis.gain, diagnosis.baseline
+    gain = diagnosis.gain
+    base = diagnosis.baseline
     if gain:
         found = [
             KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"]))
@@ -44,7 +45,8 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
         return found
     if base:
         after = f"after {base['horizon_s'][-1]:g} s"
-        position, heading = metres(base["position_error_m"][-1]), plain(base["heading_error_deg"][-1], 2)
+        position = metres(base["position_error_m"][-1])
+        heading = plain(base["heading_error_deg"][-1], 2)
         return [
             KeyFigure(position, f"position error of the simulation {after}"),
             KeyFigure(f"{heading}°", f"heading error {after}"),

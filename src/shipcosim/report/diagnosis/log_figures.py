@@ -44,7 +44,8 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
     time = log["time"].values
     rows = np.flatnonzero(np.isfinite(time))
     ordered = _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
-    raw, used = ordered, _on_log_time(clean)
+    raw = ordered
+    used = _on_log_time(clean)
     faults = [f for f in findings if f.kind == "data"]
     named = {channel for _, channels, _ in GROUPS for channel in channels}
     groups = [*GROUPS, *_thrusters([str(n) for n in log.data_vars if n not in named], log)]
@@ -53,9 +54,14 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
         there = [c for c in channels if c in raw]
         if not there:
             continue
-        pairs = [_traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit) for k, channel in enumerate(there)]
+        pairs = [
+            _traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit)
+            for k, channel in enumerate(there)
+        ]
         traces = [trace for pair in pairs for trace in pair[:-1]] + [pair[-1] for pair in pairs]
-        shapes = [shape for fault in faults if _concerns(fault, there) for shape in _shades(fault, raw)]
+        shapes = [
+            shape for fault in faults if _concerns(fault, there) for shape in _shades(fault, raw)
+        ]
         figures.append(Figure(title, unit, tuple(traces), {"shapes": shapes, "xaxis": TIME}))
     return figures
 
@@ -65,7 +71,8 @@ def track_figure(clean: Dataset) -> Figure | None:
     if "north" not in clean or "east" not in clean:
         return None
     thin, _ = thinned(_on_log_time(clean)[["north", "east"]], MOST_ROWS["track"])
-    north, east = thin["north"].values, thin["east"].values
+    north = thin["north"].values
+    east = thin["east"].values
     known = np.flatnonzero(np.isfinite(north) & np.isfinite(east))
     if not known.size:
         return None
@@ -79,7 +86,12 @@ def track_figure(clean: Dataset) -> Figure | None:
                 "x": rounded(east[[row]]),
                 "y": rounded(north[[row]]),
             },
-            "marker": {"color": palette.INK, "size": 9, "symbol": symbol, "line": {"color": palette.INK, "width": 2}},
+            "marker": {
+                "color": palette.INK,
+                "size": 9,
+                "symbol": symbol,
+                "line": {"color": palette.INK, "width": 2},
+            },
         }
         for row, name, symbol in ends
     ]
@@ -94,7 +106,9 @@ def _on_log_time(clean: Dataset) -> Dataset:
     """The repaired log over the times that were logged."""
     if "logged_time" not in clean.coords:
         return _shown(clean)
-    return _shown(clean.assign_coords(time=("time", clean["logged_time"].values)).drop_vars("logged_time"))
+    return _shown(
+        clean.assign_coords(time=("time", clean["logged_time"].values)).drop_vars("logged_time")
+    )
 
 
 def _shown(table: Dataset) -> Dataset:
@@ -119,12 +133,18 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
         top = {name: np.nanmax(np.abs(log[name].values), initial=0.0) for name in mine}
         large = [name for name in mine if top[name] > 5.0 * min(top.values())]
         for group in ([name for name in mine if name not in large], large):
-            shaft = title if len(group) > 1 or not group else f"{title}, {group[0].removesuffix(suffix)}"
+            shaft = (
+                title
+                if len(group) > 1 or not group
+                else f"{title}, {group[0].removesuffix(suffix)}"
+            )
             found.append((shaft, tuple(group), unit))
     return found
 
 
-def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -> list[dict[str, Any]]:
+def _traces(
+    raw: Dataset, used: Dataset, channel: str, colour: str, unit: str
+) -> list[dict[str, Any]]:
     """A channel as used; before it as logged, where that differs."""
     label = channel.replace("_", " ")
     traces = []
@@ -151,11 +171,14 @@ def _same(one: DataArray, other: DataArray) -> bool:
     return one.size == other.size and np.array_equal(one.values, other.values, equal_nan=True)
 
 
-def _curve(name: str, time: NDArray, values: NDArray, colour: str, unit: str, **look: Any) -> dict[str, Any]:
+def _curve(
+    name: str, time: NDArray, values: NDArray, colour: str, unit: str, **look: Any
+) -> dict[str, Any]:
     """A channel over time; angles are interrupted where they go round."""
     if unit == "deg":
         turns = np.flatnonzero(np.abs(np.diff(values)) > 180.0) + 1
-        time, values = np.insert(time, turns, np.nan), np.insert(values, turns, np.nan)
+        time = np.insert(time, turns, np.nan)
+        values = np.insert(values, turns, np.nan)
     return line(name, time, values, colour, hovertemplate=f"%{{y:.4~g}} {unit}", **look)
 
 
@@ -168,6 +191,13 @@ def _shades(fault: Finding, raw: Dataset) -> Iterator[dict[str, Any]]:
     time = raw["time"].values
     for start, end in fault.segments or ((time[0], time[-1]),):
         yield {
-            **{"type": "rect", "x0": float(start), "x1": float(end), "y0": 0, "y1": 1, "yref": "paper"},
+            **{
+                "type": "rect",
+                "x0": float(start),
+                "x1": float(end),
+                "y0": 0,
+                "y1": 1,
+                "yref": "paper",
+            },
             **{"layer": "below", "fillcolor": palette.FAULT, "line": {"width": 0}},
         }

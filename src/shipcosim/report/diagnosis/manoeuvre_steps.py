@@ -19,18 +19,26 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
     list of (str, str)
     """
     found: list[tuple[float, float, str]] = []
-    start, before = 0.0, (0.0, 0.0, 0.0)
+    start = 0.0
+    before = (0.0, 0.0, 0.0)
     for duration, *there in manoeuvre.legs:
         if not any(a <= start and start + duration <= b for a, b in manoeuvre.free):
             found.append((start, start + duration, _leg(tuple(there), before)))
-        start, before = start + duration, tuple(there)
+        start = start + duration
+        before = tuple(there)
     for push in manoeuvre.pushes:
         angles = [round(float(np.degrees(angle))) for angle in push.azimuth]
-        towards = f", turned from {angles[0]} to {angles[1]}° off the bow" if angles[0] != angles[1] else ""
+        towards = (
+            f", turned from {angles[0]} to {angles[1]}° off the bow"
+            if angles[0] != angles[1]
+            else ""
+        )
         force = f"{'−' * (push.force < 0.0)}{plain(abs(push.force) / 1e3, 2)} kN"
         doing = f"{push.thruster} pushes with {force} along its axis"
         found.append((push.start, push.end, doing + towards))
-    found += [(a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free]
+    found += [
+        (a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free
+    ]
     return [(span(a, b), doing) for a, b, doing in sorted(found, key=lambda entry: entry[:2])]
 
 

@@ -73,21 +73,33 @@ def render(diagnosis: Diagnosis) -> str:
 
 def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     if diagnosis.log is None or diagnosis.evidence is None:
-        raise ValueError("only a diagnosis with its log and evidence has a page; shipcosim.diagnose makes one")
-    log, cause = log_section(diagnosis, diagnosis.log), cause_section(diagnosis, diagnosis.evidence)
+        raise ValueError(
+            "only a diagnosis with its log and evidence has a page; shipcosim.diagnose makes one"
+        )
+    log = log_section(diagnosis, diagnosis.log)
+    cause = cause_section(diagnosis, diagnosis.evidence)
     error = error_section(diagnosis)
-    extension, gain = extension_section(diagnosis), gain_section(diagnosis)
+    extension = extension_section(diagnosis)
+    gain = gain_section(diagnosis)
     causes = (*cause.figures, *cause.unmodelled, *cause.whiteness)
-    tracks = () if diagnosis.tracks is None else (track_figure(diagnosis.tracks), *over_time_figures(diagnosis.tracks))
+    tracks = (
+        ()
+        if diagnosis.tracks is None
+        else (track_figure(diagnosis.tracks), *over_time_figures(diagnosis.tracks))
+    )
     figures = (*tracks, *log.figures, *error.figures, *error.forces, *causes, *gain.figures)
     links = {"log": ("Log", log), "error": ("Error", error), "causes": ("Cause", cause)}
     links |= {"extension": ("Extension", extension), "gain": ("Gain", gain)}
-    steps = next_steps(diagnosis, extension.system if extension.state == "extended" else None, diagnosis.causes)
+    steps = next_steps(
+        diagnosis, extension.system if extension.state == "extended" else None, diagnosis.causes
+    )
     return DiagnosisPage(
         title=f"Diagnosis of {diagnosis.log.name}",
         facts=_facts(diagnosis.log, diagnosis.system),
         outcome=outcome(diagnosis, diagnosis.causes),
-        links=tuple(Link(anchor, title, section.found) for anchor, (title, section) in links.items()),
+        links=tuple(
+            Link(anchor, title, section.found) for anchor, (title, section) in links.items()
+        ),
         data=tuple(figure.drawn for figure in figures),
         key_figures=key_figures(diagnosis),
         discrepancies=Table(tuple(discrepancy_rows(diagnosis)), ("", "size", "of the error")),
@@ -106,5 +118,9 @@ def _facts(log: LogSummary, system: System | None) -> tuple[Fact, ...]:
     """The system, the length of the log and its step."""
     time = log.measured["time"].values
     length = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
-    facts = (("System", system.name if system else ""), ("Log", length), ("Step", f"{log.step:g} s"))
+    facts = (
+        ("System", system.name if system else ""),
+        ("Log", length),
+        ("Step", f"{log.step:g} s"),
+    )
     return tuple(Fact(name, text) for name, text in facts if text)

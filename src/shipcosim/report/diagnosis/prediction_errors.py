@@ -34,7 +34,8 @@ def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
 
 def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figure]:
     """Root mean square errors over the horizon, a figure for position and heading each."""
-    figures, horizons = [], overall.rms["horizon"].values
+    figures = []
+    horizons = overall.rms["horizon"].values
     for channel in ("position", "heading"):
         title, unit = CHANNELS[channel]
         traces = []
@@ -42,7 +43,11 @@ def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figur
             name, colour = MODELS[model]
             sizes = overall.rms[channel].sel(model=model).values
             traces.append(bars(name, [f"{h:.0f} s" for h in horizons], sizes, colour, unit))
-        layout = {"barmode": "group", "xaxis": {"type": "category"}, "yaxis": {"rangemode": "tozero"}}
+        layout = {
+            "barmode": "group",
+            "xaxis": {"type": "category"},
+            "yaxis": {"rangemode": "tozero"},
+        }
         figures.append(Figure(f"{title} error after 10, 30, 60 s", unit, tuple(traces), layout))
     return figures
 
@@ -60,7 +65,10 @@ def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "flo
     head = ("", "Segments", *(f"{title} [{unit}]" for title, unit in CHANNELS.values()))
     rows = []
     for one in (errors.overall, *errors.by_regime):
-        cells = [" / ".join(plain(_last(one, channel, model), 2) for model in models) for channel in CHANNELS]
+        cells = [
+            " / ".join(plain(_last(one, channel, model), 2) for model in models)
+            for channel in CHANNELS
+        ]
         rows.append((one.condition, str(one.predictions), *cells))
     return Table(tuple(rows), head, tight=tuple(range(2, 9)))
 
@@ -69,7 +77,9 @@ def condition_table(errors: PredictionErrors) -> Table:
     """Position errors after the longest horizon with each model, by condition, and the share that causes remove."""
     models = (f"{name} [m]" for name, _ in MODELS.values())
     head = ("Held out", "Predictions", *models, "explainable error removed")
-    groups = {"the later part": errors.overall} | {f"of it {one.condition}": one for one in errors.by_regime}
+    groups = {"the later part": errors.overall} | {
+        f"of it {one.condition}": one for one in errors.by_regime
+    }
     groups |= {HELD[one.condition]: one for one in errors.held_out}
     rows = []
     for name, one in groups.items():
@@ -82,22 +92,35 @@ def removed(entry: Mapping[str, Any] | None) -> str:
     """Share of the explainable error that causes remove, with its interval, of an entry of `gain`."""
     if entry is None or entry["share_of_explainable"] is None:
         return "nothing to remove"
-    sure = " ({:.0f} to {:.0f} %)".format(*(100 * end for end in entry["ci95"])) if entry["ci95"] else ""
+    sure = (
+        " ({:.0f} to {:.0f} %)".format(*(100 * end for end in entry["ci95"]))
+        if entry["ci95"]
+        else ""
+    )
     return f"{100 * entry['share_of_explainable']:.0f} %{sure}"
 
 
 def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:
     """Errors after the longest horizon with each model: by what the ship did, and of each prediction."""
-    last, names = errors.each.isel(horizon=-1), [one.condition for one in errors.by_regime]
-    by_regime, each = [], []
+    last = errors.each.isel(horizon=-1)
+    names = [one.condition for one in errors.by_regime]
+    by_regime = []
+    each = []
     for model in models:
-        (name, colour), position = MODELS[model], last["position"].sel(model=model)
+        (name, colour) = MODELS[model]
+        position = last["position"].sel(model=model)
         sizes = [_last(one, "position", model) for one in errors.by_regime]
         by_regime.append(bars(name, names, sizes, colour, "m"))
         dots = {"mode": "markers", "marker": {"color": colour, "size": 5}}
         each.append(line(name, last["start_time"].values, position.values, colour, **dots))
-    axis, title = {"rangemode": "tozero"}, "Position error after 60 s"
+    axis = {"rangemode": "tozero"}
+    title = "Position error after 60 s"
     return [
-        Figure(f"{title}, by what the ship did", "m", tuple(by_regime), {"barmode": "group", "yaxis": axis}),
+        Figure(
+            f"{title}, by what the ship did",
+            "m",
+            tuple(by_regime),
+            {"barmode": "group", "yaxis": axis},
+        ),
         Figure(f"{title}, each prediction", "m", tuple(each), {"xaxis": TIME, "yaxis": axis}),
     ]

@@ -30,7 +30,9 @@ class ReplayPage(Page):
     remarks: tuple[str, ...]
 
 
-def write_replay(replay: LogReplay, path: str | os.PathLike[str], title: str, facts: dict[str, str]) -> None:
+def write_replay(
+    replay: LogReplay, path: str | os.PathLike[str], title: str, facts: dict[str, str]
+) -> None:
     """Write the page of a replay.
 
     Parameters
@@ -50,7 +52,9 @@ def write_replay(replay: LogReplay, path: str | os.PathLike[str], title: str, fa
     """
     tracks = replay.tracks
     figures = (track_figure(tracks), *over_time_figures(tracks))
-    faults = tuple(f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in replay.faults)
+    faults = tuple(
+        f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in replay.faults
+    )
     page = ReplayPage(
         title=f"Replay of {title}",
         facts=tuple(Fact(name, text) for name, text in facts.items()),
@@ -68,7 +72,11 @@ def replay_outcome(replay: LogReplay) -> Outcome:
     """How far off the simulations are at the end of their predictions."""
     tracks = replay.tracks
     last = errors_of(tracks)["position"].isel(after=-1)
-    told = ", ".join(f"{name} {metres(float(last.sel(simulation=name)))}" for name in tracks.predicted)
+    told = ", ".join(
+        f"{name} {metres(float(last.sel(simulation=name)))}" for name in tracks.predicted
+    )
     return Outcome(
-        "replayed", "REPLAYED", f"Position error after {float(last['after']):.0f} s, root mean square: {told}."
+        "replayed",
+        "REPLAYED",
+        f"Position error after {float(last['after']):.0f} s, root mean square: {told}.",
     )

@@ -35,14 +35,22 @@ def not_testable_rows(
     hidden : collection of str
         Causes that another form of the ship's loads hides.
     """
-    texts, rows, faults = _texts(facts), [], read_faults()
+    texts = _texts(facts)
+    rows = []
+    faults = read_faults()
     for name in names:
         cause = causes.get(name)
         reason = f"{_reason(cause, texts)}an effect of typical size would not have stood out"
         reason = BY_FORM if name in hidden else reason
         if name in faults and faults[name].why_not_testable:
             reason = faults[name].why_not_testable
-        sentence = cause.sentence if cause else faults[name].statement.capitalize() if name in faults else ""
+        sentence = (
+            cause.sentence
+            if cause
+            else faults[name].statement.capitalize()
+            if name in faults
+            else ""
+        )
         rows.append((title(name), sentence, reason))
     return rows
 
@@ -50,7 +58,10 @@ def not_testable_rows(
 def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
     """What a log has, with units; None for what it does not have."""
     sizes = {name: facts.get(name) for name in UNITS}
-    texts = {name: None if size is None else f"{plain(size, 2)} {UNITS[name]}" for name, size in sizes.items()}
+    texts = {
+        name: None if size is None else f"{plain(size, 2)} {UNITS[name]}"
+        for name, size in sizes.items()
+    }
     return texts | {"astern_share": f"{100.0 * (facts.get('astern_share') or 0.0):.0f} %"}
 
 

@@ -22,17 +22,26 @@ OVER_TIME = (
 def track_figure(tracks: Tracks) -> Figure:
     """Measured, before and after on one chart, north up and one scale both ways."""
     seen = tracks.measured
-    traces = [line("measured", seen["east"].values, seen["north"].values, palette.MEASURED, width=4.0)]
+    traces = [
+        line("measured", seen["east"].values, seen["north"].values, palette.MEASURED, width=4.0)
+    ]
     for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
         traces.append(line(name, joined(one, "east"), joined(one, "north"), colour, width=1.3))
-    layout = {"xaxis": {"title": {"text": "East"}}, "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"}}
+    layout = {
+        "xaxis": {"title": {"text": "East"}},
+        "yaxis": {"title": {"text": "North"}, "scaleanchor": "x"},
+    }
     note = f"Every {tracks.horizon:.0f} s the simulation starts anew from the measured position, heading and velocity."
     return Figure("Track", "m", tuple(traces), layout, note, height=460)
 
 
 def over_time_figures(tracks: Tracks) -> list[Figure]:
     """Heading, surge, sway and yaw rate over time, as far as the log has them."""
-    return [_over_time(tracks, *row) for row in OVER_TIME if np.isfinite(tracks.measured[row[0]].values).any()]
+    return [
+        _over_time(tracks, *row)
+        for row in OVER_TIME
+        if np.isfinite(tracks.measured[row[0]].values).any()
+    ]
 
 
 def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
@@ -54,9 +63,17 @@ def joined(one: Dataset, role: str) -> NDArray:
 def error_rows(errors: Dataset) -> Table:
     """Root mean square errors by simulation and time, as from `errors_of`."""
     channels = [str(name) for name in errors.data_vars if np.isfinite(errors[name].values).any()]
-    head = ("after", "simulation", *(f"{name.replace('_', ' ')} [{errors[name].attrs['units']}]" for name in channels))
+    head = (
+        "after",
+        "simulation",
+        *(f"{name.replace('_', ' ')} [{errors[name].attrs['units']}]" for name in channels),
+    )
     rows = [
-        (f"{after:g} s", str(name), *(plain(float(errors[c].sel(after=after, simulation=name))) for c in channels))
+        (
+            f"{after:g} s",
+            str(name),
+            *(plain(float(errors[c].sel(after=after, simulation=name))) for c in channels),
+        )
         for after in errors["after"].values
         for name in errors["simulation"].values
     ]

@@ -51,12 +51,17 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     sentence = cause.sentence if cause else title(finding.cause)
     numbers = ", ".join(f"{name} {plus_minus(e)}" for name, e in finding.parameters.items())
     place = f" ({finding.component})" if finding.component else ""
-    return f"{sentence[:1].lower()}{sentence[1:]}{place}" + (f": {numbers}" if numbers else "") + since
+    return (
+        f"{sentence[:1].lower()}{sentence[1:]}{place}" + (f": {numbers}" if numbers else "") + since
+    )
 
 
 def _at_reference(finding: Finding) -> str:
     """What a cause was when the reference was made, by parameter."""
-    return ", ".join(f"{name.replace('_', ' ')} {plus_minus(size)}" for name, size in finding.at_reference.items())
+    return ", ".join(
+        f"{name.replace('_', ' ')} {plus_minus(size)}"
+        for name, size in finding.at_reference.items()
+    )
 
 
 def _fault(finding: Finding) -> str:
@@ -64,7 +69,8 @@ def _fault(finding: Finding) -> str:
     fault = read_faults()[finding.cause]
     text = fault.statement.format(component=finding.component)
     if fault.adds == "duration" and finding.segments:
-        seconds, count = sum(b - a for a, b in finding.segments), len(finding.segments)
+        seconds = sum(b - a for a, b in finding.segments)
+        count = len(finding.segments)
         text += f" for {seconds:.0f} s in {count} stretch{'es' * (count > 1)}"
     elif fault.adds != "nothing" and 0 < len(finding.channels) <= 4:
         text += f" ({', '.join(finding.channels)})"
@@ -95,18 +101,30 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     if diagnosis.verdict == "unknown":
         return "UNKNOWN", _unknown(diagnosis, physics) + log
     if misread := [f.sentence for f in diagnosis.findings if f.alternatives]:
-        return "AMBIGUOUS", f"The log is misread, and its own channels cannot tell where: {listed(misread)}.{log}"
+        return (
+            "AMBIGUOUS",
+            f"The log is misread, and its own channels cannot tell where: {listed(misread)}.{log}",
+        )
     if diagnosis.verdict == "ambiguous":
         names = [title(c.cause, c.component).lower() for c in diagnosis.indistinguishable]
         besides = f" Certain is: {listed(physics)}." if physics else ""
-        return "AMBIGUOUS", f"Something is wrong, and this log cannot tell which: {listed(names, 'or')}.{besides}{log}"
+        return (
+            "AMBIGUOUS",
+            f"Something is wrong, and this log cannot tell which: {listed(names, 'or')}.{besides}{log}",
+        )
     if physics:
         many = f"{len(physics)} things are" if len(physics) > 1 else "One thing is"
         return "NAMED", f"{many} not as modelled: {listed(physics)}.{log}"
     if data:
-        return "NAMED", f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree."
+        return (
+            "NAMED",
+            f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree.",
+        )
     if diagnosis.form:
-        return "CONSISTENT", "Simulation and log agree, where the loads may have another form than the model's."
+        return (
+            "CONSISTENT",
+            "Simulation and log agree, where the loads may have another form than the model's.",
+        )
     return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
 
 
@@ -160,10 +178,14 @@ def next_steps(
     steps = []
     misread = any(f.alternatives for f in diagnosis.findings)
     if misread:
-        steps.append("Find out which it is, correct units, signs or columns in the channel file, and diagnose again.")
+        steps.append(
+            "Find out which it is, correct units, signs or columns in the channel file, and diagnose again."
+        )
     if data := [f for f in diagnosis.findings if f.kind == "data" and not f.alternatives]:
         where = ", ".join(dict.fromkeys(title(f.cause).lower() for f in data))
-        steps.append(f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy.")
+        steps.append(
+            f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy."
+        )
     physics = [f for f in diagnosis.findings if f.kind == "physics"]
     causes = read_catalogue() if causes is None else causes
     wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
@@ -171,10 +193,14 @@ def next_steps(
     if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(manoeuvre_step(diagnosis.prescription))
     if diagnosis.obstacles:
-        steps.append("Log as the remarks ask and diagnose again: from this log no cause can be named.")
+        steps.append(
+            "Log as the remarks ask and diagnose again: from this log no cause can be named."
+        )
     elif diagnosis.verdict == "unknown":
         steps.append("Look on the page how the missing force goes with time, heading and wind.")
-        steps.append("If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md).")
+        steps.append(
+            "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
+        )
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable and not diagnosis.obstacles:
@@ -188,8 +214,12 @@ def manoeuvre_step(prescription: ExperimentDesign | None) -> str:
     if prescription is None:
         return "Log more, with larger moves, turns and thrust ahead and astern: what is alike here differs there."
     name = prescription.manoeuvre.replace("_", " ")
-    pairs = listed([f"{a} from {b}".replace("_", " ") for a, b in prescription.separates] or ["them"])
-    return f"Sail this and log it: {name}, {prescription.minutes:.0f} minutes. It tells {pairs} apart."
+    pairs = listed(
+        [f"{a} from {b}".replace("_", " ") for a, b in prescription.separates] or ["them"]
+    )
+    return (
+        f"Sail this and log it: {name}, {prescription.minutes:.0f} minutes. It tells {pairs} apart."
+    )
 
 
 def estimate_rows(finding: Finding) -> list[tuple[str, str, str, str]]:
@@ -197,7 +227,10 @@ def estimate_rows(finding: Finding) -> list[tuple[str, str, str, str]]:
     largest: dict[str, float] = {}
     for estimate in finding.parameters.values():
         largest[estimate.unit] = max(abs(estimate.estimate), largest.get(estimate.unit, 0.0))
-    return [(n.replace("_", " "), *amount(e, largest=largest[e.unit])) for n, e in finding.parameters.items()]
+    return [
+        (n.replace("_", " "), *amount(e, largest=largest[e.unit]))
+        for n, e in finding.parameters.items()
+    ]
 
 
 def size_rows(finding: Finding) -> list[tuple[str, str]]:
@@ -210,9 +243,14 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
     >>> size_rows(Finding("thrust_loss", "port", parameters={"loss": lost}, at_reference={"loss": before}))
     [('loss', '0.03 ± 0.02 → 0.152 ± 0.012')]
     """
-    before = {name.replace("_", " "): plus_minus(size) for name, size in finding.at_reference.items()}
+    before = {
+        name.replace("_", " "): plus_minus(size) for name, size in finding.at_reference.items()
+    }
     return [
-        (name, (f"{before[name]} → " if name in before else "") + f"{value} ± {std} {unit}".rstrip())
+        (
+            name,
+            (f"{before[name]} → " if name in before else "") + f"{value} ± {std} {unit}".rstrip(),
+        )
         for name, value, std, unit in estimate_rows(finding)
     ]
 
@@ -220,7 +258,8 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
 def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
     """Rows of texts: a cause, how sure, and each of its parameters with its size; of a fault of the log where it is."""
     for finding in findings:
-        name, sure = title(finding.cause, finding.component), f"{100 * finding.probability:.0f} %"
+        name = title(finding.cause, finding.component)
+        sure = f"{100 * finding.probability:.0f} %"
         rows = size_rows(finding) if finding.kind == "physics" else []
         for parameter, size in rows:
             yield name, sure, parameter, size

@@ -30,7 +30,10 @@ __all__ = ["key_figures", "render", "write_joint"]
 
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
-LOOKS = {"before": ("as the system is", palette.VERMILLION), "after": ("with the common causes", palette.BLUE)}
+LOOKS = {
+    "before": ("as the system is", palette.VERMILLION),
+    "after": ("with the common causes", palette.BLUE),
+}
 SECTIONS = {
     "common": "In common",
     "errors": "Error",
@@ -106,20 +109,30 @@ def render(found: JointDiagnosis) -> str:
 
 
 def _page(found: JointDiagnosis) -> JointPage:
-    of_ship = [one for one in found.findings if one.what.kind == "physics" and one.what.component not in found.logs]
+    of_ship = [
+        one
+        for one in found.findings
+        if one.what.kind == "physics" and one.what.component not in found.logs
+    ]
     extension = section_of(found.extension, found.changes, bool(of_ship))
-    tracks, errors = _track_figures(found.errors), _error_figures(found.errors)
+    tracks = _track_figures(found.errors)
+    errors = _error_figures(found.errors)
     steps = next_steps(found, extension.system if extension.state == "extended" else None)
-    alike = tuple((title(one.cause, one.component), percent(one.probability, 1)) for one in found.indistinguishable)
+    alike = tuple(
+        (title(one.cause, one.component), percent(one.probability, 1))
+        for one in found.indistinguishable
+    )
     silent = tuple(
-        (title(name), found.causes[name].sentence if name in found.causes else "") for name in found.not_testable
+        (title(name), found.causes[name].sentence if name in found.causes else "")
+        for name in found.not_testable
     )
     return JointPage(
         title=f"Diagnosis of {len(found.logs)} logs of one ship",
         facts=tuple(Fact(name, text) for name, text in _facts(found)),
         outcome=outcome(found),
         links=tuple(
-            Link(anchor, name, text) for (anchor, name), text in zip(SECTIONS.items(), _found(found), strict=True)
+            Link(anchor, name, text)
+            for (anchor, name), text in zip(SECTIONS.items(), _found(found), strict=True)
         ),
         data=tuple(figure.drawn for figure in (*tracks, *errors)),
         key_figures=key_figures(found),
@@ -127,7 +140,9 @@ def _page(found: JointDiagnosis) -> JointPage:
         next_steps=tuple(steps),
         remarks=found.remarks,
         causes=Table(tuple(cause_rows(found)), ("Cause", "By", "Parameter", "Size"), (3,)),
-        faults=Table(tuple(fault_rows(found)), ("Fault of the data", "Channels", "Logs", "Done about it")),
+        faults=Table(
+            tuple(fault_rows(found)), ("Fault of the data", "Channels", "Logs", "Done about it")
+        ),
         alike=Table(alike, ("Cause", "Probability")),
         tracks=tracks,
         errors=errors,
@@ -144,15 +159,25 @@ def _page(found: JointDiagnosis) -> JointPage:
     )
 
 
-_ERROR_HEAD = ("Log", "After", "Position, as it is", "with the causes", "Heading, as it is", "with the causes", "")
+_ERROR_HEAD = (
+    "Log",
+    "After",
+    "Position, as it is",
+    "with the causes",
+    "Heading, as it is",
+    "with the causes",
+    "",
+)
 
 
 def _facts(found: JointDiagnosis) -> list[tuple[str, str]]:
-    rows, minutes = 0, 0.0
+    rows = 0
+    minutes = 0.0
     for one in found.logs.values():
         if one.basis:
             time = one.basis.explained.identification.log["time"].values
-            rows, minutes = rows + time.size, minutes + float(time[-1] - time[0]) / 60.0
+            rows = rows + time.size
+            minutes = minutes + float(time[-1] - time[0]) / 60.0
     length = f"{', '.join(found.logs)}; {minutes:.0f} min, {rows} rows in all"
     return [("System", found.system.name if found.system else "–"), ("Logs", length)]
 
@@ -165,7 +190,9 @@ def _found(found: JointDiagnosis) -> list[str]:
     return [
         ", ".join(causes) or "nothing",
         "not measured" if worst is None else f"up to {metres(worst)}",
-        f"{agree} of {len(found.logs)} agree with the simulation" if agree else "none agrees with the simulation",
+        f"{agree} of {len(found.logs)} agree with the simulation"
+        if agree
+        else "none agrees with the simulation",
         "extended.ssp" if found.extension else "none",
         f"{len(found.not_testable)} causes" if found.not_testable else "nothing",
     ]
@@ -174,17 +201,30 @@ def _found(found: JointDiagnosis) -> list[str]:
 def key_figures(found: JointDiagnosis) -> tuple[KeyFigure, ...]:
     """The numbers that matter most: how sure, and the errors of the worst and of all logs."""
     sure = [one.what.probability for one in found.findings if one.what.kind == "physics"]
-    figures = [KeyFigure(percent(min(sure)), "probability that the causes are right")] if sure else []
+    figures = (
+        [KeyFigure(percent(min(sure)), "probability that the causes are right")] if sure else []
+    )
     if not found.errors:
         return tuple(figures)
     name, worst = max(found.errors.items(), key=lambda one: one[1].position["before"][-1])
     after = f"after {worst.horizon[-1]:g} s"
-    figures.append(KeyFigure(metres(worst.position["before"][-1]), f"position error of the simulation {after}, {name}"))
+    figures.append(
+        KeyFigure(
+            metres(worst.position["before"][-1]),
+            f"position error of the simulation {after}, {name}",
+        )
+    )
     if "after" in worst.position:
-        figures.append(KeyFigure(metres(worst.position["after"][-1]), "the same with the common causes in the system"))
+        figures.append(
+            KeyFigure(
+                metres(worst.position["after"][-1]), "the same with the common causes in the system"
+            )
+        )
     better, judged = predicted_better(found)
     if judged:
-        figures.append(KeyFigure(f"{better} of {judged}", "logs are predicted better by what the others say"))
+        figures.append(
+            KeyFigure(f"{better} of {judged}", "logs are predicted better by what the others say")
+        )
     return tuple(figures)
 
 
@@ -194,8 +234,12 @@ def _error_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
         return ()
     names = [f"{name}, {one.horizon[-1]:g} s" for name, one in errors.items()]
     layout = {"barmode": "group", "xaxis": {"type": "category"}}
-    position = _bars({name: one.position for name, one in zip(names, errors.values(), strict=True)}, "m")
-    heading = _bars({name: one.heading for name, one in zip(names, errors.values(), strict=True)}, "deg")
+    position = _bars(
+        {name: one.position for name, one in zip(names, errors.values(), strict=True)}, "m"
+    )
+    heading = _bars(
+        {name: one.heading for name, one in zip(names, errors.values(), strict=True)}, "deg"
+    )
     return Figure("Position error by log", "m", position, layout), Figure(
         "Heading error by log", "deg", heading, layout
     )
@@ -203,15 +247,27 @@ def _error_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
 
 def _bars(sizes: dict[str, dict[str, tuple[float, ...]]], unit: str) -> tuple[dict[str, Any], ...]:
     """Bars by log, before and after; none where a log has no after."""
-    shown = {label: look for label, look in LOOKS.items() if any(label in one for one in sizes.values())}
+    shown = {
+        label: look for label, look in LOOKS.items() if any(label in one for one in sizes.values())
+    }
     return tuple(
-        bars(name, list(sizes), [one.get(label, (float("nan"),))[-1] for one in sizes.values()], colour, unit)
+        bars(
+            name,
+            list(sizes),
+            [one.get(label, (float("nan"),))[-1] for one in sizes.values()],
+            colour,
+            unit,
+        )
         for label, (name, colour) in shown.items()
     )
 
 
 def _track_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
     """Tracks of the logs, or where there are many of the longest."""
-    longest = sorted(errors, key=lambda name: -errors[name].tracks.predicted["before"].sizes["segment"])
+    longest = sorted(
+        errors, key=lambda name: -errors[name].tracks.predicted["before"].sizes["segment"]
+    )
     names = list(errors) if len(errors) <= TRACKS else longest[:1]
-    return tuple(replace(track_figure(errors[name].tracks), title=f"Track, {name}") for name in names)
+    return tuple(
+        replace(track_figure(errors[name].tracks), title=f"Track, {name}") for name in names
+    )

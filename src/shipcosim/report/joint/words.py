@@ -29,24 +29,33 @@ def outcome(found: JointDiagnosis) -> Outcome:
     data = [_told(one, found) for one in found.findings if one.what.kind == "data"]
     physics = [_told(one, found) for one in found.findings if one.what.kind == "physics"]
     log = f" The logs are faulty alike: {listed(data)}." if data else ""
-    return Outcome(found.verdict, found.verdict.upper(), _sentence(found, physics, bool(data)) + log)
+    return Outcome(
+        found.verdict, found.verdict.upper(), _sentence(found, physics, bool(data)) + log
+    )
 
 
 def _sentence(found: JointDiagnosis, physics: list[str], has_faults: bool) -> str:
     logs = f"{len(found.logs)} logs together"
     if found.verdict == "unknown":
-        first = f", first of all: {found.discrepancies[0].what.what}" if found.discrepancies else " by more than noise"
+        first = (
+            f", first of all: {found.discrepancies[0].what.what}"
+            if found.discrepancies
+            else " by more than noise"
+        )
         certain = f" Certain is: {listed(physics)}." if physics else ""
         return f"{logs}: the simulation is wrong{first}.{certain} None of the known causes explains all of it."
     if found.verdict == "ambiguous":
         if not found.indistinguishable:
             return f"{logs} say nothing of the ship: their channels may be misread. Each log's own line says how."
-        names = listed([title(one.cause, one.component).lower() for one in found.indistinguishable], "or")
+        names = listed(
+            [title(one.cause, one.component).lower() for one in found.indistinguishable], "or"
+        )
         certain = f" Certain is: {listed(physics)}." if physics else ""
         return f"Something is wrong, and {logs} cannot tell which: {names}.{certain}"
     if physics:
-        return f"{logs}: {'one thing is' if len(physics) == 1 else f'{len(physics)} things are'} not as modelled: " + (
-            f"{listed(physics)}."
+        return (
+            f"{logs}: {'one thing is' if len(physics) == 1 else f'{len(physics)} things are'} not as modelled: "
+            + (f"{listed(physics)}.")
         )
     if has_faults or any(found.own_faults(name) for name in found.logs):
         return f"{logs}: apart from faults of the logs, simulation and logs agree."
@@ -60,8 +69,13 @@ def _told(one: Shared[Finding], found: JointDiagnosis) -> str:
         return f"{text} (on the day of {one.what.component})"
     if one.what.kind == "data" and one.what.note:
         text = one.what.note
-    told_by, all_logs = len(one.logs), len(found.logs)
-    return text if one.what.kind == "physics" or told_by == all_logs else f"{text} (seen in {told_by} of {all_logs})"
+    told_by = len(one.logs)
+    all_logs = len(found.logs)
+    return (
+        text
+        if one.what.kind == "physics" or told_by == all_logs
+        else f"{text} (seen in {told_by} of {all_logs})"
+    )
 
 
 def discrepancy_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
@@ -72,7 +86,9 @@ def discrepancy_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
         unit = "" if one.unit == "1" else f" {one.unit}"
         in_words = any(letter.isdigit() for letter in one.what)
         size = f"{one.estimate:.2f} ± {one.std:.2f}{unit}" if one.std and not in_words else ""
-        rows.append((one.what, size, percent(one.share) if one.share else "", _which(shared.logs, found)))
+        rows.append(
+            (one.what, size, percent(one.share) if one.share else "", _which(shared.logs, found))
+        )
     return rows
 
 
@@ -89,7 +105,12 @@ def fault_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
             also = f"; put right in {', '.join(one.put_right)} too" if one.put_right else ""
             done = f"{read_faults()[one.what.cause].repair}{also}"
             rows.append(
-                (one.what.sentence or told(one.what), ", ".join(one.what.channels), _which(one.logs, found), done)
+                (
+                    one.what.sentence or told(one.what),
+                    ", ".join(one.what.channels),
+                    _which(one.logs, found),
+                    done,
+                )
             )
     return rows
 
@@ -121,7 +142,9 @@ def error_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
     for name, one in found.errors.items():
         after = " / ".join(f"{horizon:.2g}" for horizon in one.horizon)
         cells = [
-            _all(of.get(label), unit) for of, unit in ((one.position, " m"), (one.heading, "°")) for label in _BOTH
+            _all(of.get(label), unit)
+            for of, unit in ((one.position, " m"), (one.heading, "°"))
+            for label in _BOTH
         ]
         rows.append((name, f"{after} s", *cells, judged_on(one)))
     return rows
@@ -144,8 +167,16 @@ def judged_on(one: LogErrors) -> str:
     """What an error after rests on."""
     if not one.fitted_on:
         return "–"
-    text = "sizes by all other logs" if len(one.fitted_on) > 2 else f"sizes by {', '.join(one.fitted_on)}"
-    return text if not one.own else f"{text}; {listed([title(c).lower() for c in one.own])} by this log itself"
+    text = (
+        "sizes by all other logs"
+        if len(one.fitted_on) > 2
+        else f"sizes by {', '.join(one.fitted_on)}"
+    )
+    return (
+        text
+        if not one.own
+        else f"{text}; {listed([title(c).lower() for c in one.own])} by this log itself"
+    )
 
 
 def log_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
@@ -153,11 +184,26 @@ def log_rows(found: JointDiagnosis) -> list[tuple[str, ...]]:
     rows = []
     for name, one in found.logs.items():
         faults = [fault.sentence or told(fault) for fault in found.own_faults(name)]
-        causes = [told(finding, found.causes) for finding in one.findings if finding.kind == "physics"]
+        causes = [
+            told(finding, found.causes) for finding in one.findings if finding.kind == "physics"
+        ]
         first = one.discrepancies[0].what if one.discrepancies else "none"
         base = one.baseline
-        error = f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:.2g} s" if base else "–"
-        rows.append((name, one.verdict, "; ".join(faults) or "none", "; ".join(causes) or "none", first, error))
+        error = (
+            f"{metres(base['position_error_m'][-1])} after {base['horizon_s'][-1]:.2g} s"
+            if base
+            else "–"
+        )
+        rows.append(
+            (
+                name,
+                one.verdict,
+                "; ".join(faults) or "none",
+                "; ".join(causes) or "none",
+                first,
+                error,
+            )
+        )
     return rows
 
 
@@ -177,15 +223,25 @@ def next_steps(found: JointDiagnosis, extended: str | None = None) -> list[str]:
         steps.append(f"Correct the channel file or the logging, for all logs at once: {what}.")
     own = [name for name in found.logs if found.own_faults(name)]
     if own:
-        steps.append(f"Look at the faults of single logs: {', '.join(own)}. This diagnosis used repaired copies.")
+        steps.append(
+            f"Look at the faults of single logs: {', '.join(own)}. This diagnosis used repaired copies."
+        )
     physics = [one.what for one in found.findings if one.what.kind == "physics"]
-    wanted = [(found.causes[f.cause].next_step, f.component) for f in physics if f.cause in found.causes]
-    steps += list(dict.fromkeys(step.format(component=component) for step, component in wanted if step))
+    wanted = [
+        (found.causes[f.cause].next_step, f.component) for f in physics if f.cause in found.causes
+    ]
+    steps += list(
+        dict.fromkeys(step.format(component=component) for step, component in wanted if step)
+    )
     if found.verdict == "ambiguous" and found.indistinguishable:
         steps.append(manoeuvre_step(found.prescription))
     if found.verdict == "unknown":
-        steps.append("Diagnose a log by itself: its page shows how the missing force goes with time, heading and wind.")
-        steps.append("If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md).")
+        steps.append(
+            "Diagnose a log by itself: its page shows how the missing force goes with time, heading and wind."
+        )
+        steps.append(
+            "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
+        )
     better, judged = predicted_better(found)
     if extended and 2 * better < judged:
         steps.append(

@@ -10,7 +10,13 @@ from shipcosim.report.theme.views import Page, Table
 
 __all__ = ["Block", "Card", "card_html"]
 
-COLOURS = {"passed": "#007a5a", "consistent": "#007a5a", "named": "#0072b2", "plain": "#52606d", "replayed": "#0072b2"}
+COLOURS = {
+    "passed": "#007a5a",
+    "consistent": "#007a5a",
+    "named": "#0072b2",
+    "plain": "#52606d",
+    "replayed": "#0072b2",
+}
 WRONG = "#b34700"
 
 

@@ -8,13 +8,26 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.report.notebook.sheet import COLOURS, GRID, INK, WIDTH, Sheet, legend_rows, tick_text, ticks
+from shipcosim.report.notebook.sheet import (
+    COLOURS,
+    GRID,
+    INK,
+    WIDTH,
+    Sheet,
+    legend_rows,
+    tick_text,
+    ticks,
+)
 from shipcosim.report.run.track import SLENDERNESS, SYMBOL, hull_outline, outline_rows, placed
 from shipcosim.report.theme import palette
 
 __all__ = ["Circle", "Path", "chart_svg"]
 
-_LEFT, _RIGHT, _BELOW, _LEAST, _MOST = 64.0, 14.0, 40.0, 240.0, 560.0  # px
+_LEFT = 64.0  # px
+_RIGHT = 14.0
+_BELOW = 40.0
+_LEAST = 240.0
+_MOST = 560.0
 _ROWS = 1500  # of a path, drawn
 
 
@@ -60,7 +73,9 @@ class _Scale:
     top: float
 
     def place(self, east, north):
-        return _LEFT + (east - self.west) * self.pixels, self.top + (self.north - north) * self.pixels
+        return _LEFT + (east - self.west) * self.pixels, self.top + (
+            self.north - north
+        ) * self.pixels
 
 
 @dataclass
@@ -77,7 +92,10 @@ class _Extent:
 
 
 def chart_svg(
-    paths: Sequence[Path], name: str, size: tuple[float, float] | None = None, circles: Sequence[Circle] = ()
+    paths: Sequence[Path],
+    name: str,
+    size: tuple[float, float] | None = None,
+    circles: Sequence[Circle] = (),
 ) -> str:
     """Ways on a chart.
 
@@ -105,30 +123,45 @@ def chart_svg(
     pixels = min((WIDTH - _LEFT - _RIGHT) / (east[1] - east[0]), _MOST / (north[1] - north[0]))
     tall = max((north[1] - north[0]) * pixels, _LEAST)
     wide = WIDTH - _LEFT - _RIGHT
-    west, top = sum(east) / 2 - wide / pixels / 2, sum(north) / 2 + tall / pixels / 2
-    sheet, scale = Sheet(WIDTH, head + tall + _BELOW, name), _Scale(west, top, pixels, head)
+    west = sum(east) / 2 - wide / pixels / 2
+    top = sum(north) / 2 + tall / pixels / 2
+    sheet = Sheet(WIDTH, head + tall + _BELOW, name)
+    scale = _Scale(west, top, pixels, head)
     sheet.legend(entries, _LEFT, 18.0)
     _grid(sheet, scale, tall)
     for circle in circles:
         x, y = scale.place(circle.y, circle.x)
         colour = COLOURS[palette.PASSED if circle.passed else palette.FAILED]
-        sheet.draw("circle", cx=x, cy=y, r=max(circle.radius * pixels, 2.0), fill="none", stroke=colour)
+        sheet.draw(
+            "circle", cx=x, cy=y, r=max(circle.radius * pixels, 2.0), fill="none", stroke=colour
+        )
     for path in paths:
         _draw(sheet, scale, path, outlines.get(id(path), []))
     return str(sheet)
 
 
-def _draw(sheet: Sheet, scale: _Scale, path: Path, outlines: Sequence[tuple[NDArray, NDArray]]) -> None:
+def _draw(
+    sheet: Sheet, scale: _Scale, path: Path, outlines: Sequence[tuple[NDArray, NDArray]]
+) -> None:
     """A way over the ship on it; her start dashed, her end filled."""
-    colour, rows = COLOURS[path.colour], np.unique(np.linspace(0, len(path.x) - 1, _ROWS).astype(int))
+    colour = COLOURS[path.colour]
+    rows = np.unique(np.linspace(0, len(path.x) - 1, _ROWS).astype(int))
     for k, corners in enumerate(outlines):
         x, y = scale.place(*corners)
-        first, last = k == 0, k == len(outlines) - 1
-        look = {"stroke": INK if first or last else colour, "stroke_width": 1.5 if first or last else 0.7}
+        first = k == 0
+        last = k == len(outlines) - 1
+        look = {
+            "stroke": INK if first or last else colour,
+            "stroke_width": 1.5 if first or last else 0.7,
+        }
         look |= {"fill": colour, "fill_opacity": "0.15" if last else "0.04"}
         if first and not last:
             look["stroke_dasharray"] = "4 3"
-        sheet.draw("polygon", points=" ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True)), **look)
+        sheet.draw(
+            "polygon",
+            points=" ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True)),
+            **look,
+        )
     sheet.curve(*scale.place(path.y[rows], path.x[rows]), colour, path.dash, 1.8)
 
 
@@ -158,7 +191,9 @@ def _outlines(path: Path, size: tuple[float, float] | None) -> list[tuple[NDArra
     known = np.isfinite(path.x) & np.isfinite(path.y) & np.isfinite(psi)
     if not known.any():
         return []
-    x, y, psi = path.x[known], path.y[known], psi[known]
+    x = path.x[known]
+    y = path.y[known]
+    psi = psi[known]
     length, breadth = size or _symbol(x, y)
     hull = hull_outline(length, breadth)
     return [placed(hull, x[k], y[k], psi[k]) for k in outline_rows(x, y, psi, length)]

@@ -9,7 +9,13 @@ from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.validation.tracks import Tracks
 from shipcosim.report.diagnosis.key_figures import key_figures
 from shipcosim.report.diagnosis.track_figures import joined
-from shipcosim.report.diagnosis.words import discrepancy_rows, finding_rows, next_steps, outcome, title
+from shipcosim.report.diagnosis.words import (
+    discrepancy_rows,
+    finding_rows,
+    next_steps,
+    outcome,
+    title,
+)
 from shipcosim.report.joint import words as joint
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.chart import Path, chart_svg
@@ -30,7 +36,10 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
     name : str
         Its title.
     """
-    alike = tuple((title(c.cause, c.component), f"{100 * c.probability:.0f} %") for c in found.indistinguishable)
+    alike = tuple(
+        (title(c.cause, c.component), f"{100 * c.probability:.0f} %")
+        for c in found.indistinguishable
+    )
     silent = tuple(title(cause) for cause in found.not_testable)
     steps = next_steps(found, None, found.causes)
     if found.extended is not None:
@@ -43,9 +52,14 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
         data=(),
         blocks=(
             Block("Wrong, largest first", Table(tuple(discrepancy_rows(found)))),
-            Block("Found", Table(tuple(finding_rows(found.findings)), ("", "probability", "", "size"))),
+            Block(
+                "Found", Table(tuple(finding_rows(found.findings)), ("", "probability", "", "size"))
+            ),
             Block("This log cannot tell apart", Table(alike)),
-            Block("Errors", Table(tuple((figure.value, figure.meaning) for figure in key_figures(found)))),
+            Block(
+                "Errors",
+                Table(tuple((figure.value, figure.meaning) for figure in key_figures(found))),
+            ),
             Block("Remarks", lines=found.notes),
             Block("What to do next", lines=tuple(steps)),
             Block("This log could not have shown", lines=silent, folded=True),
@@ -74,7 +88,10 @@ def joint_card(found: JointDiagnosis, name: str) -> Card:
     head = ("log", "after", "position", "with causes", "heading", "with causes", "")
     return Card(
         title=name,
-        facts=(Fact("System", found.system.name if found.system else "–"), Fact("Logs", ", ".join(found.logs))),
+        facts=(
+            Fact("System", found.system.name if found.system else "–"),
+            Fact("Logs", ", ".join(found.logs)),
+        ),
         outcome=joint.outcome(found),
         links=(),
         data=(),
@@ -96,5 +113,7 @@ def tracks_svg(tracks: Tracks, name: str) -> str:
     paths = [Path("measured", seen["north"].values, seen["east"].values, colour=palette.FAINT)]
     for (label, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
         north, east = (np.asarray(joined(one, role)) for role in ("north", "east"))
-        paths.append(Path(f"{label}, every {tracks.horizon:.0f} s anew", north, east, colour=colour))
+        paths.append(
+            Path(f"{label}, every {tracks.horizon:.0f} s anew", north, east, colour=colour)
+        )
     return chart_svg(paths, name)

@@ -16,7 +16,9 @@ from shipcosim.report.theme.views import Fact, Outcome, Table
 __all__ = ["log_card"]
 
 
-def log_card(name: str, table: Dataset, faults: Sequence[Finding], remarks: Sequence[str], picture: str) -> Card:
+def log_card(
+    name: str, table: Dataset, faults: Sequence[Finding], remarks: Sequence[str], picture: str
+) -> Card:
     """Channels with their ranges, faults, remarks and the track.
 
     Parameters
@@ -56,7 +58,9 @@ def _outcome(faults: Sequence[Finding]) -> Outcome:
         return Outcome("plain", "LOG", "Its channels show no fault by themselves.")
     many = "One fault" if len(faults) == 1 else f"{len(faults)} faults"
     return Outcome(
-        "faulty", "FAULTY", f"{many} show in the channels by themselves; a diagnosis puts right what it can."
+        "faulty",
+        "FAULTY",
+        f"{many} show in the channels by themselves; a diagnosis puts right what it can.",
     )
 
 
@@ -66,7 +70,16 @@ def _channels(table: Dataset) -> tuple[tuple[str, ...], ...]:
     for name, variable in table.data_vars.items():
         values = np.asarray(variable.values, float)
         finite = values[np.isfinite(values)]
-        ends = (plain(float(finite.min())), plain(float(finite.max()))) if len(finite) else ("–", "–")
+        ends = (
+            (plain(float(finite.min())), plain(float(finite.max()))) if len(finite) else ("–", "–")
+        )
         lost = 1.0 - len(finite) / max(len(values), 1)
-        rows.append((str(name), variable.attrs.get("units", ""), *ends, f"{100 * lost:.1f} %" if lost else ""))
+        rows.append(
+            (
+                str(name),
+                variable.attrs.get("units", ""),
+                *ends,
+                f"{100 * lost:.1f} %" if lost else "",
+            )
+        )
     return tuple(rows)

@@ -17,7 +17,9 @@ from shipcosim.ssp import System
 __all__ = ["run_card"]
 
 
-def run_card(table: Dataset, scenario: Scenario, system: System, verdicts: Sequence[Verdict]) -> Card:
+def run_card(
+    table: Dataset, scenario: Scenario, system: System, verdicts: Sequence[Verdict]
+) -> Card:
     """Verdict, expectations, track and what signals there are.
 
     Parameters
@@ -34,7 +36,8 @@ def run_card(table: Dataset, scenario: Scenario, system: System, verdicts: Seque
     name = scenario.name or system.name
     changed = ", ".join(parsed(table.attrs.get("changed", "[]")))
     return Card(
-        title=name + (f": {scenario.description}" if scenario.description and scenario.name else ""),
+        title=name
+        + (f": {scenario.description}" if scenario.description and scenario.name else ""),
         facts=_facts(table, scenario, system),
         outcome=found.outcome,
         links=(),
@@ -53,7 +56,11 @@ def _facts(table: Dataset, scenario: Scenario, system: System) -> tuple[Fact, ..
     """What ran, for how long, in which steps."""
     time = table["time"].values
     span = f"{time[0]:g} to {time[-1]:g} s" if len(time) else "nothing"
-    facts = [("System", system.name), ("Simulated", span), ("Step size", f"{scenario.step_size:g} s")]
+    facts = [
+        ("System", system.name),
+        ("Simulated", span),
+        ("Step size", f"{scenario.step_size:g} s"),
+    ]
     facts.append(("Table", f"{len(time)} rows, {len(table)} signals"))
     return tuple(Fact(name, text) for name, text in facts if text)
 

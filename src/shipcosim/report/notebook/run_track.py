@@ -29,17 +29,31 @@ def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | N
         What is drawn.
     """
     roles = find_roles(table.data_vars)
-    pose = [signal for signal in (roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")) if signal]
+    pose = [
+        signal
+        for signal in (roles.signal(roles.ship, axis) for axis in ("x", "y", "psi"))
+        if signal
+    ]
     if len(pose) < 3 or not np.isfinite(table[pose[0]].values + table[pose[1]].values).any():
         return None
     paths = []
-    wanted = [signal for signal in (roles.signal(roles.reference, axis) for axis in ("x_d", "y_d")) if signal]
+    wanted = [
+        signal
+        for signal in (roles.signal(roles.reference, axis) for axis in ("x_d", "y_d"))
+        if signal
+    ]
     if len(wanted) == 2:
-        east, north = table[wanted[1]].values, table[wanted[0]].values
+        east = table[wanted[1]].values
+        north = table[wanted[0]].values
         paths.append(Path("reference", north, east, colour=palette.REFERENCE, dash="6 4"))
     psi = np.degrees(table[pose[2]].values)
     paths.append(
-        Path(f"{roles.ship or 'ship'}, start dashed, end filled", table[pose[0]].values, table[pose[1]].values, psi)
+        Path(
+            f"{roles.ship or 'ship'}, start dashed, end filled",
+            table[pose[0]].values,
+            table[pose[1]].values,
+            psi,
+        )
     )
     return chart_svg(paths, name, ship_size(table, roles), _circles(verdicts, pose[:2]))
 
@@ -48,7 +62,8 @@ def _circles(verdicts: Sequence[Verdict], position: list[str]) -> list[Circle]:
     """Where expectations on the position want the ship; a place asked for twice is held if it is each time."""
     held: dict[tuple[float, float, float], bool] = {}
     for verdict in verdicts:
-        near, within = verdict.expect.near, verdict.expect.within
+        near = verdict.expect.near
+        within = verdict.expect.within
         if verdict.expect.signal != position or near is None or within is None:
             continue
         numbers = [value for value in near if not isinstance(value, str)]

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from shipcosim.report.theme import palette
 
 WIDTH = 760  # px
-INK, SOFT, GRID = "#1f2933", "#52606d", "#e4e7eb"
+INK = "#1f2933"
+SOFT = "#52606d"
+GRID = "#e4e7eb"
 COLOURS = {
     palette.BLUE: "#0072b2",
     palette.VERMILLION: "#d55e00",
@@ -67,11 +69,18 @@ class Sheet:
         """A text whose anchor is at a place."""
         self.draw("text", **({"x": x, "y": y, "fill": SOFT} | attributes)).text = text
 
-    def curve(self, x: NDArray, y: NDArray, colour: str, dash: str = "", width: float = 1.5) -> None:
+    def curve(
+        self, x: NDArray, y: NDArray, colour: str, dash: str = "", width: float = 1.5
+    ) -> None:
         """A line through points, with gaps where one is no number."""
         dashes: dict[str, str | float] = {"stroke_dasharray": dash} if dash else {}
         for points in _runs(x, y):
-            shown = {"stroke": colour, "stroke_width": width, "stroke_linejoin": "round", "fill": "none"}
+            shown = {
+                "stroke": colour,
+                "stroke_width": width,
+                "stroke_linejoin": "round",
+                "fill": "none",
+            }
             self.draw("polyline", points=points, **shown, **dashes)
 
     def legend(self, entries: Sequence[tuple[str, str, str]], x: float, y: float) -> None:
@@ -80,7 +89,9 @@ class Sheet:
             at = x
             for k in part:
                 label, colour, dash = entries[k]
-                self.curve(np.array([at, at + 16.0]), np.full(2, y + 15.0 * row - 4.0), colour, dash, 2.0)
+                self.curve(
+                    np.array([at, at + 16.0]), np.full(2, y + 15.0 * row - 4.0), colour, dash, 2.0
+                )
                 self.write(label, at + 21.0, y + 15.0 * row)
                 at += _width(label)
 
@@ -120,7 +131,10 @@ def ticks(low: float, high: float, most: int = 6) -> list[float]:
         return [low] if math.isfinite(low) else []
     power = 10.0 ** math.floor(math.log10(span / most))
     step = next(power * m for m in (1.0, 2.0, 5.0, 10.0, 20.0) if span / (power * m) <= most)
-    return [round(k * step, 12) for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
+    return [
+        round(k * step, 12)
+        for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
+    ]
 
 
 def tick_text(value: float) -> str:
@@ -147,7 +161,10 @@ def _runs(x: NDArray, y: NDArray) -> Iterable[str]:
     known = np.isfinite(x) & np.isfinite(y)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(int)))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
-        yield " ".join(f"{a:.1f},{b:.1f}" for a, b in _apart(list(zip(x[first:last], y[first:last], strict=True))))
+        yield " ".join(
+            f"{a:.1f},{b:.1f}"
+            for a, b in _apart(list(zip(x[first:last], y[first:last], strict=True)))
+        )
 
 
 def _apart(points: list[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -16,7 +16,13 @@ from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.sea_trials import words as sea_trials
 from shipcosim.report.theme.views import Fact, Outcome, Table
 
-__all__ = ["calibration_card", "capability_card", "comparison_card", "replay_card", "sea_trials_card"]
+__all__ = [
+    "calibration_card",
+    "capability_card",
+    "comparison_card",
+    "replay_card",
+    "sea_trials_card",
+]
 
 MOST_ROWS = 12
 
@@ -30,13 +36,18 @@ def comparison_card(found: Comparison, name: str) -> Card:
             one.name,
             one.unit,
             f"{one.range:.4g}",
-            *(f"{one.engines[engine].largest:.1e}" if engine in one.engines else "–" for engine in others),
+            *(
+                f"{one.engines[engine].largest:.1e}" if engine in one.engines else "–"
+                for engine in others
+            ),
             f"{one.step.largest:.1e}",
         )
         for one in found.signals[:MOST_ROWS]
     )
     said = tuple(f"{engine}: {why}" for engine, why in found.left_out.items())
-    said += tuple(f"{engine}: {remark}" for engine, remarks in found.remarks.items() for remark in remarks)
+    said += tuple(
+        f"{engine}: {remark}" for engine, remarks in found.remarks.items() for remark in remarks
+    )
     return Card(
         title=f"Engines on {name}",
         facts=tuple(Fact(engine, f"{seconds:.1f} s") for engine, seconds in found.seconds.items()),
@@ -44,7 +55,10 @@ def comparison_card(found: Comparison, name: str) -> Card:
         links=(),
         data=(),
         blocks=(
-            Block(f"Largest differences, {len(rows)} of {len(found.signals)} signals", Table(rows, head)),
+            Block(
+                f"Largest differences, {len(rows)} of {len(found.signals)} signals",
+                Table(rows, head),
+            ),
             Block("Remarks", lines=said),
         ),
     )
@@ -54,18 +68,27 @@ def _agreement(found: Comparison, others: list[str]) -> Outcome:
     """The verdict as the command says it."""
     if not others and not found.failed:
         return Outcome("plain", "ALONE", "No other engine ran: only the step-size error is known.")
-    limit, count = f"{found.tolerance:g} of its range", len(found.signals)
+    limit = f"{found.tolerance:g} of its range"
+    count = len(found.signals)
     if found.agree:
-        return Outcome("passed", "AGREE", f"{', '.join([OURS, *others])} agree on each of {count} signals to {limit}.")
+        return Outcome(
+            "passed",
+            "AGREE",
+            f"{', '.join([OURS, *others])} agree on each of {count} signals to {limit}.",
+        )
     if found.failed:
         return Outcome("failed", "FAILED", f"{', '.join(found.failed)} did not get to the end.")
     differing = sum(one.worst > found.tolerance for one in found.signals)
-    return Outcome("failed", "DIFFER", f"{differing} of {count} signals differ by more than {limit}.")
+    return Outcome(
+        "failed", "DIFFER", f"{differing} of {count} signals differ by more than {limit}."
+    )
 
 
 def replay_card(found: LogReplay, name: str, picture: str) -> Card:
     """Errors of the predictions and the track; `picture` is its SVG."""
-    faults = tuple(f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in found.faults)
+    faults = tuple(
+        f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in found.faults
+    )
     return Card(
         title=f"Replay of {name}",
         facts=(Fact("Predictions", f"{found.tracks.horizon:.0f} s each"),),
@@ -84,7 +107,9 @@ def calibration_card(found: CalibratedShip) -> Card:
     """Numbers that moved most, and the errors that remain."""
     refused = bool(found.refusals)
     moved = tuple(calibration.moved_rows(found)[:MOST_ROWS])
-    word = Outcome("unknown" if refused else "consistent", "REFUSED" if refused else "CALIBRATED", "")
+    word = Outcome(
+        "unknown" if refused else "consistent", "REFUSED" if refused else "CALIBRATED", ""
+    )
     return Card(
         title=f"Calibration of {found.reference.system}",
         facts=(Fact("Logs", ", ".join(log.name for log in found.logs)),),
@@ -96,7 +121,10 @@ def calibration_card(found: CalibratedShip) -> Card:
             Block("Moved most", Table(moved, ("", "before", "calibrated", "by tolerances"))),
             Block(
                 "Position error that remains",
-                Table(tuple(calibration.error_rows(found)), ("log", "after", "as it is", "calibrated", "at best", "")),
+                Table(
+                    tuple(calibration.error_rows(found)),
+                    ("log", "after", "as it is", "calibrated", "at best", ""),
+                ),
             ),
             Block("Remarks", lines=found.remarks),
         ),
@@ -112,7 +140,10 @@ def capability_card(found: Capability) -> Card:
         outcome=page.outcome,
         links=(),
         data=(),
-        blocks=(Block("Numbers by direction", page.numbers, folded=True), Block("Thrusters", page.thrusters)),
+        blocks=(
+            Block("Numbers by direction", page.numbers, folded=True),
+            Block("Thrusters", page.thrusters),
+        ),
     )
 
 

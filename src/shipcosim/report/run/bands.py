@@ -35,7 +35,9 @@ def window(time: NDArray, expect: Expectation) -> NDArray:
     return np.flatnonzero((time >= start - 1e-6) & (time <= end + 1e-6))
 
 
-def bands_of(shown: Dataset, signal: str, verdicts: Iterable[Verdict], minus: str | None = None) -> list[Band]:
+def bands_of(
+    shown: Dataset, signal: str, verdicts: Iterable[Verdict], minus: str | None = None
+) -> list[Band]:
     """Bands of all expectations on a signal.
 
     Parameters
@@ -61,7 +63,9 @@ def bands_of(shown: Dataset, signal: str, verdicts: Iterable[Verdict], minus: st
     return found
 
 
-def distance_bands(shown: Dataset, signals: list[str | None], verdicts: Iterable[Verdict]) -> list[Band]:
+def distance_bands(
+    shown: Dataset, signals: list[str | None], verdicts: Iterable[Verdict]
+) -> list[Band]:
     """Bands of the expectations that several signals together stay near a point."""
     found = []
     for verdict in verdicts:
@@ -78,10 +82,13 @@ def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) ->
     lower, upper = _limits(part, signal, verdict.expect)
     if minus is not None:
         middle = part[minus].values
-        lower, upper, drawn = lower - middle, upper - middle, drawn - middle
+        lower = lower - middle
+        upper = upper - middle
+        drawn = drawn - middle
         if part[signal].attrs["units"] == "deg":
             turn = wrap_series(lower) - lower
-            lower, upper = lower + turn, upper + turn
+            lower = lower + turn
+            upper = upper + turn
     least, most = (pick(drawn[np.isfinite(drawn)], initial=0.0) for pick in (np.min, np.max))
     pad = 0.1 * (most - least)
     lower = np.where(np.isfinite(lower), lower, np.fmin(least, upper) - pad)
@@ -91,7 +98,9 @@ def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) ->
 
 def _limits(part: Dataset, signal: str, expect: Expectation) -> tuple[NDArray, NDArray]:
     """Least and largest allowed value in the page's unit, (m,) each; infinite on an open side."""
-    values, unit, factor = part[signal].values, part[signal].attrs["units"], part[signal].attrs["factor"]
+    values = part[signal].values
+    unit = part[signal].attrs["units"]
+    factor = part[signal].attrs["factor"]
     ones = np.ones(len(values))
     if expect.near is None:
         least = -np.inf if expect.at_least is None else expect.at_least * factor
@@ -107,5 +116,9 @@ def _limits(part: Dataset, signal: str, expect: Expectation) -> tuple[NDArray, N
 def _band(time: NDArray, lower: NDArray, upper: NDArray, passed: bool) -> Band:
     """A band with as few corners as it needs."""
     if np.ptp(lower) == 0.0 and np.ptp(upper) == 0.0:
-        time, lower, upper = time[[0, -1]], lower[[0, -1]], upper[[0, -1]]
-    return Band(np.round(time, 6).tolist(), np.round(lower, 6).tolist(), np.round(upper, 6).tolist(), passed)
+        time = time[[0, -1]]
+        lower = lower[[0, -1]]
+        upper = upper[[0, -1]]
+    return Band(
+        np.round(time, 6).tolist(), np.round(lower, 6).tolist(), np.round(upper, 6).tolist(), passed
+    )

@@ -111,7 +111,13 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
     problems = [Problem(name, "The run has no rows.", "Give one that has.") for name in empty]
     if not problems and not set(tables[0].data_vars) & set(tables[1].data_vars):
         found = "The two have no signal in common."
-        problems = [Problem(" and ".join(names), found, "Give two runs of one system, or of systems that are alike.")]
+        problems = [
+            Problem(
+                " and ".join(names),
+                found,
+                "Give two runs of one system, or of systems that are alike.",
+            )
+        ]
     if problems:
         raise ShipcosimError(problems)
     times = [np.asarray(table["time"].values, float) for table in tables]
@@ -136,19 +142,30 @@ def differences(pair: Pair) -> list[Difference]:
         The largest over its signal's range first; signals that are the same are left out.
     """
     first, second = pair.shown
-    time, found = first["time"].values, []
+    time = first["time"].values
+    found = []
     for name in (str(n) for n in first.data_vars if n in second):
-        a, b, unit = first[name].values, second[name].values, first[name].attrs["units"]
+        a = first[name].values
+        b = second[name].values
+        unit = first[name].attrs["units"]
         gap = wrap_series(b - a) if unit == "deg" else b - a
         both = np.isfinite(gap)
         if not both.any():
             continue
         size = np.abs(gap[both])
         most = int(np.argmax(size))
-        span = max(float(np.ptp(v[both])) for v in (a, b)) or float(np.max(np.abs(a[both]))) or float(size[most])
+        span = (
+            max(float(np.ptp(v[both])) for v in (a, b))
+            or float(np.max(np.abs(a[both])))
+            or float(size[most])
+        )
         if size[most] > SAME * max(span, np.finfo(float).tiny):
             rms = float(np.sqrt(np.mean(size**2)))
-            found.append(Difference(name, unit, rms, float(size[most]), float(time[both][most]), float(rms / span)))
+            found.append(
+                Difference(
+                    name, unit, rms, float(size[most]), float(time[both][most]), float(rms / span)
+                )
+            )
     return sorted(found, key=lambda one: -one.share)
 
 
@@ -160,7 +177,11 @@ def _on(shown: Dataset, time: NDArray) -> Dataset:
     found = {}
     for name, v in shown.data_vars.items():
         values = v.values.astype(float)
-        read = values[rows] if v.attrs.get("logical") or len(own) == 1 else np.interp(time, own, values)
+        read = (
+            values[rows]
+            if v.attrs.get("logical") or len(own) == 1
+            else np.interp(time, own, values)
+        )
         found[name] = ("time", np.where(inside, read, np.nan), v.attrs)
     return xr.Dataset(found, {"time": time})
 
@@ -169,7 +190,8 @@ def _like(shown: Dataset, other: Dataset) -> Dataset:
     """The table in the other's units, its angles moved by whole turns to lie beside the other's."""
     found = {}
     for name, v in shown.data_vars.items():
-        values, attributes = v.values.astype(float), dict(v.attrs)
+        values = v.values.astype(float)
+        attributes = dict(v.attrs)
         if name in other and other[name].attrs["units"] != attributes["units"]:
             values = values * other[name].attrs["factor"] / attributes["factor"]
             attributes |= {key: other[name].attrs[key] for key in ("units", "factor")}
@@ -230,7 +252,9 @@ def _sections(pair: Pair) -> tuple[Section, ...]:
     roles = shown_table(pair.tables[0], ())[0]
     made = []
     for section in make_sections(pair.shown[0], roles, ()):
-        panels = tuple(doubled for panel in section.panels if (doubled := _doubled(panel, pair)) is not None)
+        panels = tuple(
+            doubled for panel in section.panels if (doubled := _doubled(panel, pair)) is not None
+        )
         if panels:
             made.append(replace(section, panels=panels))
     return tuple(made)
@@ -244,7 +268,10 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
         return None
     if len(own) == 1:
         pairs = zip(pair.names, COLOURS, strict=True)
-        both = [replace(own[0], signal=f"{n}: {own[0].signal}", label=n, colour=c, dash="solid") for n, c in pairs]
+        both = [
+            replace(own[0], signal=f"{n}: {own[0].signal}", label=n, colour=c, dash="solid")
+            for n, c in pairs
+        ]
     else:
         both = [
             replace(line, signal=f"{name}: {line.signal}", label=f"{line.label}, {name}", dash=dash)
@@ -267,26 +294,34 @@ def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
     roles = shown_table(pair.tables[0], ())[0]
     position = [roles.signal(roles.ship, axis) for axis in "xy"]
     if all(name in pair.shown[1] and name in pair.shown[0] for name in position):
-        gap = np.hypot(*(pair.shown[1][name].values - pair.shown[0][name].values for name in position))
+        gap = np.hypot(
+            *(pair.shown[1][name].values - pair.shown[0][name].values for name in position)
+        )
         if np.isfinite(gap).any() and np.nanmax(gap) > 0.0:
             when = pair.shown[0]["time"].values[int(np.nanargmax(gap))]
             rms = np.sqrt(np.nanmean(gap**2))
-            most, usual = plain(float(np.nanmax(gap))), plain(float(rms))
+            most = plain(float(np.nanmax(gap)))
+            usual = plain(float(rms))
             text = f"The ships lie up to {most} m apart, at {when:g} s; {usual} m rms."
             return Outcome("plain", "DIFFER", f"{text} {len(found)} of {common} signals differ.")
     worst = max(found, key=lambda one: one.share)
-    return Outcome("plain", "DIFFER", f"{len(found)} of {common} signals differ, most of all {worst.signal}.")
+    return Outcome(
+        "plain", "DIFFER", f"{len(found)} of {common} signals differ, most of all {worst.signal}."
+    )
 
 
 def _remarks(pair: Pair) -> list[str]:
     said = []
     first, second = pair.names
     if pair.shift:
-        said.append(f"The runs have no time in common: {second} is moved by {pair.shift:g} s to start with {first}.")
+        said.append(
+            f"The runs have no time in common: {second} is moved by {pair.shift:g} s to start with {first}."
+        )
     ends = [table["time"].values[[0, -1]] for table in pair.tables]
     spans = [ends[0], ends[1] + pair.shift]
     if not np.allclose(*spans):
-        start, end = max(span[0] for span in spans), min(span[1] for span in spans)
+        start = max(span[0] for span in spans)
+        end = min(span[1] for span in spans)
         said.append(f"Differences are those between {start:g} and {end:g} s, where both runs are.")
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in own.data_vars if signal not in other]:
@@ -299,7 +334,12 @@ def _ordered(pair: Pair, found: Sequence[Difference]) -> list[Difference]:
     """Differences of what people compare runs by, then the others as they come."""
     roles = shown_table(pair.tables[0], ())[0]
     pose = [roles.signal(roles.ship, axis) for axis in ("x", "y", "psi")]
-    wanted = [*pose, FROM_REFERENCE, ERRORS["psi"], *(roles.signal(unit, "thrust") for unit in roles.thrusters)]
+    wanted = [
+        *pose,
+        FROM_REFERENCE,
+        ERRORS["psi"],
+        *(roles.signal(unit, "thrust") for unit in roles.thrusters),
+    ]
     by_name = {one.signal: one for one in found}
     first = [by_name[name] for name in dict.fromkeys(wanted) if name in by_name]
     return [*first, *(one for one in found if one not in first)]
@@ -316,9 +356,16 @@ def _table(found: Sequence[Difference]) -> Table:
 
 def _details(pair: Pair) -> tuple[Detail, ...]:
     """What is not the same in what the tables say of their runs: start values, events, versions."""
-    attributes = [{str(key): parsed(value) for key, value in table.attrs.items()} for table in pair.tables]
-    found = [_unlike("Start values that differ", pair, [_known(a, "start_values") for a in attributes])]
-    rest = [{k: v for k, v in a.items() if k not in ("start_values", "remarks", "fmus")} for a in attributes]
+    attributes = [
+        {str(key): parsed(value) for key, value in table.attrs.items()} for table in pair.tables
+    ]
+    found = [
+        _unlike("Start values that differ", pair, [_known(a, "start_values") for a in attributes])
+    ]
+    rest = [
+        {k: v for k, v in a.items() if k not in ("start_values", "remarks", "fmus")}
+        for a in attributes
+    ]
     found.append(_unlike("Runs that differ", pair, rest))
     return tuple(detail for detail in found if detail is not None)
 

@@ -13,10 +13,13 @@ from shipcosim.report.theme.display import as_variable, unturned
 from shipcosim.scenario import Verdict
 
 ERRORS = {"x": "north error", "y": "east error", "psi": "heading error"}
-FROM_REFERENCE, FROM_EXPECTED = "distance from reference", "distance from expected point"
+FROM_REFERENCE = "distance from reference"
+FROM_EXPECTED = "distance from expected point"
 
 
-def add_derived(shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> Dataset:
+def add_derived(
+    shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]
+) -> Dataset:
     """The shown table with the derived signals that it has the ingredients for.
 
     Parameters
@@ -48,14 +51,18 @@ def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Ship minus reference in x, y and psi; headings the short way round."""
     found = {}
     for axis, name in ERRORS.items():
-        ship, reference = roles.signal(roles.ship, axis), desired(roles, axis)
+        ship = roles.signal(roles.ship, axis)
+        reference = desired(roles, axis)
         if ship and reference:
-            error, unit = shown[ship].values - shown[reference].values, shown[ship].attrs["units"]
+            error = shown[ship].values - shown[reference].values
+            unit = shown[ship].attrs["units"]
             found[name] = as_variable(wrap_series(error) if unit == "deg" else error, unit, name)
     return found
 
 
-def distances(shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> dict[str, Variable]:
+def distances(
+    shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]
+) -> dict[str, Variable]:
     """Distance from the reference, and in the windows of expectations on the position the distance that was judged."""
     if not {ERRORS["x"], ERRORS["y"]} <= set(shown):
         return {}
@@ -67,10 +74,15 @@ def distances(shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[V
     return found
 
 
-def judged_distance(table: Dataset, signals: list[str | None], verdicts: Sequence[Verdict]) -> NDArray:
+def judged_distance(
+    table: Dataset, signals: list[str | None], verdicts: Sequence[Verdict]
+) -> NDArray:
     """Distance from the expected point where an expectation on these signals together looks, NaN elsewhere, (n,)."""
-    time, distance = table["time"].values, np.full(table.sizes["time"], np.nan)
-    for expect in (v.expect for v in verdicts if v.expect.signal == signals and v.expect.near is not None):
+    time = table["time"].values
+    distance = np.full(table.sizes["time"], np.nan)
+    for expect in (
+        v.expect for v in verdicts if v.expect.signal == signals and v.expect.near is not None
+    ):
         rows = window(time, expect)
         targets = [table[n].values[rows] if isinstance(n, str) else n for n in expect.near or ()]
         gaps = [table[s].values[rows] - target for s, target in zip(signals, targets, strict=True)]
@@ -82,7 +94,10 @@ def true_flow(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Speed and direction of wind and current at the ship, from their components north and east."""
     found = {}
     for what, sense, suffix in [("wind", -1.0, "from"), ("current", 1.0, "to")]:
-        parts = [roles.signal(roles.harbour or roles.environment, f"{what}_{way}") for way in ("north", "east")]
+        parts = [
+            roles.signal(roles.harbour or roles.environment, f"{what}_{way}")
+            for way in ("north", "east")
+        ]
         if None not in parts:
             north, east = (sense * shown[part].values for part in parts)
             found[f"{what} speed"] = as_variable(np.hypot(north, east), "m/s", f"{what} speed")

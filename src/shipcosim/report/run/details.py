@@ -22,7 +22,9 @@ class Detail:
     table: Table
 
 
-def details(table: Dataset, scenario: Scenario | None = None, system: System | None = None) -> tuple[Detail, ...]:
+def details(
+    table: Dataset, scenario: Scenario | None = None, system: System | None = None
+) -> tuple[Detail, ...]:
     """Events and start values of the scenario, and what the attributes of the table say.
 
     Parameters
@@ -40,10 +42,17 @@ def details(table: Dataset, scenario: Scenario | None = None, system: System | N
     """
     found = []
     if scenario is not None and scenario.events:
-        found.append(_detail("events", [(f"{event.time:g} s", _happening(event)) for event in scenario.events]))
+        found.append(
+            _detail(
+                "events", [(f"{event.time:g} s", _happening(event)) for event in scenario.events]
+            )
+        )
     if scenario is not None and scenario.set:
         found.append(_detail("start values of the scenario", scenario.set.items()))
-    return (*found, *(_detail(title, content.items()) for title, content in _attributes(table, system)))
+    return (
+        *found,
+        *(_detail(title, content.items()) for title, content in _attributes(table, system)),
+    )
 
 
 def parsed(value: Any) -> Any:
@@ -61,7 +70,8 @@ def _attributes(table: Dataset, system: System | None) -> list[tuple[str, dict[s
     plain: dict[str, Any] = {}
     nested: list[tuple[str, dict[str, Any]]] = []
     for key, value in table.attrs.items():
-        name, content = str(key), parsed(value)
+        name = str(key)
+        content = parsed(value)
         if name == "start_values":
             nested += _by_component(content, system)
         elif isinstance(content, dict):
@@ -71,20 +81,29 @@ def _attributes(table: Dataset, system: System | None) -> list[tuple[str, dict[s
     return ([("run", plain)] if plain else []) + nested
 
 
-def _by_component(values: Mapping[str, Any], system: System | None) -> list[tuple[str, dict[str, Any]]]:
+def _by_component(
+    values: Mapping[str, Any], system: System | None
+) -> list[tuple[str, dict[str, Any]]]:
     """Start values with their units, a table for each component."""
     groups: dict[str, dict[str, Any]] = {}
     for signal, value in values.items():
         component, _, name = signal.rpartition(".")
         unit = _unit(system, component, name) or ""
         groups.setdefault(component, {})[name] = value if unit in ("", "1") else f"{value} {unit}"
-    return [(f"Start values: {component or 'the system'}", content) for component, content in groups.items()]
+    return [
+        (f"Start values: {component or 'the system'}", content)
+        for component, content in groups.items()
+    ]
 
 
 def _unit(system: System | None, component: str, name: str) -> str | None:
     if system is None:
         return None
-    variables = system.components[component].fmu.variables if component in system.components else system.inputs
+    variables = (
+        system.components[component].fmu.variables
+        if component in system.components
+        else system.inputs
+    )
     return variables[name].unit if name in variables else None
 
 
@@ -96,7 +115,10 @@ def _happening(event: Event) -> str:
 
 def _detail(title: str, rows: Iterable[tuple[Any, Any]]) -> Detail:
     words = title.replace("_", " ")
-    return Detail(words[:1].upper() + words[1:], Table(tuple((str(name), _text(value)) for name, value in rows)))
+    return Detail(
+        words[:1].upper() + words[1:],
+        Table(tuple((str(name), _text(value)) for name, value in rows)),
+    )
 
 
 def _text(value: Any) -> str:

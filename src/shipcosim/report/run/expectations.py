@@ -45,17 +45,27 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
     missed = sum(not v.passed for v in verdicts)
     if not is_complete(table):
         end = float(table["time"].values[-1]) if table.sizes["time"] else 0.0
-        return Outcome("partial", "PARTIAL", f"The run ended early, at {end:g} s. Its expectations were not judged.")
+        return Outcome(
+            "partial",
+            "PARTIAL",
+            f"The run ended early, at {end:g} s. Its expectations were not judged.",
+        )
     left = len(parsed(table.attrs.get("not_reached", "[]")))
     if left and not missed:
         if verdicts:
-            return Outcome("passed", "PASS", f"{len(verdicts)} of {len(verdicts) + left} hold, {left} not reached.")
+            return Outcome(
+                "passed",
+                "PASS",
+                f"{len(verdicts)} of {len(verdicts) + left} hold, {left} not reached.",
+            )
         return Outcome("plain", "DONE", f"None of its {left} expectations was reached.")
     if not verdicts:
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
     if missed:
         return Outcome("failed", "FAIL", f"{missed} of {len(verdicts)} expectations missed.")
-    all_of_them = f"All {len(verdicts)} expectations hold." if len(verdicts) > 1 else "The expectation holds."
+    all_of_them = (
+        f"All {len(verdicts)} expectations hold." if len(verdicts) > 1 else "The expectation holds."
+    )
     return Outcome("passed", "PASS", all_of_them)
 
 
@@ -90,7 +100,8 @@ def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
     -------
     list of str
     """
-    units, said = units_to_read(table), []
+    units = units_to_read(table)
+    said = []
     for expect in expectations:
         given = table[expect.signal[0]].attrs.get("units")
         unit, factor = units.get(given, (given, 1.0))
@@ -100,11 +111,15 @@ def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
 
 
 def _judged(verdict: Verdict, shown_as: dict[str, Any]) -> Judged:
-    expect, unit, factor = verdict.expect, shown_as["units"], shown_as["factor"]
+    expect = verdict.expect
+    unit = shown_as["units"]
+    factor = shown_as["factor"]
     during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
-    worst, when = "no row", "–"
+    worst = "no row"
+    when = "–"
     if np.isfinite(verdict.time):
-        worst, when = f"{factor * verdict.worst:.3g} {unit}".rstrip(), f"{verdict.time:g} s"
+        worst = f"{factor * verdict.worst:.3g} {unit}".rstrip()
+        when = f"{verdict.time:g} s"
     return Judged(verdict.passed, _claim(expect, unit, factor), during, worst, when)
 
 
@@ -114,7 +129,11 @@ def _claim(expect: Expectation, unit: str, factor: float) -> str:
     def text(value: float | str) -> str:
         if isinstance(value, str):
             return value
-        return compass(factor * value) if expect.is_heading and unit == "deg" else f"{round(factor * value, 4):.4g}"
+        return (
+            compass(factor * value)
+            if expect.is_heading and unit == "deg"
+            else f"{round(factor * value, 4):.4g}"
+        )
 
     if expect.near is not None and isinstance(expect.within, float):
         target = ",\u00a0".join(map(text, expect.near))

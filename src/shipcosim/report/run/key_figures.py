@@ -11,7 +11,9 @@ from shipcosim.report.run.roles import Roles
 from shipcosim.report.theme.views import Table
 
 
-def key_figures(shown: Dataset, roles: Roles, predictions: Sequence[PredictionSummary] = ()) -> Table:
+def key_figures(
+    shown: Dataset, roles: Roles, predictions: Sequence[PredictionSummary] = ()
+) -> Table:
     """Errors, power, time at a limit, errors of predictions: what people compare runs by.
 
     Parameters
@@ -31,15 +33,28 @@ def key_figures(shown: Dataset, roles: Roles, predictions: Sequence[PredictionSu
     figures: list[tuple[str, str]] = []
     for name, title in {FROM_REFERENCE: "Position error", ERRORS["psi"]: "Heading error"}.items():
         if name in shown:
-            size, unit = np.abs(shown[name].values), shown[name].attrs["units"]
-            rms, largest = np.sqrt(np.nanmean(size**2)), np.nanmax(size)
+            size = np.abs(shown[name].values)
+            unit = shown[name].attrs["units"]
+            rms = np.sqrt(np.nanmean(size**2))
+            largest = np.nanmax(size)
             figures.append((title, f"{rms:.2f} {unit} rms, {largest:.2f} {unit} at most"))
     powers = [p for p in (roles.signal(unit, "power") for unit in roles.thrusters) if p in shown]
     if powers:
-        total, unit = np.sum([shown[p].values for p in powers], axis=0), shown[powers[0]].attrs["units"]
-        figures.append(("Shaft power", f"{np.nanmean(total):.4g} {unit} mean, {np.nanmax(total):.4g} {unit} at most"))
+        total = np.sum([shown[p].values for p in powers], axis=0)
+        unit = shown[powers[0]].attrs["units"]
+        figures.append(
+            (
+                "Shaft power",
+                f"{np.nanmean(total):.4g} {unit} mean, {np.nanmax(total):.4g} {unit} at most",
+            )
+        )
     for component, name in roles.flagged("saturated").items():
         if name in shown:
-            figures.append((f"At a limit, {component}", f"{100 * np.mean(shown[name].values):.0f} % of the time"))
+            figures.append(
+                (
+                    f"At a limit, {component}",
+                    f"{100 * np.mean(shown[name].values):.0f} % of the time",
+                )
+            )
     figures += [(f"Predicted by {what}", ", ".join(said)) for what, *said in texts(predictions)]
     return Table(tuple(figures))

@@ -52,11 +52,17 @@ def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
     """What the scenarios come to, taken together."""
     missed = [row.name for row in rows if row.outcome.kind not in ("passed", "plain")]
     if missed:
-        return Outcome("failed", "FAIL", f"{len(missed)} of {len(rows)} scenarios miss something: {', '.join(missed)}.")
+        return Outcome(
+            "failed",
+            "FAIL",
+            f"{len(missed)} of {len(rows)} scenarios miss something: {', '.join(missed)}.",
+        )
     return Outcome("passed", "PASS", f"All {len(rows)} scenarios hold.")
 
 
-def write_overview(rows: Sequence[ScenarioRow], path: str | os.PathLike[str], *, title: str) -> None:
+def write_overview(
+    rows: Sequence[ScenarioRow], path: str | os.PathLike[str], *, title: str
+) -> None:
     """Write the page of several scenarios.
 
     Parameters

@@ -142,7 +142,9 @@ def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:
     return Digest(outcome(table, verdicts), remarks(table, shown, roles), judged(verdicts, shown))
 
 
-def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict], system: System | None) -> RunPage:
+def _page(
+    table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict], system: System | None
+) -> RunPage:
     roles, shown = shown_table(table, verdicts)
     drawn, thin = drawn_rows(shown)
     run = make_run(table, verdicts)
@@ -170,7 +172,9 @@ def _page(table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict]
 def shown_table(table: Dataset, verdicts: Sequence[Verdict]) -> tuple[Roles, Dataset]:
     """What the signals stand for, and the table in the units of the page with the derived signals."""
     roles = find_roles(table.data_vars)
-    return roles, add_derived(display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts)
+    return roles, add_derived(
+        display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts
+    )
 
 
 def _title(scenario: Scenario | None, system: System | None) -> str:
@@ -183,7 +187,11 @@ def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
     """What was run, for how long, in which steps and with which engine."""
     facts = []
     if scenario is not None:
-        facts = [("Ship", ", ".join(scenario.parameters)), ("System", scenario.system), ("Scenario", scenario.name)]
+        facts = [
+            ("Ship", ", ".join(scenario.parameters)),
+            ("System", scenario.system),
+            ("Scenario", scenario.name),
+        ]
     time = table["time"].values
     if len(time):
         facts.append(("Simulated", f"{time[-1] - time[0]:g} s"))
@@ -209,7 +217,11 @@ def drawn_rows(shown: Dataset) -> tuple[Dataset, Thinned | None]:
 
 
 def drawn_data(
-    drawn: Dataset, choice: Sequence[str], runs: Sequence[Run], sections: Sequence[Section], events: Iterable[float]
+    drawn: Dataset,
+    choice: Sequence[str],
+    runs: Sequence[Run],
+    sections: Sequence[Section],
+    events: Iterable[float],
 ) -> dict[str, Any]:
     """What the script of the page draws.
 

@@ -70,8 +70,14 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
     motion = _motion(shown, roles, verdicts)
     # A panel for every signal with an expectation that no other panel shows with its limits.
     drawn = {line.signal for panel in motion for line in panel.lines}
-    signals = dict.fromkeys(s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn)
-    expected = [p for s in signals for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))]
+    signals = dict.fromkeys(
+        s for v in verdicts for s in v.expect.signal if s in shown and s not in drawn
+    )
+    expected = [
+        p
+        for s in signals
+        for p in _panel(shown, s, [Line(s, s, palette.SHIP)], bands_of(shown, s, verdicts))
+    ]
     made = {
         "Reference and error": motion,
         "Other expectations": expected,
@@ -84,7 +90,11 @@ def make_sections(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> 
 
 
 def _panel(
-    shown: Dataset, title: str, lines: Iterable[Line], bands: Iterable[Band] = (), states: bool = False
+    shown: Dataset,
+    title: str,
+    lines: Iterable[Line],
+    bands: Iterable[Band] = (),
+    states: bool = False,
 ) -> list[Panel]:
     """The panel with those lines that are there, as a list of one or none."""
     there = tuple(line for line in lines if line.signal in shown)
@@ -95,7 +105,10 @@ def _panel(
 
 def _coloured(labels: Mapping[str | None, str]) -> list[Line]:
     """Lines of equal rank, each in its colour; `labels` maps signals to labels."""
-    return [Line(s, label, palette.CYCLE[k % len(palette.CYCLE)]) for k, (s, label) in enumerate(labels.items())]
+    return [
+        Line(s, label, palette.CYCLE[k % len(palette.CYCLE)])
+        for k, (s, label) in enumerate(labels.items())
+    ]
 
 
 def _first(names: Iterable[str]) -> str | None:
@@ -108,14 +121,28 @@ def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[P
     for axis, title in AXES.items():
         if ship := roles.signal(roles.ship, axis):
             lines = [
-                Line(_first(roles.anywhere(f"{axis}_meas", f"{axis}_1_meas")), "measured", palette.MEASURED, width=1.0),
+                Line(
+                    _first(roles.anywhere(f"{axis}_meas", f"{axis}_1_meas")),
+                    "measured",
+                    palette.MEASURED,
+                    width=1.0,
+                ),
                 Line(_first(roles.anywhere(f"{axis}_set")), "set point", palette.SET_POINT, "dot"),
-                Line(roles.signal(roles.reference, f"{axis}_d"), "reference", palette.REFERENCE, "dash"),
+                Line(
+                    roles.signal(roles.reference, f"{axis}_d"),
+                    "reference",
+                    palette.REFERENCE,
+                    "dash",
+                ),
                 Line(ship, "ship", palette.SHIP, width=2.0),
             ]
             panels += _panel(shown, title, lines, bands_of(shown, ship, verdicts))
             error = [Line(ERRORS[axis], "ship − reference", palette.SHIP)]
-            limits = bands_of(shown, ship, verdicts, minus=desired(roles, axis)) if ERRORS[axis] in shown else ()
+            limits = (
+                bands_of(shown, ship, verdicts, minus=desired(roles, axis))
+                if ERRORS[axis] in shown
+                else ()
+            )
             panels += _panel(shown, f"{title} error", error, limits)
     return panels + _distance(shown, roles, verdicts) + _speeds(shown, roles)
 
@@ -131,7 +158,9 @@ def _distance(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list
 
 def _speeds(shown: Dataset, roles: Roles) -> list[Panel]:
     ahead, sideways, turn = (roles.signal(roles.ship, connector) for connector in "uvr")
-    speeds = _panel(shown, "Speed over ground", _coloured({ahead: "ahead", sideways: "to starboard"}))
+    speeds = _panel(
+        shown, "Speed over ground", _coloured({ahead: "ahead", sideways: "to starboard"})
+    )
     return speeds + _panel(shown, "Rate of turn", _coloured({turn: "to starboard"}))
 
 
@@ -140,24 +169,31 @@ def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
     panels = []
     for axis, title in LOADS.items():
         lines = [
-            Line(roles.signal(roles.ship, f"tau_{source}_{axis}"), source, palette.source(source, k))
+            Line(
+                roles.signal(roles.ship, f"tau_{source}_{axis}"), source, palette.source(source, k)
+            )
             for k, source in enumerate(roles.sources())
         ]
-        asked = Line(_first(roles.anywhere(f"tau_{axis}_cmd")), "commanded", palette.COMMAND, "dot", 1.0)
+        asked = Line(
+            _first(roles.anywhere(f"tau_{axis}_cmd")), "commanded", palette.COMMAND, "dot", 1.0
+        )
         panels += _panel(shown, title, [*lines, asked])
     return panels
 
 
 def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     """Thrust commanded and delivered per thruster; angles, speeds, power and limits of all."""
-    panels, units = [], find_units(shown.data_vars, start_values(shown))
+    panels = []
+    units = find_units(shown.data_vars, start_values(shown))
     for unit in units:
         lines = [
             Line(unit.thrust_command, "commanded", palette.COMMAND, "dot"),
             Line(unit.thrust, "delivered", palette.SHIP),
         ]
         panels += [
-            replace(panel, zones=thrust_zones(shown, [line.signal for line in panel.lines], unit.limits))
+            replace(
+                panel, zones=thrust_zones(shown, [line.signal for line in panel.lines], unit.limits)
+            )
             for panel in _panel(shown, f"Thrust, {unit.name}", lines)
         ]
     panels += _azimuths(shown, units)
@@ -166,9 +202,13 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
         lines = _coloured({roles.signal(unit, "rpm"): unit for unit in units})
         panels += _panel(shown, f"Shaft speed, {', '.join(units)}", lines)
     for quantity, title in {"power": "Power", "torque": "Torque"}.items():
-        panels += _panel(shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters}))
+        panels += _panel(
+            shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters})
+        )
     states: dict[str | None, str] = {
-        signal: f"{c} {what}" for what in ("saturated", "failed") for c, signal in roles.flagged(what).items()
+        signal: f"{c} {what}"
+        for what in ("saturated", "failed")
+        for c, signal in roles.flagged(what).items()
     }
     return panels + _panel(shown, "At a limit, failed", _coloured(states), states=True)
 
@@ -177,9 +217,14 @@ def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
     """Angles: of all units in one panel where no sector, or the same, is forbidden to them; else of each in its own."""
     turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
     alike = len({unit.sectors for unit in turning}) < 2
-    groups = [("Azimuth", turning)] if alike else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
+    groups = (
+        [("Azimuth", turning)] if alike else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
+    )
     return [
-        replace(panel, zones=angle_zones(shown, [line.signal for line in panel.lines], members[0].sectors))
+        replace(
+            panel,
+            zones=angle_zones(shown, [line.signal for line in panel.lines], members[0].sectors),
+        )
         for title, members in groups
         for panel in _panel(shown, title, _angles(members))
     ]
@@ -188,13 +233,21 @@ def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
 def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
     """What the commands miss of the request, and what they take."""
     slack = {axis: roles.anywhere(f"slack_{axis}") for axis in LOADS}
-    forces = _coloured({_first(slack[axis]): title for axis, title in (("X", "forward"), ("Y", "to starboard"))})
+    forces = _coloured(
+        {_first(slack[axis]): title for axis, title in (("X", "forward"), ("Y", "to starboard"))}
+    )
     panels = _panel(shown, "Force missed by the allocator", forces)
-    panels += _panel(shown, "Yaw moment missed by the allocator", _coloured({_first(slack["N"]): "clockwise"}))
+    panels += _panel(
+        shown, "Yaw moment missed by the allocator", _coloured({_first(slack["N"]): "clockwise"})
+    )
     power = {_first(roles.anywhere("thruster_power")): "all thrusters"}
     panels += _panel(shown, "Power of the thrusters, estimated by the allocator", _coloured(power))
-    times = [name for name in roles.anywhere("solve_time") if name in shown and shown[name].values.any()]
-    return panels + _panel(shown, "Time of an allocation", _coloured(dict.fromkeys(times, "by the clock")))
+    times = [
+        name for name in roles.anywhere("solve_time") if name in shown and shown[name].values.any()
+    ]
+    return panels + _panel(
+        shown, "Time of an allocation", _coloured(dict.fromkeys(times, "by the clock"))
+    )
 
 
 def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
@@ -222,6 +275,10 @@ def _environment(shown: Dataset, roles: Roles) -> list[Panel]:
             ("mean at sea" if roles.harbour else "mean", palette.INK, "dash"),
         ]
         lines = [Line(s, *look) for s, look in zip(signals, looks, strict=False)]
-        panels += _panel(shown, title, [Line(lines[0].signal, "current", palette.BLUE)] if len(lines) == 1 else lines)
+        panels += _panel(
+            shown,
+            title,
+            [Line(lines[0].signal, "current", palette.BLUE)] if len(lines) == 1 else lines,
+        )
     waves = {at("elevation"): "surface"}
     return panels + _panel(shown, "Waves", _coloured(waves))

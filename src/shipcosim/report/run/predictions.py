@@ -40,7 +40,13 @@ UNITS = {
     "learned": "1",
 }
 """Columns of the table of predictions, with their units."""
-SUMMARISED = ("error_north", "error_east", "error_heading", "in_position_region", "in_heading_region")
+SUMMARISED = (
+    "error_north",
+    "error_east",
+    "error_heading",
+    "in_position_region",
+    "in_heading_region",
+)
 
 
 class PredictionSummary(NamedTuple):
@@ -110,13 +116,20 @@ def make_predictions(table: Dataset) -> pandas.DataFrame:
     if roles.signal(roles.ship, "x") is not None:
         for component, horizons in find_predictors(roles).items():
             rows = first_rows(table, component)
-            parts += [_at_horizon(table.isel(time=rows), table, roles, component, end) for end in horizons]
-    columns = {name: np.concatenate([part[name] for part in parts]) if parts else np.zeros(0) for name in UNITS}
+            parts += [
+                _at_horizon(table.isel(time=rows), table, roles, component, end) for end in horizons
+            ]
+    columns = {
+        name: np.concatenate([part[name] for part in parts]) if parts else np.zeros(0)
+        for name in UNITS
+    }
     frame = pandas.DataFrame(columns)
     return frame.sort_values(["component", "time", "horizon"], kind="stable", ignore_index=True)
 
 
-def _at_horizon(made: Dataset, table: Dataset, roles: Roles, component: str, horizon: int) -> dict[str, NDArray]:
+def _at_horizon(
+    made: Dataset, table: Dataset, roles: Roles, component: str, horizon: int
+) -> dict[str, NDArray]:
     """Columns of the predictions of one component at one horizon."""
 
     def read(connector):
@@ -128,7 +141,8 @@ def _at_horizon(made: Dataset, table: Dataset, roles: Roles, component: str, hor
     true = _truth(table, roles, time + horizon)
     off = {axis: place[axis] - true[axis] for axis in place}
     off["psi"] = wrap_series(off["psi"], 2.0 * np.pi)
-    circle, width = read(f"position_region_{horizon}"), read(f"heading_region_{horizon}")
+    circle = read(f"position_region_{horizon}")
+    width = read(f"heading_region_{horizon}")
     return {
         "time": time,
         "component": np.full(len(time), component, dtype=object),
@@ -182,12 +196,16 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
     found = []
     for component, horizons in find_predictors(find_roles(table.data_vars)).items():
         rows = first_rows(table, component)
-        rows = rows[np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int))]
+        rows = rows[
+            np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int))
+        ]
         made = table.isel(time=rows)
 
         def packed(connector, resolution, made=made, component=component):
             name = join(component, connector)
-            values = made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
+            values = (
+                made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
+            )
             values = np.degrees(unwrap_series(values)) if connector.startswith("psi") else values
             return packed_series(values, max(LEVELS, float(np.ptp(values)) / resolution))
 
@@ -195,9 +213,17 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
             made_at = made[join(component, "predicted_at")].values.astype(float) + shift
             parts = {"north": ("x_", 0.01), "east": ("y_", 0.01), "heading": ("psi_", 0.02)}
             parts |= {"radius": ("position_region_", 0.01)}
-            columns = {what: [packed(f"{stem}{end}", r) for end in horizons] for what, (stem, r) in parts.items()}
+            columns = {
+                what: [packed(f"{stem}{end}", r) for end in horizons]
+                for what, (stem, r) in parts.items()
+            }
             found.append(
-                {"name": component, "made": packed_series(made_at, 1e9), "horizons": list(horizons), **columns}
+                {
+                    "name": component,
+                    "made": packed_series(made_at, 1e9),
+                    "horizons": list(horizons),
+                    **columns,
+                }
             )
     return found
 
@@ -218,7 +244,9 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
     columns = {name: predictions[name].to_numpy() for name in predictions}
     known = np.isfinite(columns["true_x"].astype(float))
     found = []
-    for component, horizon in sorted(set(zip(columns["component"][known], columns["horizon"][known], strict=True))):
+    for component, horizon in sorted(
+        set(zip(columns["component"][known], columns["horizon"][known], strict=True))
+    ):
         of = known & (columns["component"] == component) & (columns["horizon"] == horizon)
         north, east, heading, place, width = (columns[name][of] for name in SUMMARISED)
         found.append(
@@ -251,7 +279,9 @@ def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, s
 
 
 def _shares(shares: Mapping[str, float]) -> str:
-    said = [f"{100.0 * share:.0f} % of {what}" for what, share in shares.items() if np.isfinite(share)]
+    said = [
+        f"{100.0 * share:.0f} % of {what}" for what, share in shares.items() if np.isfinite(share)
+    ]
     return f"{' and '.join(said)} within the regions" if said else "no regions"
 
 
@@ -263,5 +293,7 @@ def write_predictions(predictions: pandas.DataFrame, path: str | os.PathLike[str
     ShipcosimError
         If the file cannot be written.
     """
-    named = predictions.rename(columns={name: f"{name} [{unit}]" for name, unit in UNITS.items() if unit})
+    named = predictions.rename(
+        columns={name: f"{name} [{unit}]" for name, unit in UNITS.items() if unit}
+    )
     write_file(path, named.to_csv(index=False, lineterminator="\n").encode())

@@ -50,7 +50,11 @@ def _not_finite(shown: Dataset) -> list[str]:
     }
     names = sorted(begin, key=begin.__getitem__)
     others = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return [f"Not finite from {begin[names[0]]:g} s on: {', '.join(names[:3])}{others}."] if names else []
+    return (
+        [f"Not finite from {begin[names[0]]:g} s on: {', '.join(names[:3])}{others}."]
+        if names
+        else []
+    )
 
 
 def _failures(shown: Dataset, roles: Roles) -> list[str]:
@@ -59,19 +63,26 @@ def _failures(shown: Dataset, roles: Roles) -> list[str]:
     for component, signal in roles.flagged("failed").items():
         if signal in shown and (failed := shown[signal].values > 0.5).any():
             begin.setdefault(shown["time"].values[np.argmax(failed)], []).append(component)
-    return [f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()]
+    return [
+        f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()
+    ]
 
 
 def _rejected(shown: Dataset, roles: Roles) -> list[str]:
     """Sensors that a controller did not believe, and when first."""
     said = []
     for component, connectors in roles.connectors.items():
-        for connector in (c for c in connectors if c.endswith("_rejected") and join(component, c) in shown):
+        for connector in (
+            c for c in connectors if c.endswith("_rejected") and join(component, c) in shown
+        ):
             flags = shown[join(component, connector)].values > 0.5
             if flags.any():
-                first, share = shown["time"].values[np.argmax(flags)], 100.0 * flags.mean()
+                first = shown["time"].values[np.argmax(flags)]
+                share = 100.0 * flags.mean()
                 what = connector.removesuffix("_rejected").replace("_", " ")
-                said.append(f"{component} rejects {what} from {first:g} s on, in {share:.0f} % of the run.")
+                said.append(
+                    f"{component} rejects {what} from {first:g} s on, in {share:.0f} % of the run."
+                )
     return said
 
 
@@ -82,7 +93,9 @@ def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
         times = shown[signal].values if signal in shown else np.zeros(1)
         if times.max() > 0.0:
             until = shown["time"].values[np.argmax(times)]
-            said.append(f"{component} has no trusted position for up to {times.max():.0f} s, until {until:g} s.")
+            said.append(
+                f"{component} has no trusted position for up to {times.max():.0f} s, until {until:g} s."
+            )
     return said
 
 
@@ -90,7 +103,9 @@ def _alarms(shown: Dataset, roles: Roles) -> list[str]:
     """Alarms that came on, and when: signals that end in _alarm or _faulty."""
     begin: dict[float, list[str]] = {}
     for component, connectors in roles.connectors.items():
-        for signal in (join(component, name) for name in connectors if name.endswith(("_alarm", "_faulty"))):
+        for signal in (
+            join(component, name) for name in connectors if name.endswith(("_alarm", "_faulty"))
+        ):
             if signal in shown and (on := shown[signal].values > 0.5).any():
                 begin.setdefault(shown["time"].values[np.argmax(on)], []).append(signal)
     return [f"Alarm from {time:g} s on: {', '.join(begin[time])}." for time in sorted(begin)]
@@ -106,7 +121,9 @@ def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
     ends = np.searchsorted(time, time[starts] + STRETCH, side="right") - 1
     error = shown[FROM_REFERENCE].values
     shares = {c: _share(flags, starts, ends) for c, flags in limits.items()}
-    lost = (error[ends] - error[starts] > GROWTH) & (np.max(list(shares.values()), axis=0) > AT_LIMIT)
+    lost = (error[ends] - error[starts] > GROWTH) & (
+        np.max(list(shares.values()), axis=0) > AT_LIMIT
+    )
     if not lost.any():
         return []
     k = int(np.argmax(lost))

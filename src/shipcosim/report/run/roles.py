@@ -45,7 +45,12 @@ class Roles:
 
     def anywhere(self, *connectors: str) -> list[str]:
         """Names of all signals whose connector is one of these, in the order asked for."""
-        return [join(component, c) for c in connectors for component, has in self.connectors.items() if c in has]
+        return [
+            join(component, c)
+            for c in connectors
+            for component, has in self.connectors.items()
+            if c in has
+        ]
 
     def command(self, unit: str, quantity: str) -> str | None:
         """Signal of a thruster's command: its own input, or the allocator's output of its name."""
@@ -55,11 +60,19 @@ class Roles:
 
     def allocators(self) -> list[str]:
         """Components that command several thrusters."""
-        return [c for c, has in self.connectors.items() if sum("thrust_cmd" in connector for connector in has) > 1]
+        return [
+            c
+            for c, has in self.connectors.items()
+            if sum("thrust_cmd" in connector for connector in has) > 1
+        ]
 
     def flagged(self, connector: str) -> dict[str, str]:
         """Signals of this connector by their component, of all components that have it: who says 'saturated'."""
-        return {component: join(component, connector) for component, has in self.connectors.items() if connector in has}
+        return {
+            component: join(component, connector)
+            for component, has in self.connectors.items()
+            if connector in has
+        }
 
     def sources(self) -> list[str]:
         """Names of what puts load on the ship: wind, drift, hull, thrusters, in the table's order."""
@@ -101,12 +114,18 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     ships = sorted(having("x", "y", "psi"), key=lambda c: _likeness(c, connectors[c]), reverse=True)
     winds = having("wind_speed_mean") or having("wind_north", "wind_east")
     environment = next(iter([c for c in winds if c not in ships] or winds), None)
-    local = [c for c in having("wind_north", "current_north") if c not in (environment, *having("predicted_at"))]
+    local = [
+        c
+        for c in having("wind_north", "current_north")
+        if c not in (environment, *having("predicted_at"))
+    ]
     return Roles(
         ship=next(iter(ships), None),
         reference=next(iter(having("x_d", "y_d", "psi_d")), None),
         thrusters=tuple(
-            c for c in having("thrust") if {"rpm", "power", "torque"} & set(connectors[c]) or c in having(*FORCE)
+            c
+            for c in having("thrust")
+            if {"rpm", "power", "torque"} & set(connectors[c]) or c in having(*FORCE)
         ),
         environment=environment,
         harbour=next((c for c in local if c not in ships), None),
@@ -116,4 +135,6 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
 
 def _likeness(component: str, connectors: Sequence[str]) -> tuple[bool, int]:
     """How much like a ship: sensors and predictors have x, y and psi among their inputs too."""
-    return component.endswith(("vessel", "ship", "hull")), sum(1 for c in connectors if LOAD.fullmatch(c))
+    return component.endswith(("vessel", "ship", "hull")), sum(
+        1 for c in connectors if LOAD.fullmatch(c)
+    )

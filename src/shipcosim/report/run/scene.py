@@ -18,9 +18,12 @@ from shipcosim.report.theme.display import is_constant
 from shipcosim.report.theme.packing import LEVELS, packed_series
 from shipcosim.scenario import Verdict
 
-MOST_ROWS = 2400  # of the scene's table: at 64 times real time half an hour of them passes in a minute
+MOST_ROWS = (
+    2400  # of the scene's table: at 64 times real time half an hour of them passes in a minute
+)
 EXACT = 1e9  # steps of the time axis
-METRES, DEGREES = 0.01, 0.02  # what a screen can tell apart
+METRES = 0.01  # what a screen can tell apart
+DEGREES = 0.02
 FLOWS = {"wind": ("from", -1.0), "current": ("to", 1.0)}  # named by where it comes from or goes to
 
 
@@ -74,11 +77,15 @@ class _Columns:
         """Pack a signal, unless it is not there, measures something else or is no number all along."""
         if name is None or name not in self.table:
             return None
-        values = self.table[name].values.astype(float) if unit == "" else in_unit(self.table, name, unit)
+        values = (
+            self.table[name].values.astype(float) if unit == "" else in_unit(self.table, name, unit)
+        )
         if values is None or not np.isfinite(values).any():
             return None
         if unit and not self.table[name].attrs.get("units"):
-            self.without_unit.append(f"{name} in {'rad' if unit == 'deg' else unit.removeprefix('k')}")
+            self.without_unit.append(
+                f"{name} in {'rad' if unit == 'deg' else unit.removeprefix('k')}"
+            )
         self.put(name, unwrap_degrees(values) if unit == "deg" else values, resolution)
         return name
 
@@ -88,7 +95,9 @@ class _Columns:
         return name
 
 
-def make_run(table: Dataset, verdicts: Sequence[Verdict] = (), label: str = "", shift: float = 0.0) -> Run | None:
+def make_run(
+    table: Dataset, verdicts: Sequence[Verdict] = (), label: str = "", shift: float = 0.0
+) -> Run | None:
     """The scene of one run; None where nothing in it has a position and a heading.
 
     Parameters
@@ -113,16 +122,26 @@ def make_run(table: Dataset, verdicts: Sequence[Verdict] = (), label: str = "", 
     if not drawn:
         return None
     flows = _flows(table, columns)
-    supposed = [f"{names[0]} north, {names[1]} east, {names[2]} heading" for names in (v.pose for v in vessels)]
+    supposed = [
+        f"{names[0]} north, {names[1]} east, {names[2]} heading"
+        for names in (v.pose for v in vessels)
+    ]
     if columns.without_unit:
-        supposed.append(f"without a unit in the table: {', '.join(dict.fromkeys(columns.without_unit))}")
+        supposed.append(
+            f"without a unit in the table: {', '.join(dict.fromkeys(columns.without_unit))}"
+        )
     return Run(
         label,
         packed_series(time[columns.rows], EXACT),
         columns.packed,
         drawn,
         flows,
-        [circle for verdict in verdicts for vessel in vessels for circle in _circle(verdict, vessel, shift)],
+        [
+            circle
+            for verdict in verdicts
+            for vessel in vessels
+            for circle in _circle(verdict, vessel, shift)
+        ],
         _watch(table),
         supposed,
         predicted_tracks(table, shift),
@@ -154,13 +173,20 @@ def _rows(count: int) -> NDArray:
 def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
     """What the display needs of a vessel."""
     units = ("m", "m", "deg")
-    pose = [columns.add(n, u, r) for n, u, r in zip(vessel.pose, units, (METRES, METRES, DEGREES), strict=True)]
+    pose = [
+        columns.add(n, u, r)
+        for n, u, r in zip(vessel.pose, units, (METRES, METRES, DEGREES), strict=True)
+    ]
     if None in pose:
         return None
-    north, east, heading = (in_unit(columns.table, n, u) for n, u in zip(vessel.pose, units, strict=True))
+    north, east, heading = (
+        in_unit(columns.table, n, u) for n, u in zip(vessel.pose, units, strict=True)
+    )
     assert north is not None and east is not None and heading is not None
     shown = columns.rows
-    known = shown[np.isfinite(north[shown]) & np.isfinite(east[shown]) & np.isfinite(heading[shown])]
+    known = shown[
+        np.isfinite(north[shown]) & np.isfinite(east[shown]) & np.isfinite(heading[shown])
+    ]
     if not len(known):
         return None
     size = vessel.size or symbol_size(north[known], east[known])
@@ -169,20 +195,29 @@ def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
         "name": vessel.name,
         "pose": pose,
         "velocity": [
-            columns.add(name, unit) for name, unit in zip(vessel.velocity, ("m/s", "m/s", "deg/s"), strict=True)
+            columns.add(name, unit)
+            for name, unit in zip(vessel.velocity, ("m/s", "m/s", "deg/s"), strict=True)
         ],
-        "aims": {word: made for word, names in vessel.aims.items() if (made := _aim(names, columns))},
+        "aims": {
+            word: made for word, names in vessel.aims.items() if (made := _aim(names, columns))
+        },
         "size": list(size),
         "to_scale": vessel.size is not None,
         "outline": [np.round(side, 3).tolist() for side in hull_outline(*size)],
         "way": [np.round(values[where], 2).tolist() for values in (north, east, heading)],
-        "units": [made for unit in vessel.units if (made := _unit(unit, columns, vessel.size is not None))],
+        "units": [
+            made for unit in vessel.units if (made := _unit(unit, columns, vessel.size is not None))
+        ],
     }
 
 
 def _aim(names: tuple[str, str, str | None], columns: _Columns) -> list[str | None] | None:
     north, east = (columns.add(name, "m", METRES) for name in names[:2])
-    return None if north is None or east is None else [north, east, columns.add(names[2], "deg", DEGREES)]
+    return (
+        None
+        if north is None or east is None
+        else [north, east, columns.add(names[2], "deg", DEGREES)]
+    )
 
 
 def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> dict[str, Any] | None:
@@ -202,7 +237,10 @@ def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> dict[str, A
         "limits": None if unit.limits is None else [limit / 1000.0 for limit in unit.limits],
         "sectors": [[round(degrees(angle), 3) for angle in sector] for sector in unit.sectors],
         "largest": float(np.nanmax(np.abs(values))) if values is not None else 0.0,
-        **{flag: columns.add(getattr(unit, flag), "") for flag in ("saturated", "failed", "available")},
+        **{
+            flag: columns.add(getattr(unit, flag), "")
+            for flag in ("saturated", "failed", "available")
+        },
     }
 
 
@@ -227,16 +265,24 @@ def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
     for what, (sense, sign) in FLOWS.items():
         values = _velocity(table, roles.anywhere, what, sense, sign)
         if values is not None and np.nanmax(np.hypot(*values), initial=0.0) > 0.0:
-            names = [columns.put(f"{what} {way}", v) for way, v in zip(("north", "east"), values, strict=True)]
+            names = [
+                columns.put(f"{what} {way}", v)
+                for way, v in zip(("north", "east"), values, strict=True)
+            ]
             found.append({"what": what, "sense": sense, "velocity": names})
-    heights, sources = (_first_in(table, roles.anywhere(f"wave_{part}")) for part in ("height", "from"))
-    height, source = columns.add(heights, "m"), columns.add(sources, "deg")
+    heights, sources = (
+        _first_in(table, roles.anywhere(f"wave_{part}")) for part in ("height", "from")
+    )
+    height = columns.add(heights, "m")
+    source = columns.add(sources, "deg")
     if height is not None and source is not None and np.nanmax(table[height].values) > 0.0:
         found.append({"what": "waves", "sense": "from", "height": height, "direction": source})
     return found
 
 
-def _velocity(table: Dataset, anywhere: Any, what: str, sense: str, sign: float) -> list[NDArray] | None:
+def _velocity(
+    table: Dataset, anywhere: Any, what: str, sense: str, sign: float
+) -> list[NDArray] | None:
     """Velocity north and east of what flows: by its components, else by speed and direction. [m/s]"""
     parts = [_first_in(table, anywhere(f"{what}_{way}")) for way in ("north", "east")]
     read = [None if name is None else in_unit(table, name, "m/s") for name in parts]
@@ -245,7 +291,11 @@ def _velocity(table: Dataset, anywhere: Any, what: str, sense: str, sign: float)
     named = [_first_in(table, anywhere(f"{what}_{part}")) for part in ("speed", sense)]
     speed = None if named[0] is None else in_unit(table, named[0], "m/s")
     angle = None if named[1] is None else in_unit(table, named[1], "rad")
-    return None if speed is None or angle is None else [sign * speed * np.cos(angle), sign * speed * np.sin(angle)]
+    return (
+        None
+        if speed is None or angle is None
+        else [sign * speed * np.cos(angle), sign * speed * np.sin(angle)]
+    )
 
 
 def _first_in(table: Dataset, names: Iterable[str]) -> str | None:

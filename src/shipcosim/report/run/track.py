@@ -16,7 +16,9 @@ HULL = (  # outline over length and breadth from amidships, starboard side from 
     (0.45, 0.17),
     (0.5, 0.0),
 )
-SPACING, TURN, MOST = 0.3, 20.0, 40  # outlines: apart in lengths, turned in deg, at most so many
+SPACING = 0.3  # outlines: apart in lengths, turned in deg, at most so many
+TURN = 20.0
+MOST = 40
 SYMBOL = 0.08  # length of the outline of a ship of unknown size, over the extent of the track
 SLENDERNESS = 3.5  # length over breadth of that outline
 
@@ -43,10 +45,13 @@ def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
     return closed[:, 0], closed[:, 1]
 
 
-def placed(outline: tuple[NDArray, NDArray], x: float, y: float, psi: float) -> tuple[NDArray, NDArray]:
+def placed(
+    outline: tuple[NDArray, NDArray], x: float, y: float, psi: float
+) -> tuple[NDArray, NDArray]:
     """An outline on the chart: east and north of its corners. [m, m]"""
     forward, starboard = outline
-    c, s = np.cos(np.radians(psi)), np.sin(np.radians(psi))
+    c = np.cos(np.radians(psi))
+    s = np.sin(np.radians(psi))
     return y + s * forward + c * starboard, x + c * forward - s * starboard
 
 
@@ -64,16 +69,21 @@ def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[in
     -------
     list of int
     """
-    spacing, turn = SPACING * length, TURN
+    spacing = SPACING * length
+    turn = TURN
     while True:
         rows = [0]
         for k in range(1, len(x)):
             last = rows[-1]
-            if np.hypot(x[k] - x[last], y[k] - y[last]) >= spacing or abs(psi[k] - psi[last]) >= turn:
+            if (
+                np.hypot(x[k] - x[last], y[k] - y[last]) >= spacing
+                or abs(psi[k] - psi[last]) >= turn
+            ):
                 rows.append(k)
         if len(rows) <= MOST:
             return rows if rows[-1] == len(x) - 1 else [*rows, len(x) - 1]
-        spacing, turn = 1.5 * spacing, 1.5 * turn
+        spacing = 1.5 * spacing
+        turn = 1.5 * turn
 
 
 def symbol_size(x: NDArray, y: NDArray) -> tuple[float, float]:

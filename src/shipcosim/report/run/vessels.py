@@ -15,9 +15,16 @@ from shipcosim.models.core.tables import columns
 from shipcosim.report.run.roles import find_roles, join
 from shipcosim.series import conversion
 
-AXES = {"x": ("x", "north", "northing"), "y": ("y", "east", "easting"), "psi": ("psi", "heading", "yaw", "hdg")}
+AXES = {
+    "x": ("x", "north", "northing"),
+    "y": ("y", "east", "easting"),
+    "psi": ("psi", "heading", "yaw", "hdg"),
+}
 AROUND = ("", "position", "pos", "displacement", "ned")  # words that may stand beside an axis
-AIMS = {"set point": ("set", "setpoint", "sp"), "reference": ("d", "ref", "reference", "des", "desired")}
+AIMS = {
+    "set point": ("set", "setpoint", "sp"),
+    "reference": ("d", "ref", "reference", "des", "desired"),
+}
 SAME_PLACE = 3.0  # m: what stays nearer to a vessel all along is the same vessel, as a sensor or a predictor sees it
 COMMON_WORDS = {"vessel", "ship", "hull", "boat", "model", "fmu"}
 Pose = tuple[str, str, str]
@@ -95,9 +102,15 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
     -------
     tuple of Vessel
     """
-    names = [str(name) for name, v in table.data_vars.items() if v.dtype.kind in "fiub" and v.dims == ("time",)]
+    names = [
+        str(name)
+        for name, v in table.data_vars.items()
+        if v.dtype.kind in "fiub" and v.dims == ("time",)
+    ]
     main = find_roles(names).ship
-    poses = sorted(_poses(table, names), key=lambda pose: (_owner(pose) != main, -_loads(pose, names)))
+    poses = sorted(
+        _poses(table, names), key=lambda pose: (_owner(pose) != main, -_loads(pose, names))
+    )
     apart: list[Pose] = []
     moving = [pose for pose in poses if _moves(table, pose) or _says_ship(pose)]
     for pose in moving or poses[:1]:
@@ -151,7 +164,9 @@ def _says_ship(pose: Pose) -> bool:
 
 def _moves(table: Dataset, pose: Pose) -> bool:
     """Whether any of it changes: an input that nothing is connected to never does."""
-    return any(np.ptp(table[name].values.astype(float)) > 0.0 for name in pose if table.sizes["time"])
+    return any(
+        np.ptp(table[name].values.astype(float)) > 0.0 for name in pose if table.sizes["time"]
+    )
 
 
 def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
@@ -179,14 +194,19 @@ def _nearest(north: str, headings: list[str]) -> str | None:
     path = north.split(".")[:-1]
     shared = {name: _shared(path, name.split(".")[:-1]) for name in headings}
     best = max(headings, key=lambda name: (shared[name], -name.count(".")), default=None)
-    if best is None or (best.split(".")[:-1] != path and (shared[best] == 0 or _plain(north.split(".")[-1]) == "x")):
+    if best is None or (
+        best.split(".")[:-1] != path and (shared[best] == 0 or _plain(north.split(".")[-1]) == "x")
+    ):
         return None
     return best
 
 
 def _shared(path: list[str], other: list[str]) -> int:
     """How many steps two paths go together."""
-    return next((k for k, (a, b) in enumerate(zip(path, other, strict=False)) if a != b), min(len(path), len(other)))
+    return next(
+        (k for k, (a, b) in enumerate(zip(path, other, strict=False)) if a != b),
+        min(len(path), len(other)),
+    )
 
 
 def _loads(pose: Pose, names: list[str]) -> int:
@@ -200,7 +220,10 @@ def _owner(pose: Pose) -> str:
 
 def _apart(table: Dataset, pose: Pose, other: Pose) -> bool:
     """Whether two poses are of two vessels: no two lie in the same place."""
-    gaps = [(in_unit(table, a, "m"), in_unit(table, b, "m")) for a, b in zip(pose[:2], other[:2], strict=True)]
+    gaps = [
+        (in_unit(table, a, "m"), in_unit(table, b, "m"))
+        for a, b in zip(pose[:2], other[:2], strict=True)
+    ]
     distance = np.hypot(*(np.subtract(a, b) for a, b in gaps if a is not None and b is not None))
     distance = distance[np.isfinite(distance)]
     return bool(len(distance) and np.max(distance) > 0.0 and np.median(distance) > SAME_PLACE)
@@ -208,7 +231,10 @@ def _apart(table: Dataset, pose: Pose, other: Pose) -> bool:
 
 def _words(name: str) -> set[str]:
     """Words and numbers of a component's name: of `fleet.tug_2` fleet, tug and 2."""
-    return set(re.findall(r"[a-z]+|\d+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower())) - COMMON_WORDS
+    return (
+        set(re.findall(r"[a-z]+|\d+", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).lower()))
+        - COMMON_WORDS
+    )
 
 
 def _belonging(pose: Pose, poses: list[Pose], names: list[str]) -> list[str]:
@@ -233,14 +259,17 @@ def _belonging(pose: Pose, poses: list[Pose], names: list[str]) -> list[str]:
 def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
     owner = _owner(pose)
     length, breadth = (
-        _first_number(known, owner, words) for words in (("length", "length_pp", "lpp"), ("breadth", "beam"))
+        _first_number(known, owner, words)
+        for words in (("length", "length_pp", "lpp"), ("breadth", "beam"))
     )
     return Vessel(
         name=owner or "ship",
         pose=pose,
         velocity=tuple(_there(join(owner, axis), names) for axis in "uvr"),
         aims=_aims(pose, names),
-        size=None if length is None or breadth is None or min(length, breadth) <= 0.0 else (length, breadth),
+        size=None
+        if length is None or breadth is None or min(length, breadth) <= 0.0
+        else (length, breadth),
         units=find_units(names, known),
     )
 
@@ -250,7 +279,11 @@ def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]
     found = {}
     for aim, endings in AIMS.items():
         north = next((name for name in names if _is(name, "x", endings) and name != pose[0]), None)
-        beside = [n for n in names if north is not None and n.rpartition(".")[0] == north.rpartition(".")[0]]
+        beside = [
+            n
+            for n in names
+            if north is not None and n.rpartition(".")[0] == north.rpartition(".")[0]
+        ]
         east = next((name for name in beside if _is(name, "y", endings)), None)
         heading = next((name for name in beside if _is(name, "psi", endings)), None)
         if north is not None and east is not None:
@@ -287,7 +320,9 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
             available=roles.signal(unit, "available"),
             place=_place(unit, known),
             limits=_limits(unit, known),
-            sectors=_sectors(unit, roles.signal(unit, "azimuth"), _place(unit, known), roles.allocators(), known),
+            sectors=_sectors(
+                unit, roles.signal(unit, "azimuth"), _place(unit, known), roles.allocators(), known
+            ),
         )
         for unit in roles.thrusters
     )
@@ -295,8 +330,12 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
 
 def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
     """Where a thruster is, forward and to starboard; on the centre line where it has a place forward alone. [m, m]"""
-    forward = _first_number(known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x"))
-    starboard = _first_number(known, unit, ("y", "position_y", "y_position", "rudder_y", "propeller_y"))
+    forward = _first_number(
+        known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x")
+    )
+    starboard = _first_number(
+        known, unit, ("y", "position_y", "y_position", "rudder_y", "propeller_y")
+    )
     return None if forward is None else (forward, starboard or 0.0)
 
 
@@ -332,11 +371,21 @@ def _sectors(
     if azimuth is None:
         return ()
     for allocator in allocators:
-        for before, after in ((f"{unit.rpartition('.')[2]}_", ""), *(("", f"_{n}") for n in range(1, 10))):
+        for before, after in (
+            (f"{unit.rpartition('.')[2]}_", ""),
+            *(("", f"_{n}") for n in range(1, 10)),
+        ):
             names = (f"{before}azimuth_{end}{after}" for end in ("first", "last"))
             first, last = (_first_number(known, allocator, (name,)) for name in names)
-            there = before or place == tuple(_first_number(known, allocator, (axis + after,)) for axis in "xy")
-            if there and first is not None and last is not None and 0.0 < last - first < 2.0 * np.pi:
+            there = before or place == tuple(
+                _first_number(known, allocator, (axis + after,)) for axis in "xy"
+            )
+            if (
+                there
+                and first is not None
+                and last is not None
+                and 0.0 < last - first < 2.0 * np.pi
+            ):
                 return ((last, first + 2.0 * np.pi),)
     return ()
 

@@ -42,14 +42,34 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
     found = []
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
-            means = [roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)]
+            means = [
+                roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)
+            ]
             known = roles.harbour is None and None not in means
             size, angle = means if known else (f"{what} speed", f"{what} {sense}")
             if np.nanmax(shown[size].values) > 0.0:
-                found.append(Flow(what, _span(shown[size].values), "m/s", _mean_direction(shown[angle].values), sense))
-    height, source = (roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from"))
+                found.append(
+                    Flow(
+                        what,
+                        _span(shown[size].values),
+                        "m/s",
+                        _mean_direction(shown[angle].values),
+                        sense,
+                    )
+                )
+    height, source = (
+        roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from")
+    )
     if height in shown and source in shown and np.nanmax(shown[height].values) > 0.0:
-        found.append(Flow("waves", _span(shown[height].values), "m", _mean_direction(shown[source].values), "from"))
+        found.append(
+            Flow(
+                "waves",
+                _span(shown[height].values),
+                "m",
+                _mean_direction(shown[source].values),
+                "from",
+            )
+        )
     return tuple(found)
 
 
@@ -61,4 +81,6 @@ def _span(values: NDArray) -> str:
 
 def _mean_direction(degrees: NDArray) -> float:
     angle = np.radians(degrees)
-    return float(np.degrees(np.arctan2(np.nanmean(np.sin(angle)), np.nanmean(np.cos(angle)))) % 360.0)
+    return float(
+        np.degrees(np.arctan2(np.nanmean(np.sin(angle)), np.nanmean(np.cos(angle)))) % 360.0
+    )

@@ -19,7 +19,9 @@ class Zone:
     upper: float
 
 
-def thrust_zones(shown: Dataset, signals: Sequence[str | None], limits: tuple[float, float] | None) -> tuple[Zone, ...]:
+def thrust_zones(
+    shown: Dataset, signals: Sequence[str | None], limits: tuple[float, float] | None
+) -> tuple[Zone, ...]:
     """Zones beyond the limits of a thruster, of those limits that the curves come near.
 
     Parameters
@@ -70,9 +72,14 @@ def angle_zones(
     span = _span(shown, signals)
     if span is None:
         return ()
-    found, least, most = [], span[0] - BESIDE, span[1] + BESIDE
+    found = []
+    least = span[0] - BESIDE
+    most = span[1] + BESIDE
     for start, end in ((degrees(a), degrees(b)) for a, b in sectors):
-        turns = [360.0 * turn for turn in range(ceil((least - end) / 360.0), floor((most - start) / 360.0) + 1)]
+        turns = [
+            360.0 * turn
+            for turn in range(ceil((least - end) / 360.0), floor((most - start) / 360.0) + 1)
+        ]
         found += [Zone(max(start + turn, least), min(end + turn, most)) for turn in turns]
     return tuple(found)
 

@@ -30,16 +30,16 @@ def track_figure(found: SeaTrialStudy, before: list[NDArray], after: list[NDArra
             across, ahead = _turned(motion)
             # True if a trace of that name is among them.
             is_drawn = any(trace["name"] == name for trace in traces)
-            drawn = line(name, across, ahead, colour, width=width, legendgroup=name, showlegend=not is_drawn)
+            drawn = line(
+                name, across, ahead, colour, width=width, legendgroup=name, showlegend=not is_drawn
+            )
             traces.append(drawn | {"hovertemplate": f"{_angle(trial)}: {name}", "named": False})
     layout = {
         "xaxis": {"title": {"text": "to starboard"}},
         "yaxis": {"title": {"text": "ahead"}, "scaleanchor": "x"},
         "hovermode": "closest",
     }
-    note = (
-        "From where the order was given. The measured circles drift with the current; the model sails in still water."
-    )
+    note = "From where the order was given. The measured circles drift with the current; the model sails in still water."
     return Figure("Turning circles", "m", tuple(traces), layout, note, height=520)
 
 
@@ -60,8 +60,10 @@ def _angle(trial: SeaTrial) -> str:
 def _turned(motion: NDArray) -> tuple[NDArray, NDArray]:
     """A track with its first course up: to starboard and ahead. [m]"""
     course = motion[0, 2] + np.arctan2(motion[0, 4], motion[0, 3])
-    north, east = motion[:, 0] - motion[0, 0], motion[:, 1] - motion[0, 1]
-    c, s = np.cos(course), np.sin(course)
+    north = motion[:, 0] - motion[0, 0]
+    east = motion[:, 1] - motion[0, 1]
+    c = np.cos(course)
+    s = np.sin(course)
     return c * east - s * north, c * north + s * east
 
 
@@ -73,17 +75,29 @@ def error_figure(found: SeaTrialStudy) -> Figure:
     if found.best.hypotheses:
         errors["with the causes"] = found.after - evidence.measured
     kinds = dict.fromkeys(trial.kind for trial in found.trials)
-    places = {f"{_SHORT[kind]}: {name}": rows for kind in kinds for name, rows in places_of(found.trials, kind).items()}
+    places = {
+        f"{_SHORT[kind]}: {name}": rows
+        for kind in kinds
+        for name, rows in places_of(found.trials, kind).items()
+    }
     names = [f"{name} [0.01 rad]" if name.endswith("drift") else name for name in places][::-1]
 
     def sizes(off):
-        return rounded([100.0 * np.sqrt(np.mean(np.square(off[rows]))) for rows in places.values()], 3)[::-1]
+        return rounded(
+            [100.0 * np.sqrt(np.mean(np.square(off[rows]))) for rows in places.values()], 3
+        )[::-1]
 
     traces = []
     for (name, off), colour in zip(errors.items(), (palette.ORANGE, palette.BLUE), strict=False):
         drawn = {"type": "bar", "orientation": "h", "name": name, "x": sizes(off), "y": names}
         traces.append(drawn | {"marker": {"color": colour}, "hovertemplate": "%{x:.3~g} %"})
-    repeats = {"type": "scatter", "mode": "markers", "name": "how well trials repeat", "x": sizes(spread), "y": names}
+    repeats = {
+        "type": "scatter",
+        "mode": "markers",
+        "name": "how well trials repeat",
+        "x": sizes(spread),
+        "y": names,
+    }
     look = {"color": palette.INK, "symbol": "line-ns-open", "size": 12}
     traces.append(repeats | {"marker": look, "hovertemplate": "%{x:.3~g} %"})
     layout = {
@@ -94,7 +108,9 @@ def error_figure(found: SeaTrialStudy) -> Figure:
         "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.1},
     }
     note = "Root mean square over all trials of the kind. Upright strokes: standard deviation with which trials repeat."
-    return Figure("Errors of the features", "%", tuple(traces), layout, note, 110 + _ROW * len(names))
+    return Figure(
+        "Errors of the features", "%", tuple(traces), layout, note, 110 + _ROW * len(names)
+    )
 
 
 def places_of(trials: tuple[SeaTrial, ...], kind: str) -> dict[str, list[int]]:
@@ -114,10 +130,20 @@ def separation_figure(found: SeaTrialStudy) -> Figure:
     ranked = found.separations[:_MANOEUVRES][::-1]
     names = [f"{one.manoeuvre} ({one.minutes:.0f} min)" for one in ranked]
     traces = []
-    for (pair, (a, b)), colour in zip(zip(ranked[0].nats, found.pairs, strict=True), palette.CYCLE * 2, strict=False):
+    for (pair, (a, b)), colour in zip(
+        zip(ranked[0].nats, found.pairs, strict=True), palette.CYCLE * 2, strict=False
+    ):
         sizes = rounded([max(one.nats[pair], 0.1) for one in ranked], 3)
-        dots = {"type": "scatter", "mode": "markers", "name": f"{a} / {b}".replace("_", " "), "x": sizes, "y": names}
-        traces.append(dots | {"marker": {"color": colour, "size": 9}, "hovertemplate": "%{x:.3~g} nats"})
+        dots = {
+            "type": "scatter",
+            "mode": "markers",
+            "name": f"{a} / {b}".replace("_", " "),
+            "x": sizes,
+            "y": names,
+        }
+        traces.append(
+            dots | {"marker": {"color": colour, "size": 9}, "hovertemplate": "%{x:.3~g} nats"}
+        )
     layout = {
         "xaxis": {"type": "log", "title": {"text": "nats"}},
         "yaxis": {"automargin": True, "dtick": 1, "tickfont": {"size": 11}},
@@ -126,4 +152,6 @@ def separation_figure(found: SeaTrialStudy) -> Figure:
         "legend": {"orientation": "h", "x": 0.5, "xanchor": "center", "y": -0.18},
     }
     note = "Dotted: from here on a pair counts as told apart. What is below 0.1 is drawn there."
-    return Figure("What manoeuvres would tell", "nats", tuple(traces), layout, note, 140 + _ROW * len(ranked))
+    return Figure(
+        "What manoeuvres would tell", "nats", tuple(traces), layout, note, 140 + _ROW * len(ranked)
+    )

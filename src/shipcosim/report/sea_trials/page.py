@@ -25,7 +25,11 @@ SECTIONS = {
     "judged": "Judged on what was not fitted",
     "next": "What to sail next",
 }
-KEY_FEATURES = {"speed": "steady speed", "rate": "steady rate of turn", "t90": "time to 90° of heading"}
+KEY_FEATURES = {
+    "speed": "steady speed",
+    "rate": "steady rate of turn",
+    "t90": "time to 90° of heading",
+}
 
 
 @dataclass(frozen=True)
@@ -54,7 +58,9 @@ class SeaTrialPage(Page):
     steps: tuple[str, ...]
 
 
-def write_sea_trials(found: SeaTrialStudy, path: str | os.PathLike[str], facts: dict[str, str]) -> None:
+def write_sea_trials(
+    found: SeaTrialStudy, path: str | os.PathLike[str], facts: dict[str, str]
+) -> None:
     """Write the page of sea trials.
 
     Parameters
@@ -70,7 +76,9 @@ def write_sea_trials(found: SeaTrialStudy, path: str | os.PathLike[str], facts: 
     ShipcosimError
         If the file cannot be written.
     """
-    write_file(path, render("sea_trials/templates/sea_trials.html.jinja", _page(found, facts)).encode())
+    write_file(
+        path, render("sea_trials/templates/sea_trials.html.jinja", _page(found, facts)).encode()
+    )
 
 
 def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
@@ -79,14 +87,18 @@ def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     errors = (error_figure(found),)
     manoeuvres = (separation_figure(found),) if found.separations else ()
     counts = Counter(trial.kind for trial in found.trials)
-    facts = facts | {"Trials": ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())}
+    facts = facts | {
+        "Trials": ", ".join(f"{count} {kind}{'s' * (count > 1)}" for kind, count in counts.items())
+    }
     figures = (*tracks, *errors, *manoeuvres)
     there = {"tracks": circles, "judged": bool(found.held_out), "next": bool(found.separations)}
     return SeaTrialPage(
         title="Sea trials",
         facts=tuple(Fact(name, text) for name, text in facts.items()),
         outcome=outcome(found),
-        links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)),
+        links=tuple(
+            Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
+        ),
         data=tuple(figure.drawn for figure in figures),
         key_figures=_key_figures(found),
         figures=figures,
@@ -106,7 +118,11 @@ def _key_figures(found: SeaTrialStudy) -> tuple[KeyFigure, ...]:
     figures = []
     for name, meaning in KEY_FEATURES.items():
         key = f"turning circle: {name}"
-        both = [(one.before[key], one.after[key]) for one in found.held_out.values() if key in one.before]
+        both = [
+            (one.before[key], one.after[key])
+            for one in found.held_out.values()
+            if key in one.before
+        ]
         if both:
             before, after = (max(values) for values in zip(*both, strict=True))
             text = f"{meaning}: error on circles that were not fitted, before and after, the worse of both sides"

@@ -40,7 +40,10 @@ def sets_table(found: SeaTrialStudy) -> Table:
     shown = [one for one in found.ranking if one.plausible and one.hypotheses][:_SETS]
     shown += [one for one in found.ranking if not one.hypotheses]
     first = found.best.evidence
-    rows = [(said(one.label), told(one), f"{one.evidence - first:+.1f}".replace("-", "−")) for one in shown]
+    rows = [
+        (said(one.label), told(one), f"{one.evidence - first:+.1f}".replace("-", "−"))
+        for one in shown
+    ]
     return Table(tuple(rows), ("Causes", "Estimates", "Nats"), (2,))
 
 
@@ -49,7 +52,9 @@ def told(one: SetOfCauses) -> str:
     texts = []
     for (cause, parameter), value in zip(one.parameters, estimates(one), strict=True):
         unit = "" if value.unit == "1" else f" {value.unit}"
-        texts.append(f"{said(cause.label)} {parameter.name} {plain(value.estimate)} ± {plain(value.std, 1)}{unit}")
+        texts.append(
+            f"{said(cause.label)} {parameter.name} {plain(value.estimate)} ± {plain(value.std, 1)}{unit}"
+        )
     return "; ".join(texts)
 
 
@@ -68,20 +73,33 @@ def _errors(one, name):
 
 def features_table(found: SeaTrialStudy) -> Table:
     """Every feature of every trial: measured, as modelled, with the causes, and how well it repeats."""
-    spread, rows, at = np.sqrt(np.diag(found.evidence.noise)), [], 0
+    spread = np.sqrt(np.diag(found.evidence.noise))
+    rows = []
+    at = 0
     for trial in found.trials:
         for name in FEATURES[trial.kind]:
             values = (found.evidence.measured[at], found.evidence.predicted[at], found.after[at])
-            rows.append((trial.name, name, *(_read(name, value) for value in values), _spread(name, spread[at])))
+            rows.append(
+                (
+                    trial.name,
+                    name,
+                    *(_read(name, value) for value in values),
+                    _spread(name, spread[at]),
+                )
+            )
             at += 1
-    return Table(tuple(rows), ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to"))
+    return Table(
+        tuple(rows), ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to")
+    )
 
 
 def _read(name, value):
     """A feature in the unit that people read."""
     if name == "drift":
         return f"{np.degrees(value):.1f}°"
-    factor, unit = {"r": (np.degrees(1.0), "°/s"), "s": (np.degrees(1.0), "°")}.get(_kind(name), (1.0, _kind(name)))
+    factor, unit = {"r": (np.degrees(1.0), "°/s"), "s": (np.degrees(1.0), "°")}.get(
+        _kind(name), (1.0, _kind(name))
+    )
     return f"{plain(factor * float(np.exp(value)))} {unit}".replace(" °", "°")
 
 
@@ -104,12 +122,17 @@ def next_steps(found: SeaTrialStudy) -> tuple[str, ...]:
     steps = [_step(found, one) for one in found.prescriptions]
     told_apart = {pair for one in found.prescriptions for pair in one.separates}
     left = [pair for pair in found.pairs if pair not in told_apart]
-    return (*steps, *(f"No manoeuvre of the catalogue tells {said(a)} from {said(b)}." for a, b in left))
+    return (
+        *steps,
+        *(f"No manoeuvre of the catalogue tells {said(a)} from {said(b)}." for a, b in left),
+    )
 
 
 def _step(found, one):
     record = next(each for each in found.separations if each.manoeuvre == one.manoeuvre)
-    pairs = ", ".join(f"{said(a)} from {said(b)} ({_telling(found, record, (a, b))})" for a, b in one.separates)
+    pairs = ", ".join(
+        f"{said(a)} from {said(b)} ({_telling(found, record, (a, b))})" for a, b in one.separates
+    )
     return f"{one.manoeuvre[0].upper()}{one.manoeuvre[1:]}, to both sides, {one.minutes:.0f} minutes. It tells {pairs}."
 
 
@@ -132,8 +155,14 @@ def separation_table(found: SeaTrialStudy) -> Table:
         )
         for one in found.separations
     ]
-    return Table(tuple(rows), ("Manoeuvre", "Min", *(f"{said(a)} / {said(b)}" for a, b in found.pairs)), (1,))
+    return Table(
+        tuple(rows), ("Manoeuvre", "Min", *(f"{said(a)} / {said(b)}" for a, b in found.pairs)), (1,)
+    )
 
 
 def _short(telling):
-    return f"{telling.name} {telling.difference:+.1f} ± {telling.spread:.1f} {telling.unit}".replace("-", "−")
+    return (
+        f"{telling.name} {telling.difference:+.1f} ± {telling.spread:.1f} {telling.unit}".replace(
+            "-", "−"
+        )
+    )

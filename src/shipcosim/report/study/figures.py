@@ -26,7 +26,9 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import line, rounded
 from shipcosim.report.theme.views import Figure
 
-TALL, POLAR, BAR = 380, 420, 18  # px
+TALL = 380  # px
+POLAR = 420
+BAR = 18
 MOST_LETTERS = 40
 """Letters of the names of all bars that fit below them."""
 MOST_DOTS = 2500
@@ -35,20 +37,29 @@ MOST_DOTS = 2500
 
 def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     """A value over the direction that weather comes from, bow up."""
-    angle, radius = str(view.get("angle")), str(view.get("radius"))
+    angle = str(view.get("angle"))
+    radius = str(view.get("radius"))
     frame = frame_of(tables, view, [angle, radius])
-    around, size = frame.column(angle), frame.column(radius)
+    around = frame.column(angle)
+    size = frame.column(radius)
     series = series_of(frame, view, [angle])
-    traces, groups = [], []
+    traces = []
+    groups = []
     for k, one in enumerate(series):
         degrees = np.unique(around.values[one.rows][np.isfinite(around.values[one.rows])])
         alike = [one.rows[around.values[one.rows] == at] for at in degrees]
         points = np.array([gathered(frame, radius, rows) for rows in alike]).reshape(-1, 3)
         groups += alike
-        traces += _around(one, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None)
+        traces += _around(
+            one, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None
+        )
     traces += _beside(tables, view, series)
     note = "Bow up; angle: where the weather comes from, 90° from starboard."
-    notes = [str(view.get("note") or note), how_gathered(frame, radius, groups), left_out(frame, series)]
+    notes = [
+        str(view.get("note") or note),
+        how_gathered(frame, radius, groups),
+        left_out(frame, series),
+    ]
     title = f"{size.name} by direction"
     return _figure(view, title, size.unit, traces, {"polar": _polar_axes(traces)}, notes, POLAR)
 
@@ -57,12 +68,22 @@ def _around(
     one: SeriesOfRows, degrees: NDArray, points: NDArray, *, with_band: bool, fill: float | None
 ) -> list[dict[str, Any]]:
     """A curve around the ship, closed where directions go all the way round, and the band of its interval."""
-    closed = len(degrees) > 2 and np.diff(np.append(degrees, degrees[0] + 360.0)).max() <= 1.5 * 360.0 / len(degrees)
+    closed = len(degrees) > 2 and np.diff(
+        np.append(degrees, degrees[0] + 360.0)
+    ).max() <= 1.5 * 360.0 / len(degrees)
     end = [0] if closed else []
     theta = rounded([*degrees, *degrees[end]])
     curve = {
-        **{"type": "scatterpolar", "mode": "lines+markers", "name": one.label or "all", "theta": theta},
-        **{"r": rounded([*points[:, 0], *points[end, 0]]), "hovertemplate": "%{r:.3~g} from %{theta}"},
+        **{
+            "type": "scatterpolar",
+            "mode": "lines+markers",
+            "name": one.label or "all",
+            "theta": theta,
+        },
+        **{
+            "r": rounded([*points[:, 0], *points[end, 0]]),
+            "hovertemplate": "%{r:.3~g} from %{theta}",
+        },
         **{"line": {"color": one.colour, "width": 2}, "marker": {"size": 4}},
     }
     if fill is not None and closed:
@@ -70,27 +91,48 @@ def _around(
     known = np.isfinite(points[:, 1:]).all(axis=1)
     if not with_band or not known.any():
         return [curve]
-    ends = {"type": "scatterpolar", "mode": "lines", "showlegend": False, "hoverinfo": "skip", "theta": theta}
+    ends = {
+        "type": "scatterpolar",
+        "mode": "lines",
+        "showlegend": False,
+        "hoverinfo": "skip",
+        "theta": theta,
+    }
     look = {"line": {"color": one.colour, "width": 1, "dash": "dot"}}
-    return [curve, *(ends | {"r": rounded([*points[:, k], *points[end, k]])} | look for k in (1, 2))]
+    return [
+        curve,
+        *(ends | {"r": rounded([*points[:, k], *points[end, k]])} | look for k in (1, 2)),
+    ]
 
 
-def _beside(tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]) -> list[dict[str, Any]]:
+def _beside(
+    tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]
+) -> list[dict[str, Any]]:
     """Curves from elsewhere for the same quantity and the series that are drawn, as `about` brings them."""
-    colours, bases = {one.label: one.colour for one in series}, bases_of(view)
+    colours = {one.label: one.colour for one in series}
+    bases = bases_of(view)
     if unknown := {*bases} - {*NAMES}:
         raise Lacking(f"static: '{unknown.pop()}' is none of {', '.join(NAMES)}.")
     found = []
     for one in tables.about.get("beside") or ():
-        is_asked = one.get("radius") == view.get("radius") and ("basis" not in one or one["basis"] in bases)
+        is_asked = one.get("radius") == view.get("radius") and (
+            "basis" not in one or one["basis"] in bases
+        )
         if is_asked and str(one["series"]) in colours:
             degrees = np.degrees(np.asarray(one["angle"], float))
             found.append(
                 {
                     **{"type": "scatterpolar", "mode": "lines", "name": str(one["name"])},
-                    **{"theta": rounded([*degrees, degrees[0]]), "hovertemplate": "%{r:.3~g} from %{theta}"},
+                    **{
+                        "theta": rounded([*degrees, degrees[0]]),
+                        "hovertemplate": "%{r:.3~g} from %{theta}",
+                    },
                     **{"r": rounded([*one["radius_values"], one["radius_values"][0]])},
-                    "line": {"color": colours[str(one["series"])], "width": 2, "dash": one.get("dash", "dash")},
+                    "line": {
+                        "color": colours[str(one["series"])],
+                        "width": 2,
+                        "dash": one.get("dash", "dash"),
+                    },
                 }
             )
     return found
@@ -101,7 +143,13 @@ def _polar_axes(traces: Sequence[dict[str, Any]]) -> dict[str, Any]:
     most = max((r for trace in traces for r in trace["r"] if r is not None), default=1.0)
     return {
         "bgcolor": "@card",
-        "angularaxis": {"rotation": 90, "direction": "clockwise", "dtick": 30, "ticksuffix": "°", **look},
+        "angularaxis": {
+            "rotation": 90,
+            "direction": "clockwise",
+            "dtick": 30,
+            "ticksuffix": "°",
+            **look,
+        },
         "radialaxis": {
             "range": [0, 1.08 * most if most > 0 else 1.0],
             "angle": 45,
@@ -116,9 +164,16 @@ def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     """Empirical distribution of a quantity, with its simultaneous 95 % band."""
     name = str(view.get("quantity"))
     frame = frame_of(tables, {"table": "runs"} | dict(view), [name])
-    quantity, series = frame.column(name), series_of(frame, view, [name])
-    done = np.array([not str(error or "") for error in tables.runs["error"]]) if "error" in tables.runs else None
-    traces, never, widths = [], 0, []
+    quantity = frame.column(name)
+    series = series_of(frame, view, [name])
+    done = (
+        np.array([not str(error or "") for error in tables.runs["error"]])
+        if "error" in tables.runs
+        else None
+    )
+    traces = []
+    never = 0
+    widths = []
     largest = np.nanmax(quantity.values) if np.isfinite(quantity.values).any() else 1.0
     for one in series:
         rows = one.rows if done is None or len(done) != frame.rows else one.rows[done[one.rows]]
@@ -128,26 +183,46 @@ def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         traces += _steps(one, reached, share, half, largest, with_band=len(series) <= 4)
     notes = [
         str(view.get("note") or "Share of runs up to each value."),
-        f"Band: 95 %, for the whole curve at once (Dvoretzky-Kiefer-Wolfowitz), ± {max(widths):.2g}." if widths else "",
+        f"Band: 95 %, for the whole curve at once (Dvoretzky-Kiefer-Wolfowitz), ± {max(widths):.2g}."
+        if widths
+        else "",
         f"{never} runs never reach it: their curve ends below 1." if never else "",
         left_out(frame, series),
     ]
-    layout = {"xaxis": {"title": {"text": quantity.titled}}, "yaxis": {"range": [0, 1.02], "title": {"text": "share"}}}
+    layout = {
+        "xaxis": {"title": {"text": quantity.titled}},
+        "yaxis": {"range": [0, 1.02], "title": {"text": "share"}},
+    }
     title = f"Distribution of {quantity.name}"
     return _figure(view, title, "", traces, layout | {"hovermode": "closest"}, notes, TALL)
 
 
 def _steps(
-    one: SeriesOfRows, reached: NDArray, share: NDArray, half: float, largest: float, *, with_band: bool
+    one: SeriesOfRows,
+    reached: NDArray,
+    share: NDArray,
+    half: float,
+    largest: float,
+    *,
+    with_band: bool,
 ) -> list[dict[str, Any]]:
     x = np.concatenate([reached, [largest]])
     y = np.concatenate([share, share[-1:] if len(share) else [0.0]])
-    curve = line(one.label or "all runs", x, y, one.colour, width=2, hovertemplate="%{y:.3~f} up to %{x:.4~g}")
+    curve = line(
+        one.label or "all runs",
+        x,
+        y,
+        one.colour,
+        width=2,
+        hovertemplate="%{y:.3~f} up to %{x:.4~g}",
+    )
     curve["line"] |= {"shape": "hv"}
     if not with_band:
         return [curve]
     look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
-    low, high = (line("", x, np.clip(y + k * half, 0, 1), one.colour, width=0, **look) for k in (-1, 1))
+    low, high = (
+        line("", x, np.clip(y + k * half, 0, 1), one.colour, width=0, **look) for k in (-1, 1)
+    )
     for edge in (low, high):
         edge["line"] |= {"shape": "hv"}
     return [low, high | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}, curve]
@@ -155,26 +230,40 @@ def _steps(
 
 def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     """Values by category, with their intervals."""
-    asked, by = view.get("value"), str(view.get("category"))
+    asked = view.get("value")
+    by = str(view.get("category"))
     values = [str(asked)] if isinstance(asked, str) else [str(one) for one in asked or ()]
     frame = frame_of(tables, view, [by, *values])
     category = frame.column(by)
-    every = category.levels or tuple(np.unique(category.values[np.isfinite(category.values)]).tolist())
+    every = category.levels or tuple(
+        np.unique(category.values[np.isfinite(category.values)]).tolist()
+    )
     levels = every[: int(view.get("most") or len(every))]
     series = series_of(frame, {"series": False} | dict(view) if len(values) > 1 else view, [by])
     names = [category.text(at) for at in levels]
     is_upright = sum(map(len, names)) <= MOST_LETTERS
-    traces, groups, colours = [], [], iter(palette.CYCLE)
+    traces = []
+    groups = []
+    colours = iter(palette.CYCLE)
     for name in values:
         for one in series:
             alike = [one.rows[category.values[one.rows] == level] for level in levels]
-            points = np.array([gathered(frame, name, rows) if len(rows) else (np.nan,) * 3 for rows in alike])
+            points = np.array(
+                [gathered(frame, name, rows) if len(rows) else (np.nan,) * 3 for rows in alike]
+            )
             groups += alike
             label = ", ".join(filter(None, (name if len(values) > 1 else "", one.label)))
-            traces.append(_bar(label or name, names, points, next(colours, palette.INK), is_upright))
+            traces.append(
+                _bar(label or name, names, points, next(colours, palette.INK), is_upright)
+            )
     unit = frame.column(values[0]).unit if values else ""
     fewer = f"The first {len(levels)} of {len(every)}." if len(levels) < len(every) else ""
-    notes = [str(view.get("note") or ""), fewer, how_gathered(frame, values[0], groups), left_out(frame, series)]
+    notes = [
+        str(view.get("note") or ""),
+        fewer,
+        how_gathered(frame, values[0], groups),
+        left_out(frame, series),
+    ]
     title = f"{', '.join(values)} by {by}"
     height = TALL if is_upright else max(TALL, BAR * len(levels) * len(traces))
     return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, height)
@@ -187,15 +276,21 @@ def _bar_axes(is_upright: bool) -> dict[str, Any]:
     return {"barmode": "group", "yaxis": {"type": "category", "autorange": "reversed"}}
 
 
-def _bar(name: str, categories: Sequence[str], points: NDArray, colour: str, is_upright: bool) -> dict[str, Any]:
+def _bar(
+    name: str, categories: Sequence[str], points: NDArray, colour: str, is_upright: bool
+) -> dict[str, Any]:
     along, across = ("y", "x") if is_upright else ("x", "y")
     made = {"type": "bar", "name": name, across: list(categories), along: rounded(points[:, 0])}
-    made |= {"marker": {"color": palette.faded(colour, 0.75)}, "hovertemplate": f"%{{{along}:.3~g}}"}
+    made |= {
+        "marker": {"color": palette.faded(colour, 0.75)},
+        "hovertemplate": f"%{{{along}:.3~g}}",
+    }
     made |= {"orientation": "v" if is_upright else "h"}
     if not np.isfinite(points[:, 1:]).any():
         return made
     with np.errstate(invalid="ignore"):  # what never happens is infinite, and has no bar
-        up, down = points[:, 2] - points[:, 0], points[:, 0] - points[:, 1]
+        up = points[:, 2] - points[:, 0]
+        down = points[:, 0] - points[:, 1]
     ends = {"type": "data", "symmetric": False, "array": rounded(up), "arrayminus": rounded(down)}
     return made | {f"error_{along}": ends | {"color": palette.INK, "thickness": 1.4, "width": 4}}
 
@@ -212,7 +307,12 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     rows = {"others": np.flatnonzero(~front), "front": np.flatnonzero(front)}
     rows["front"] = rows["front"][np.argsort(columns[0].values[rows["front"]])]
     third = columns[2] if len(columns) == 3 else None
-    look = {"size": 9, "color": palette.VERMILLION, "opacity": 0.95, "line": {"color": palette.INK, "width": 1}}
+    look = {
+        "size": 9,
+        "color": palette.VERMILLION,
+        "opacity": 0.95,
+        "line": {"color": palette.INK, "width": 1},
+    }
     traces = [
         _dots(
             "other runs" if frame.name == RUNS else "others",
@@ -226,14 +326,27 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         _dots("not beaten", frame, tables, columns, rows["front"], third, look),
     ]
     if third is None:
-        traces[1] |= {"mode": "lines+markers", "line": {"color": palette.VERMILLION, "width": 1, "dash": "dot"}}
+        traces[1] |= {
+            "mode": "lines+markers",
+            "line": {"color": palette.VERMILLION, "width": 1, "dash": "dot"},
+        }
     if name := view.get("marked"):
         rows["marked"] = np.flatnonzero(frame.column(name).values == 1.0)
-        mark = {"size": 14, "symbol": "star", "color": palette.BLUE, "line": {"color": palette.INK, "width": 1}}
-        traces.append(_dots(str(name).replace("_", " "), frame, tables, columns, rows["marked"], None, mark))
+        mark = {
+            "size": 14,
+            "symbol": "star",
+            "color": palette.BLUE,
+            "line": {"color": palette.INK, "width": 1},
+        }
+        traces.append(
+            _dots(str(name).replace("_", " "), frame, tables, columns, rows["marked"], None, mark)
+        )
     better = ", ".join(f"{c.name} {'large' if c.name in larger else 'small'}" for c in columns)
     notes = [
-        str(view.get("note") or f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."),
+        str(
+            view.get("note")
+            or f"Wanted: {better}. Marked: the {front.sum()} of {frame.rows} that no other beats."
+        ),
         _sizes(third),
     ]
     title = " against ".join(names)
@@ -254,18 +367,30 @@ def scatter(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     frame = frame_of(tables, view, names)
     columns = [frame.column(name) for name in names]
     chosen = view.get("colour") or view.get("series")
-    series = series_of(frame, {**view, "series": chosen if chosen and frame.column(chosen).levels else False}, names)
+    series = series_of(
+        frame,
+        {**view, "series": chosen if chosen and frame.column(chosen).levels else False},
+        names,
+    )
     share = min(MOST_DOTS / max(frame.rows, 1), 1.0)
     traces = [
         _dots(
-            one.label or "runs", frame, tables, columns, _even(one.rows, share), None, {"color": one.colour, "size": 6}
+            one.label or "runs",
+            frame,
+            tables,
+            columns,
+            _even(one.rows, share),
+            None,
+            {"color": one.colour, "size": 6},
         )
         for one in series
     ]
     notes = [
         str(view.get("note") or ""),
         left_out(frame, series),
-        f"Drawn are {sum(len(t['x']) for t in traces)} of {frame.rows} rows." if share < 1.0 else "",
+        f"Drawn are {sum(len(t['x']) for t in traces)} of {frame.rows} rows."
+        if share < 1.0
+        else "",
     ]
     title = f"{names[1]} against {names[0]}"
     return _figure(view, title, "", traces, _axes(*columns), notes, TALL)
@@ -283,10 +408,15 @@ def _dots(
     """Dots, each of which knows the number of its run where it is one."""
     marker = {"opacity": 0.7, "line": {"width": 0}} | dict(look)
     if third is not None and len(rows):
-        low, span = np.nanmin(third.values), np.ptp(third.values[np.isfinite(third.values)]) or 1.0
+        low = np.nanmin(third.values)
+        span = np.ptp(third.values[np.isfinite(third.values)]) or 1.0
         marker["size"] = rounded(5 + 12 * (third.values[rows] - low) / span, 3)
     made = {"type": "scatter", "mode": "markers", "name": name, "marker": marker}
-    made |= {"x": _drawn(columns[0], rows), "y": _drawn(columns[1], rows), "hovertemplate": "%{x}, %{y}"}
+    made |= {
+        "x": _drawn(columns[0], rows),
+        "y": _drawn(columns[1], rows),
+        "hovertemplate": "%{x}, %{y}",
+    }
     if frame.name == RUNS:
         numbers = tables.runs["run"].to_numpy()[rows].tolist()
         made |= {"customdata": numbers, "hovertemplate": "run %{customdata}: %{x:.4~g}, %{y:.4~g}"}
@@ -294,7 +424,11 @@ def _dots(
 
 
 def _drawn(column: Column, rows: NDArray) -> list[Any]:
-    return rounded(column.values[rows]) if column.is_number else [column.text(v) for v in column.values[rows]]
+    return (
+        rounded(column.values[rows])
+        if column.is_number
+        else [column.text(v) for v in column.values[rows]]
+    )
 
 
 def _even(rows: NDArray, share: float | None = None) -> NDArray:
@@ -317,11 +451,18 @@ def _figure(
     height: int,
 ) -> Figure:
     return Figure(
-        str(view.get("title") or title), unit, tuple(traces), dict(layout), " ".join(filter(None, notes)), height
+        str(view.get("title") or title),
+        unit,
+        tuple(traces),
+        dict(layout),
+        " ".join(filter(None, notes)),
+        height,
     )
 
 
-def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]], unit: str = "m") -> Figure:
+def distance_figure(
+    time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]], unit: str = "m"
+) -> Figure:
     """Distance from the first position over time: the median of each series and the range of nine in ten.
 
     Parameters
@@ -337,7 +478,20 @@ def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]
         top = line("", time, high, one.colour, width=0, **look)
         traces += [line("", time, low, one.colour, width=0, **look)]
         traces += [top | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}]
-        traces += [line(one.label or "all runs", time, middle, one.colour, width=2, hovertemplate="%{y:.3~g} m")]
-    layout = {"xaxis": {"title": {"text": "time [s]"}}, "yaxis": {"rangemode": "tozero"}, "hovermode": "x unified"}
+        traces += [
+            line(
+                one.label or "all runs",
+                time,
+                middle,
+                one.colour,
+                width=2,
+                hovertemplate="%{y:.3~g} m",
+            )
+        ]
+    layout = {
+        "xaxis": {"title": {"text": "time [s]"}},
+        "yaxis": {"rangemode": "tozero"},
+        "hovermode": "x unified",
+    }
     note = "Line: median of the runs; band: from 5 to 95 % of them at each time."
     return Figure("Distance from where each run began", unit, tuple(traces), layout, note, TALL)

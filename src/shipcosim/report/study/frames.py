@@ -51,7 +51,9 @@ class Frame:
     def column(self, name: object) -> Column:
         """A column; what there is instead is said where it is missing."""
         if name not in self.columns:
-            raise Lacking(f"There is no column '{name}' in {self.name}. There is: {', '.join(self.columns)}.")
+            raise Lacking(
+                f"There is no column '{name}' in {self.name}. There is: {', '.join(self.columns)}."
+            )
         return self.columns[str(name)]
 
     @cached_property
@@ -79,11 +81,15 @@ def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
     """
     asked = (view.get("only") or {}).items()
     only = {str(name): value if isinstance(value, list) else [value] for name, value in asked}
-    runs, summary, others = tables.runs, tables.summary, dict(tables.tables)
+    runs = tables.runs
+    summary = tables.summary
+    others = dict(tables.tables)
     for name, values in only.items():
         having = [table for table in (runs, summary, *others.values()) if name in table]
         if not having:
-            raise Lacking(f"only: there is no column '{name}'. There is: {', '.join(map(str, runs.columns))}.")
+            raise Lacking(
+                f"only: there is no column '{name}'. There is: {', '.join(map(str, runs.columns))}."
+            )
         wanted = {label(value) for value in values}
         if missing := wanted - {label(value) for table in having for value in table[name]}:
             raise Lacking(f"only: no row has {name} = {', '.join(sorted(missing))}.")
@@ -93,7 +99,11 @@ def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
 
 
 def _with(table: DataFrame, name: str, wanted: set[str]) -> DataFrame:
-    return cast("DataFrame", table[[label(value) in wanted for value in table[name]]]) if name in table else table
+    return (
+        cast("DataFrame", table[[label(value) in wanted for value in table[name]]])
+        if name in table
+        else table
+    )
 
 
 def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]) -> Frame:
@@ -113,7 +123,9 @@ def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]
         return Frame(title, columns_of(every[name], said))
     if not {*needed} <= {*map(str, tables.summary.columns)}:
         return Frame(RUNS, columns_of(tables.runs, said))
-    rows = tables.summary.dropna(subset=list(needed))  # summaries over other factors have rows of their own
+    rows = tables.summary.dropna(
+        subset=list(needed)
+    )  # summaries over other factors have rows of their own
     return Frame("the summary", columns_of(rows.dropna(axis="columns", how="all"), said))
 
 
@@ -135,12 +147,24 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
     """
     asked = view.get("series")
     if asked is None:
-        free = [c.name for c in frame.columns.values() if c.role == FACTOR and c.name not in taken and c.levels]
+        free = [
+            c.name
+            for c in frame.columns.values()
+            if c.role == FACTOR and c.name not in taken and c.levels
+        ]
         asked = free if frame.name != RUNS else []
     names = [asked] if isinstance(asked, str) else list(asked or ())
     columns = [frame.column(name) for name in names]
-    keys = np.column_stack([column.values for column in columns]) if columns else np.zeros((frame.rows, 0))
-    found, place = np.unique(keys, axis=0, return_inverse=True) if columns else (keys[:1], np.zeros(frame.rows, int))
+    keys = (
+        np.column_stack([column.values for column in columns])
+        if columns
+        else np.zeros((frame.rows, 0))
+    )
+    found, place = (
+        np.unique(keys, axis=0, return_inverse=True)
+        if columns
+        else (keys[:1], np.zeros(frame.rows, int))
+    )
     return [
         SeriesOfRows(_label(columns, key), palette.CYCLE[k], np.flatnonzero(place.ravel() == k))
         for k, key in enumerate(found[:MOST_SERIES])
@@ -150,7 +174,11 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
 def left_out(frame: Frame, drawn: Sequence[SeriesOfRows]) -> str:
     """A sentence on rows that no series has; empty where all are drawn."""
     missing = frame.rows - sum(len(one.rows) for one in drawn)
-    return f"{missing} of {frame.rows} rows are in further series, which are not drawn." if missing else ""
+    return (
+        f"{missing} of {frame.rows} rows are in further series, which are not drawn."
+        if missing
+        else ""
+    )
 
 
 def _label(columns: Sequence[Column], key: Sequence[float]) -> str:
@@ -162,7 +190,9 @@ def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
     column = frame.column(value)
     if len(rows) == 1:
         ends = [
-            frame.columns[f"{value}_{end}"].values[rows[0]] if f"{value}_{end}" in frame.columns else np.nan
+            frame.columns[f"{value}_{end}"].values[rows[0]]
+            if f"{value}_{end}" in frame.columns
+            else np.nan
             for end in ("low", "high")
         ]
         return Point(float(column.values[rows[0]]), float(ends[0]), float(ends[1]))

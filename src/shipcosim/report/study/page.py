@@ -22,7 +22,13 @@ from shipcosim.series import write_file
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
-SECTIONS = {"views": "Views", "runs": "Runs", "failed": "Failed runs", "summary": "Summary", "study": "How it was made"}
+SECTIONS = {
+    "views": "Views",
+    "runs": "Runs",
+    "failed": "Failed runs",
+    "summary": "Summary",
+    "study": "How it was made",
+}
 VIEWS: Mapping[str, Callable[[StudyTables, Mapping[str, Any]], Figure]] = {
     "polar": figures.polar,
     "curves": figures.curves,
@@ -112,16 +118,21 @@ def write_study(tables: StudyTables, path: str | os.PathLike[str]) -> None:
 def page_of(tables: StudyTables) -> StudyPage:
     """What the page of a study shows."""
     said = tables.about.get("columns", ())
-    runs, summary = columns_of(tables.runs, said), columns_of(tables.summary, said)
+    runs = columns_of(tables.runs, said)
+    summary = columns_of(tables.summary, said)
     tracks, plots, undrawn = _views(tables)
     drawn = (*plots, *(view.distance for view in tracks))
     rows = _kept_rows(tables, list(runs.values()))
-    errors = tuple(ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables))
+    errors = tuple(
+        ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
+    )
     has_views = bool(tracks or plots)
     has_errors = bool(errors)
     has_summary = len(tables.summary) > 0
     absent = {"views": not has_views, "failed": not has_errors, "summary": not has_summary}
-    links = tuple(Link(anchor, title) for anchor, title in SECTIONS.items() if not absent.get(anchor))
+    links = tuple(
+        Link(anchor, title) for anchor, title in SECTIONS.items() if not absent.get(anchor)
+    )
     return StudyPage(
         title=str(tables.study.get("description") or tables.name),
         facts=words.facts(tables),
@@ -146,9 +157,13 @@ def page_of(tables: StudyTables) -> StudyPage:
     )
 
 
-def _views(tables: StudyTables) -> tuple[tuple[TracksView, ...], tuple[Figure, ...], tuple[str, ...]]:
+def _views(
+    tables: StudyTables,
+) -> tuple[tuple[TracksView, ...], tuple[Figure, ...], tuple[str, ...]]:
     """The views that the study asks for; what is lacking for one takes nothing from the others."""
-    tracks, plots, undrawn = [], [], []
+    tracks = []
+    plots = []
+    undrawn = []
     for view in tables.study.get("view") or ():
         kind = str(view.get("kind"))
         try:
@@ -186,13 +201,18 @@ def _data(
     drawn: Sequence[Figure],
 ) -> dict[str, Any]:
     """What the scripts of the page draw."""
-    failed, kept = words.is_failed(tables)[rows], tables.runs.iloc[rows]
+    failed = words.is_failed(tables)[rows]
+    kept = tables.runs.iloc[rows]
     texts = [str(error) for error in kept["error"][failed]] if "error" in kept else []
     different = list(dict.fromkeys(texts))
     place = {text: k for k, text in enumerate(different)}
     # The column whose values colour the lines at first: what is true or false, else a factor of few levels.
     truths = [c.name for c in columns.values() if c.is_truth and len(c.levels) > 1]
-    factors = [c.name for c in columns.values() if c.role == "factor" and 1 < len(c.levels) <= len(palette.CYCLE)]
+    factors = [
+        c.name
+        for c in columns.values()
+        if c.role == "factor" and 1 < len(c.levels) <= len(palette.CYCLE)
+    ]
     coloured = next(iter([*truths, *factors]), "")
     return {
         "runs": packed_series(kept["run"].to_numpy(float), EXACT),
@@ -212,11 +232,18 @@ def _data(
 def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
     """A column as the script reads it: levels by their places, numbers as they are."""
     values = column.values[rows]
-    made = {name: value for name, value in asdict(column).items() if name in ("name", "role", "description", "unit")}
+    made = {
+        name: value
+        for name, value in asdict(column).items()
+        if name in ("name", "role", "description", "unit")
+    }
     made |= {"labels": column.labels, "truth": column.is_truth}
     if column.levels and column.is_number:
         place = {level: k for k, level in enumerate(column.levels)}
-        return made | {"levels": column.levels, "places": [place.get(v, -1) for v in values.tolist()]}
+        return made | {
+            "levels": column.levels,
+            "places": [place.get(v, -1) for v in values.tolist()],
+        }
     if not column.is_number:
         return made | {"values": [int(v) if np.isfinite(v) else None for v in values]}
     # Decimals that tell a thousandth of a column's range apart.
@@ -227,8 +254,13 @@ def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
 
 
 def _choices(columns: Mapping[str, Column]) -> tuple[Choice, ...]:
-    chosen = [c for c in columns.values() if len(c.levels) > 1 and (c.role == "factor" or c.is_truth)]
-    return tuple(Choice(c.name, c.titled, tuple((level, _level(c, level)) for level in c.levels)) for c in chosen)
+    chosen = [
+        c for c in columns.values() if len(c.levels) > 1 and (c.role == "factor" or c.is_truth)
+    ]
+    return tuple(
+        Choice(c.name, c.titled, tuple((level, _level(c, level)) for level in c.levels))
+        for c in chosen
+    )
 
 
 def _level(column: Column, level: float) -> str:
@@ -243,17 +275,25 @@ def _summary(columns: Mapping[str, Column]) -> Table:
     ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
     shown = [column for name, column in columns.items() if name not in ends]
     count = min(len(shown[0].values), MOST_SUMMARY) if shown else 0
-    rows = tuple(tuple(_with_interval(columns, column, k) for column in shown) for k in range(count))
+    rows = tuple(
+        tuple(_with_interval(columns, column, k) for column in shown) for k in range(count)
+    )
     return Table(rows, tuple(column.titled for column in shown), tight=tuple(range(len(shown))))
 
 
 def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> str:
     """A cell of the summary, with its interval where it has one."""
     cell = _cell(column, column.values[row])
-    ends = [columns[f"{column.name}_{end}"].values[row] for end in ("low", "high") if f"{column.name}_{end}" in columns]
+    ends = [
+        columns[f"{column.name}_{end}"].values[row]
+        for end in ("low", "high")
+        if f"{column.name}_{end}" in columns
+    ]
     if len(ends) < 2 or np.isnan(ends).all():
         return cell
-    return f"{cell} ({' to '.join(signed(e, 3) if np.isfinite(e) else column.text(e) for e in ends)})"
+    return (
+        f"{cell} ({' to '.join(signed(e, 3) if np.isfinite(e) else column.text(e) for e in ends)})"
+    )
 
 
 MOST_SUMMARY = 400
@@ -263,4 +303,8 @@ MOST_SUMMARY = 400
 def _cell(column: Column, value: float) -> str:
     if column.is_number and np.isfinite(value):
         return signed(value)
-    return column.text(value) if column.labels or not np.isfinite(value) else ("yes" if value else "no")
+    return (
+        column.text(value)
+        if column.labels or not np.isfinite(value)
+        else ("yes" if value else "no")
+    )

@@ -54,8 +54,12 @@ class StudyServer(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = False
 
-    def __init__(self, folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0):
-        self.folder, self.runs, self.simulate = folder.resolve(), frozenset(runs), simulate
+    def __init__(
+        self, folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0
+    ):
+        self.folder = folder.resolve()
+        self.runs = frozenset(runs)
+        self.simulate = simulate
         self.at_work = threading.Lock()
         super().__init__((ADDRESS, port), _Handler)
 
@@ -74,7 +78,9 @@ class StudyServer(ThreadingHTTPServer):
         return sorted(run for run in self.runs if page_of_run(self.folder, run).is_file())
 
 
-def study_server(folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0) -> StudyServer:
+def study_server(
+    folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0
+) -> StudyServer:
     """A server; ``serve_forever()`` runs it.
 
     Raises
@@ -83,12 +89,16 @@ def study_server(folder: Path, runs: Collection[int], simulate: Callable[[int], 
         If there is no page in the folder, or the port is taken.
     """
     if not (folder / "report.html").is_file():
-        raise ShipcosimError(Problem(str(folder), "There is no report.html to be shown.", "Run the study first."))
+        raise ShipcosimError(
+            Problem(str(folder), "There is no report.html to be shown.", "Run the study first.")
+        )
     try:
         return StudyServer(folder, runs, simulate, port)
     except (OSError, OverflowError) as error:
         text = f"Port {port} cannot be used: {getattr(error, 'strerror', None) or error}."
-        raise ShipcosimError(Problem("--port", text, "Choose another, or leave it to the system.")) from error
+        raise ShipcosimError(
+            Problem("--port", text, "Choose another, or leave it to the system.")
+        ) from error
 
 
 def page_of_run(folder: Path, run: int) -> Path:
@@ -118,7 +128,9 @@ class _Handler(BaseHTTPRequestHandler):
             self._answer(HTTPStatus.OK, {"pages": self.server.pages()})
         elif file := self._file(path):
             self._send(
-                HTTPStatus.OK, file.read_bytes(), mimetypes.guess_type(file.name)[0] or "application/octet-stream"
+                HTTPStatus.OK,
+                file.read_bytes(),
+                mimetypes.guess_type(file.name)[0] or "application/octet-stream",
             )
         else:
             self._refuse(HTTPStatus.NOT_FOUND, "There is no such file in the folder of this study.")
@@ -128,8 +140,13 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         if not self._is_ours():
             return
-        if self.headers.get(HEADER) != "run" or self.headers.get("Origin", self._origin()) != self._origin():
-            self._refuse(HTTPStatus.FORBIDDEN, "Only the page of this study may ask for a simulation.")
+        if (
+            self.headers.get(HEADER) != "run"
+            or self.headers.get("Origin", self._origin()) != self._origin()
+        ):
+            self._refuse(
+                HTTPStatus.FORBIDDEN, "Only the page of this study may ask for a simulation."
+            )
             return
         found = RUN.fullmatch(self.path)
         if not found or int(found[1]) not in self.server.runs:
@@ -142,7 +159,8 @@ class _Handler(BaseHTTPRequestHandler):
         page = page_of_run(self.server.folder, run)
         if not self.server.at_work.acquire(blocking=False):
             self._refuse(
-                HTTPStatus.CONFLICT, "Another run is being simulated; one at a time. Try again when it is done."
+                HTTPStatus.CONFLICT,
+                "Another run is being simulated; one at a time. Try again when it is done.",
             )
             return
         try:

@@ -22,7 +22,9 @@ def bases_of(view: Mapping[str, Any]) -> list[str]:
 
 
 def static_curves(
-    views: Sequence[Mapping[str, Any]], system: os.PathLike[str], parameters: Sequence[os.PathLike[str]]
+    views: Sequence[Mapping[str, Any]],
+    system: os.PathLike[str],
+    parameters: Sequence[os.PathLike[str]],
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """Static DP capability numbers around the ship, for the polar views that ask for them.
 
@@ -39,7 +41,9 @@ def static_curves(
     (list of dict, list of str)
         Curves as `StudyTables.about` has them under `beside`, and why there are none.
     """
-    asking = [view for view in views if view.get("kind") == "polar" and {*NAMES} & {*bases_of(view)}]
+    asking = [
+        view for view in views if view.get("kind") == "polar" and {*NAMES} & {*bases_of(view)}
+    ]
     if not asking:
         return [], []
     try:

@@ -34,7 +34,8 @@ def wilson(count: int, of: int) -> tuple[float, float]:
     """
     if not of:
         return 0.0, 1.0
-    share, more = count / of, Z * Z / of
+    share = count / of
+    more = Z * Z / of
     middle = (share + more / 2) / (1 + more)
     half = Z * np.sqrt(share * (1 - share) / of + more / (4 * of)) / (1 + more)
     return max(float(middle - half), 0.0), min(float(middle + half), 1.0)
@@ -111,9 +112,11 @@ def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
     >>> round(explained(4 * [1.0, 1.1, 5.0, 5.1], 4 * [0.0, 0.0, 1.0, 1.0], True), 3)
     0.999
     """
-    quantity, cause = np.asarray(values, float), np.asarray(by, float)
+    quantity = np.asarray(values, float)
+    cause = np.asarray(by, float)
     known = np.isfinite(quantity) & np.isfinite(cause)
-    quantity, cause = quantity[known], cause[known]
+    quantity = quantity[known]
+    cause = cause[known]
     groups = np.unique(cause, return_inverse=True)[1] if are_levels else _bins(cause)
     count = np.bincount(groups) if len(groups) else np.zeros(0)
     left = len(quantity) - np.count_nonzero(count)

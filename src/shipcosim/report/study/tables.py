@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
     from shipcosim.sweep import Swept
 
-FACTOR, SAMPLE, QUANTITY, SUMMARY = "factor", "sample", "quantity", "summary"
+FACTOR = "factor"
+SAMPLE = "sample"
+QUANTITY = "quantity"
+SUMMARY = "summary"
 MOST_LEVELS = 40
 """Different numbers of a column that are still levels, which readers may choose from."""
 _TRUTH = (False, True)
@@ -77,10 +80,14 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     """
     import pandas
 
-    folder, tracks = swept.folder, swept.folder / "tracks.parquet"
-    scenario, views = swept.plan.scenario, swept.about["study"].get("view", ())
+    folder = swept.folder
+    tracks = swept.folder / "tracks.parquet"
+    scenario = swept.plan.scenario
+    views = swept.about["study"].get("view", ())
     beside, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
-    found = (re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html"))
+    found = (
+        re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html")
+    )
     return StudyTables(
         about={**swept.about, "beside": beside, "remarks": remarks, "ship": _ship(swept)},
         runs=swept.runs,
@@ -94,7 +101,8 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
 
 def _ship(swept: Swept) -> dict[str, float]:
     """Length and breadth of the ship whose tracks are kept; empty where they are not known. [m]"""
-    tracks, system = swept.plan.study.tracks, swept.plan.system
+    tracks = swept.plan.study.tracks
+    system = swept.plan.system
     name = system.split(tracks.signals[0])[0] if tracks is not None else None
     if name is None or not system.components[name].fmu.variables.keys() >= {"length", "breadth"}:
         return {}
@@ -138,7 +146,9 @@ class Column:
         if self.labels:
             return tuple(float(k) for k in range(len(self.labels)))
         found = np.unique(self.values[np.isfinite(self.values)])
-        are_few = len(found) <= MOST_LEVELS and (self.role == FACTOR or bool(np.all(found == np.round(found))))
+        are_few = len(found) <= MOST_LEVELS and (
+            self.role == FACTOR or bool(np.all(found == np.round(found)))
+        )
         return tuple(found.tolist()) if are_few else ()
 
     @property
@@ -165,7 +175,11 @@ class Column:
         if self.labels:
             return self.labels[int(value)]
         if self.is_truth:
-            return f"{self.name}: yes" if with_name and value else ("yes" if value else f"{self.name}: no")
+            return (
+                f"{self.name}: yes"
+                if with_name and value
+                else ("yes" if value else f"{self.name}: no")
+            )
         number = f"{signed(value, 4 if self.role == FACTOR else 3)}{'' if self.unit in ('', '°') else ' '}{self.unit}"
         return f"{self.name} {number}" if with_name else number
 
@@ -201,12 +215,16 @@ def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str,
         for end in ("low", "high"):
             known.setdefault(f"{name}_{end}", one)
     names = [str(name) for name in frame.columns if name not in ("run", "error", "input")]
-    return {name: column_of(name, cast("Series", frame[name]), known.get(name, {})) for name in names}
+    return {
+        name: column_of(name, cast("Series", frame[name]), known.get(name, {})) for name in names
+    }
 
 
 def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
     """One column, in the unit that people read: degrees, kN where numbers are large."""
-    made = Column(name, str(said.get("role") or ""), str(said.get("description") or ""), "", np.zeros(0))
+    made = Column(
+        name, str(said.get("role") or ""), str(said.get("description") or ""), "", np.zeros(0)
+    )
     known = values[values.notna()]
     if values.dtype.kind == "b" or (
         values.dtype.kind == "O" and len(known) and all(value in _TRUTH for value in known)
@@ -219,9 +237,15 @@ def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
     if all(map(_is_number, filter(None, texts))):
         return column_of(name, values.map(lambda value: float(label(value) or "nan")), said)
     order = [label(value) for value in said.get("labels") or ()]
-    labels = tuple(dict.fromkeys([*(one for one in order if one in set(texts)), *(one for one in texts if one)]))
+    labels = tuple(
+        dict.fromkeys(
+            [*(one for one in order if one in set(texts)), *(one for one in texts if one)]
+        )
+    )
     place = {label: float(k) for k, label in enumerate(labels)}
-    return replace(made, values=np.array([place.get(text, np.nan) for text in texts]), labels=labels)
+    return replace(
+        made, values=np.array([place.get(text, np.nan) for text in texts]), labels=labels
+    )
 
 
 def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
@@ -236,14 +260,19 @@ def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
     shown, factor, least = READ_AS.get(unit or None, (unit or "", 1.0, 0.0))
     known = np.abs(found[np.isfinite(found)])
     if known.size and known.max() < least:
-        shown, factor = unit or "", 1.0
+        shown = unit or ""
+        factor = 1.0
     scaled = factor * found
-    power = np.where(np.isfinite(scaled) & (scaled != 0.0), np.floor(np.log10(np.abs(scaled) + 1e-300)), 0.0)
+    power = np.where(
+        np.isfinite(scaled) & (scaled != 0.0), np.floor(np.log10(np.abs(scaled) + 1e-300)), 0.0
+    )
     return np.round(scaled / 10.0**power, 11) * 10.0**power, {"deg": "°"}.get(shown, shown)
 
 
 def _numbers(values: Series) -> NDArray:
-    return np.array([float(v) if v is not None and v == v else np.nan for v in values.astype(object)], float)
+    return np.array(
+        [float(v) if v is not None and v == v else np.nan for v in values.astype(object)], float
+    )
 
 
 def _is_number(text: str) -> bool:

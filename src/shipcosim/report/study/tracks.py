@@ -16,7 +16,9 @@ from shipcosim.report.study.tables import StudyTables, columns_of
 from shipcosim.report.theme.packing import packed_series
 from shipcosim.report.theme.views import Figure
 
-MOST_TRACKS, MOST_TIMES, CELLS = 150, 80, 72
+MOST_TRACKS = 150
+MOST_TIMES = 80
+CELLS = 72
 """Tracks that are drawn, times of them, and cells of the density each way."""
 LEVELS = 3000
 
@@ -65,13 +67,14 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
     tracks = _read(tables)
     series = series_of(frame, {"series": False} | dict(view), [])
     known = [np.flatnonzero(np.isfinite(tracks.north[one.rows]).any(axis=1)) for one in series]
-    series = [SeriesOfRows(one.label, one.colour, one.rows[some]) for one, some in zip(series, known, strict=True)]
+    series = [
+        SeriesOfRows(one.label, one.colour, one.rows[some])
+        for one, some in zip(series, known, strict=True)
+    ]
     distance = np.hypot(tracks.north, tracks.east)
     circles = [float(radius) for radius in view.get("circles") or _circles(distance)]
     drawn = _chosen(series)
-    note = (
-        f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
-    )
+    note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
     note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
     said = [str(view.get("note") or note), left_out(frame, [*series, *_without(frame, series)])]
     spread = [(one, _spread(distance[one.rows])) for one in series if len(one.rows)]
@@ -94,7 +97,9 @@ def _read(tables: StudyTables) -> _Tracks:
     """Tracks of the table on few common times."""
     names = [str(name) for name in (tables.study.get("tracks") or {}).get("signals", ())]
     if tables.tracks is None or not len(tables.tracks) or len(names) < 2:
-        raise Lacking("No tracks were kept: the study has no [tracks] with signals of north, east and heading.")
+        raise Lacking(
+            "No tracks were kept: the study has no [tracks] with signals of north, east and heading."
+        )
     table = tables.tracks
     place = {int(run): k for k, run in enumerate(tables.runs["run"])}
     stamps, column = np.unique(table["time"].to_numpy(float), return_inverse=True)
@@ -104,7 +109,9 @@ def _read(tables: StudyTables) -> _Tracks:
         full[k, row[row >= 0], column[row >= 0]] = table[name].to_numpy(float)[row >= 0]
     kept = np.unique(np.linspace(0, len(stamps) - 1, MOST_TIMES).astype(int))
     north, east, psi = full[:, :, kept]
-    first = [np.array([row[np.isfinite(row)][:1].sum() for row in one])[:, None] for one in full[:2]]
+    first = [
+        np.array([row[np.isfinite(row)][:1].sum() for row in one])[:, None] for one in full[:2]
+    ]
     return _Tracks(stamps[kept], north - first[0], east - first[1], np.degrees(psi))
 
 
@@ -112,7 +119,9 @@ def _circles(distance: NDArray) -> list[float]:
     """Three round radii within what the runs reach. [m]"""
     most = float(np.nanmax(distance)) if np.isfinite(distance).any() else 1.0
     power = 10.0 ** np.floor(np.log10(max(most, 0.1)))
-    return [r for r in np.outer([0.1, 1.0], [1.0, 2.0, 5.0]).ravel() * power if r <= most][-3:] or [power]
+    return [r for r in np.outer([0.1, 1.0], [1.0, 2.0, 5.0]).ravel() * power if r <= most][-3:] or [
+        power
+    ]
 
 
 def _chosen(series: Sequence[SeriesOfRows]) -> list[NDArray]:
@@ -146,12 +155,18 @@ def _data(
     ends = []
     for values in (tracks.east[every], tracks.north[every]):
         known = values[np.isfinite(values)]
-        ends += [min(float(known.min()), 0.0), max(float(known.max()), 0.0)] if known.size else [-1.0, 1.0]
+        ends += (
+            [min(float(known.min()), 0.0), max(float(known.max()), 0.0)]
+            if known.size
+            else [-1.0, 1.0]
+        )
     box = [float(f"{end:.6g}") for end in ends]
     ship = tables.about.get("ship") or {}
     size = (float(ship.get("length") or 0.0), float(ship.get("breadth") or 0.0))
     is_to_scale = min(size) > 0.0
-    forward, starboard = hull_outline(*(size if is_to_scale else symbol_size(tracks.north[every], tracks.east[every])))
+    forward, starboard = hull_outline(
+        *(size if is_to_scale else symbol_size(tracks.north[every], tracks.east[every]))
+    )
     return {
         "time": tracks.time.tolist(),
         "box": box,
@@ -175,10 +190,15 @@ def _data(
 
 def _density(tracks: _Tracks, rows: NDArray, box: Sequence[float]) -> list[int]:
     """How many positions lie in each cell, row by row from the north."""
-    north, east = tracks.north[rows].ravel(), tracks.east[rows].ravel()
+    north = tracks.north[rows].ravel()
+    east = tracks.east[rows].ravel()
     known = np.isfinite(north) & np.isfinite(east)
-    west, right, south, top = (end + k for end, k in zip(box, (-1e-6, 1e-6, -1e-6, 1e-6), strict=True))
-    counts, _, _ = np.histogram2d(north[known], east[known], bins=CELLS, range=[[south, top], [west, right]])
+    west, right, south, top = (
+        end + k for end, k in zip(box, (-1e-6, 1e-6, -1e-6, 1e-6), strict=True)
+    )
+    counts, _, _ = np.histogram2d(
+        north[known], east[known], bins=CELLS, range=[[south, top], [west, right]]
+    )
     return counts[::-1].astype(int).ravel().tolist()
 
 
@@ -186,10 +206,15 @@ def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[li
     """Share of the runs that have left each circle by each time."""
     distance = np.hypot(tracks.north[rows], tracks.east[rows])
     largest = np.fmax.accumulate(np.where(np.isfinite(distance), distance, 0.0), axis=1)
-    shares = [(largest > radius).mean(axis=0) if len(rows) else np.zeros(len(tracks.time)) for radius in circles]
+    shares = [
+        (largest > radius).mean(axis=0) if len(rows) else np.zeros(len(tracks.time))
+        for radius in circles
+    ]
     return [[round(float(share), 4) for share in one] for one in shares]
 
 
 def _track(tables: StudyTables, tracks: _Tracks, row: int) -> dict[str, Any]:
     parts = {"north": tracks.north[row], "east": tracks.east[row], "heading": tracks.heading[row]}
-    return {"run": int(tables.runs["run"].iloc[row])} | {k: packed_series(v, LEVELS) for k, v in parts.items()}
+    return {"run": int(tables.runs["run"].iloc[row])} | {
+        k: packed_series(v, LEVELS) for k, v in parts.items()
+    }

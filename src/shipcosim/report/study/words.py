@@ -10,33 +10,49 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shipcosim.report.study.statistics import explained, wilson
-from shipcosim.report.study.tables import FACTOR, QUANTITY, SAMPLE, SUMMARY, Column, StudyTables, signed
+from shipcosim.report.study.tables import (
+    FACTOR,
+    QUANTITY,
+    SAMPLE,
+    SUMMARY,
+    Column,
+    StudyTables,
+    signed,
+)
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
 
-MOST_FIGURES, MOST_ERRORS, MOST_VALUES = 4, 50, 12
+MOST_FIGURES = 4
+MOST_ERRORS = 50
+MOST_VALUES = 12
 MATTERS = 0.05
 """Share of a variance from which a factor is named."""
 
 
 def facts(tables: StudyTables) -> tuple[Fact, ...]:
     """What was varied, how often, by what."""
-    about, study = tables.about, tables.study
+    about = tables.about
+    study = tables.study
     runs = about.get("runs") or {}
     planned = runs.get("planned")
     known = {
         "Study": tables.name,
         "Scenario": study.get("scenario"),
-        "Runs": f"{len(tables.runs)} of {planned}" if planned and planned != len(tables.runs) else len(tables.runs),
+        "Runs": f"{len(tables.runs)} of {planned}"
+        if planned and planned != len(tables.runs)
+        else len(tables.runs),
         "Seed": study.get("seed", about.get("seed")),
         "Engine": about.get("engine"),
     }
     return tuple(Fact(name, str(text)) for name, text in known.items() if text not in (None, ""))
 
 
-def outcome(tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]) -> Outcome:
+def outcome(
+    tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]
+) -> Outcome:
     """What the study says, in one sentence."""
-    failed, count = int(is_failed(tables).sum()), len(tables.runs)
+    failed = int(is_failed(tables).sum())
+    count = len(tables.runs)
     word = f"{count} runs" if count != 1 else "1 run"
     said = _of_summary(summary) or _of_runs(runs) or "No quantity has a value."
     if failed:
@@ -46,13 +62,16 @@ def outcome(tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[st
 
 def _of_summary(summary: Mapping[str, Column]) -> str:
     """The range of the first summary, and where its ends lie."""
-    found = next((c for c in summary.values() if c.role == SUMMARY and np.isfinite(c.values).any()), None)
+    found = next(
+        (c for c in summary.values() if c.role == SUMMARY and np.isfinite(c.values).any()), None
+    )
     if found is None:
         return ""
     name = found.description or found.name.replace("_", " ")
     if len(found.values) == 1:
         return f"{_capital(name)}: {found.text(found.values[0])}."
-    low, high = int(np.nanargmin(found.values)), int(np.nanargmax(found.values))
+    low = int(np.nanargmin(found.values))
+    high = int(np.nanargmax(found.values))
     if found.values[low] == found.values[high]:
         return f"{_capital(name)}: {found.text(found.values[low])} everywhere."
     ends = [f"{found.text(found.values[row])} ({_where(summary, row)})" for row in (low, high)]
@@ -67,10 +86,13 @@ def _where(columns: Mapping[str, Column], row: int) -> str:
 
 def _of_runs(runs: Mapping[str, Column]) -> str:
     """The first quantity over all runs."""
-    found = next((c for c in runs.values() if c.role == QUANTITY and np.isfinite(c.values).any()), None)
+    found = next(
+        (c for c in runs.values() if c.role == QUANTITY and np.isfinite(c.values).any()), None
+    )
     if found is None:
         return ""
-    known, name = found.values[np.isfinite(found.values)], _capital(found.description or found.name)
+    known = found.values[np.isfinite(found.values)]
+    name = _capital(found.description or found.name)
     if found.is_truth:
         low, high = wilson(int(known.sum()), len(known))
         return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
@@ -89,7 +111,9 @@ def key_figures(
     """Runs, and what the first quantities and summaries come to."""
     found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     for column in [*summary.values(), *runs.values()]:
-        known = column.values[~np.isnan(column.values) if column.role == SUMMARY else np.isfinite(column.values)]
+        known = column.values[
+            ~np.isnan(column.values) if column.role == SUMMARY else np.isfinite(column.values)
+        ]
         if not len(known) or column.labels or (column.role not in (QUANTITY, SUMMARY)):
             continue
         if column.name.endswith(("_low", "_high")):
@@ -102,9 +126,12 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
     name = column.description or column.name.replace("_", " ")
     if column.is_truth:
         low, high = wilson(int(known.sum()), len(known))
-        return KeyFigure(percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}")
+        return KeyFigure(
+            percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
+        )
     if column.role == SUMMARY:
-        low, high = column.text(known.min()), column.text(known.max())
+        low = column.text(known.min())
+        high = column.text(known.max())
         unitless = signed(known.min(), 3) if np.isfinite(known.max()) else low
         return KeyFigure(low if low == high else f"{unitless} to {high}", name)
     return KeyFigure(column.text(np.quantile(known, 0.9)), f"{name}: nine of ten runs are below")
@@ -123,7 +150,16 @@ def quantities_table(runs: Mapping[str, Column]) -> Table:
         else:
             numbers = tuple(plain(v) for v in np.quantile(known, [0.0, 0.5, 0.9, 1.0]))
         rows.append((column.name, column.unit, *numbers, missing, _varies_with(column, causes)))
-    head = ("quantity", "unit", "least", "median", "90 %", "largest", "no value", "varies most with")
+    head = (
+        "quantity",
+        "unit",
+        "least",
+        "median",
+        "90 %",
+        "largest",
+        "no value",
+        "varies most with",
+    )
     return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6))
 
 
@@ -131,8 +167,12 @@ def _varies_with(column: Column, causes: Sequence[Column]) -> str:
     """The factors that explain most of a quantity's variance, each alone."""
     if column.labels:
         return "–"
-    shares = [(explained(column.values, cause.values, bool(cause.levels)), cause.name) for cause in causes]
-    named = sorted(((share, name) for share, name in shares if share >= MATTERS), key=lambda one: -one[0])[:3]
+    shares = [
+        (explained(column.values, cause.values, bool(cause.levels)), cause.name) for cause in causes
+    ]
+    named = sorted(
+        ((share, name) for share, name in shares if share >= MATTERS), key=lambda one: -one[0]
+    )[:3]
     return ", ".join(f"{name} ({percent(share)})" for share, name in named) or "–"
 
 
@@ -140,7 +180,9 @@ def is_failed(tables: StudyTables) -> NDArray:
     """Which runs failed, (n,) of bool."""
     if "error" not in tables.runs:
         return np.zeros(len(tables.runs), bool)
-    return np.array([isinstance(error, str) and bool(error) for error in tables.runs["error"]], bool)
+    return np.array(
+        [isinstance(error, str) and bool(error) for error in tables.runs["error"]], bool
+    )
 
 
 def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
@@ -158,10 +200,18 @@ def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
 
 def varied_table(study: Mapping[str, Any]) -> Table:
     """What was varied: a row a factor and a sampled value."""
-    rows = [(str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")]
+    rows = [
+        (str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")
+    ]
     sampled = _given(_given(study).get("sample") or {}).get("of") or {}
     for signal, how in sampled.items():
-        rows.append((str(_given(how).get("name") or signal), _with_others(signal, how), _distribution(_given(how))))
+        rows.append(
+            (
+                str(_given(how).get("name") or signal),
+                _with_others(signal, how),
+                _distribution(_given(how)),
+            )
+        )
     for signal, how in (_given(_given(study).get("tune") or {}).get("of") or {}).items():
         ends = f"sought from {how['low']} to {how['high']}{' in the logarithm' if how.get('log') else ''}"
         rows.append((str(how.get("name") or signal), _with_others(signal, how), ends))
@@ -189,11 +239,17 @@ def _signals(factor: Mapping[str, Any]) -> str:
         events = ["events"] if any(case.get("events") for case in cases) else []
         return ", ".join([*names, *events]) or "cases"
     if "directions" in factor or "conditions" in factor:
-        return "where wind, waves and current come from" if "directions" in factor else "wind, waves and current"
+        return (
+            "where wind, waves and current come from"
+            if "directions" in factor
+            else "wind, waves and current"
+        )
     signals = factor.get("signal") or factor.get("signals")
     if "seeds" in factor and not signals:
         return "every parameter named seed"
-    return _plain(signals or factor.get("name", "")) + (" (at the fork)" if factor.get("at_fork") else "")
+    return _plain(signals or factor.get("name", "")) + (
+        " (at the fork)" if factor.get("at_fork") else ""
+    )
 
 
 def _values(factor: Mapping[str, Any]) -> str:
@@ -208,7 +264,11 @@ def _values(factor: Mapping[str, Any]) -> str:
     if "values" in factor:
         return _listed([str(value) for value in factor["values"]])
     stretch = f"{factor.get('from', 0)} to {factor.get('to', 0)}"
-    return f"{stretch} by {factor['step']}" if "step" in factor else f"{stretch}, {factor.get('count')} values"
+    return (
+        f"{stretch} by {factor['step']}"
+        if "step" in factor
+        else f"{stretch}, {factor.get('count')} values"
+    )
 
 
 def _listed(texts: Sequence[str]) -> str:
@@ -253,7 +313,9 @@ def _quantity(one: Mapping[str, Any]) -> str:
 def _summary(one: Mapping[str, Any]) -> str:
     statistic = str(one.get("statistic", "")).replace("_", " ")
     given = [f"{key} {one[key]}" for key in ("percentile", "along", "share") if key in one]
-    return ", ".join([f"{statistic} of {one.get('quantity')} over {_plain(one.get('over', ''))}", *given])
+    return ", ".join(
+        [f"{statistic} of {one.get('quantity')} over {_plain(one.get('over', ''))}", *given]
+    )
 
 
 def _plain(value: Any) -> str:
@@ -261,13 +323,17 @@ def _plain(value: Any) -> str:
     if isinstance(value, list | tuple):
         return ", ".join(map(_plain, value))
     if isinstance(value, Mapping):
-        return ", ".join(f"{key} {f'({_plain(v)})' if isinstance(v, list | tuple) else v}" for key, v in value.items())
+        return ", ".join(
+            f"{key} {f'({_plain(v)})' if isinstance(v, list | tuple) else v}"
+            for key, v in value.items()
+        )
     return str(value)
 
 
 def setup_table(tables: StudyTables) -> Table:
     """Scenario, start values, sampling, seed, engine and versions."""
-    about, study = tables.about, _given(tables.study)
+    about = tables.about
+    study = _given(tables.study)
     sample, tune = (_given(study.get(name) or {}) for name in ("sample", "tune"))
     sought = [f"{one['quantity']} {one['direction']}d" for one in tune.get("objective", ())]
     known: dict[str, Any] = {
@@ -275,7 +341,9 @@ def setup_table(tables: StudyTables) -> Table:
         "start values of all runs": _plain(study["set"]) if study.get("set") else None,
         "stop time": study.get("stop_time"),
         "runs share the time before": study.get("fork_at"),
-        "sampling": f"{sample['method']}, {sample.get('runs')} points" if sample.get("method") else None,
+        "sampling": f"{sample['method']}, {sample.get('runs')} points"
+        if sample.get("method")
+        else None,
         "search": f"NSGA-II, {tune['trials']} trials, {tune['population']} a generation: {', '.join(sought)}"
         if tune
         else None,
@@ -284,7 +352,10 @@ def setup_table(tables: StudyTables) -> Table:
         "plan": about.get("plan"),
         "versions": _plain(about["versions"]) if about.get("versions") else None,
     }
-    return Table(tuple((name, str(value)) for name, value in known.items() if value not in (None, "")), tight=(0,))
+    return Table(
+        tuple((name, str(value)) for name, value in known.items() if value not in (None, "")),
+        tight=(0,),
+    )
 
 
 def study_text(study: Mapping[str, Any]) -> str:

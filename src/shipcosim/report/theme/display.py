@@ -36,13 +36,18 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
         Same rows and attributes; text signals are left out. What is drawn is the attribute `factor` times what the
         table holds, plus whole turns where it is an angle.
     """
-    units, found = units_to_read(table), {}
+    units = units_to_read(table)
+    found = {}
     for name, variable in _series(table).items():
         unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
         values = unturned(str(name), variable.values) if unit == "deg" else variable.values
-        found[name] = as_variable(factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor)
+        found[name] = as_variable(
+            factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor
+        )
         found[name].attrs["logical"] = variable.dtype.kind == "b"
-    shown = xr.Dataset(found, coords={"time": ("time", np.asarray(table["time"].values, float))}, attrs=table.attrs)
+    shown = xr.Dataset(
+        found, coords={"time": ("time", np.asarray(table["time"].values, float))}, attrs=table.attrs
+    )
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
     return shown
@@ -55,7 +60,8 @@ def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
     -------
     dict of str or None to (str, float)
     """
-    chosen, largest = {}, dict.fromkeys([v.attrs.get("units") for v in table.variables.values()], 0.0)
+    chosen = {}
+    largest = dict.fromkeys([v.attrs.get("units") for v in table.variables.values()], 0.0)
     for variable in _series(table).values():
         if variable.dtype.kind != "b" and variable.size and not np.isnan(variable.values).all():
             unit = variable.attrs.get("units")
@@ -92,7 +98,9 @@ def thinned(shown: Dataset, most: int) -> tuple[Dataset, int]:
         return shown, 1
     span = int(np.ceil(2 * rows / most))
     starts = np.arange(0, rows, span)
-    drawn = np.unique(np.concatenate([starts, np.minimum(starts + span // 2, rows - 1), [rows - 1]]))
+    drawn = np.unique(
+        np.concatenate([starts, np.minimum(starts + span // 2, rows - 1), [rows - 1]])
+    )
     thin = shown.isel(time=drawn)
     for name, variable in shown.data_vars.items():
         thin[name] = ("time", _extremes(variable.values, drawn, starts, span), variable.attrs)
@@ -118,9 +126,13 @@ def _extremes(values: NDArray, drawn: NDArray, starts: NDArray, span: int) -> ND
     return answer
 
 
-def as_variable(values: ArrayLike, unit: str | None, long_name: str, factor: float = 1.0) -> xr.Variable:
+def as_variable(
+    values: ArrayLike, unit: str | None, long_name: str, factor: float = 1.0
+) -> xr.Variable:
     """A signal of the page."""
-    return xr.Variable("time", values, {"units": unit or "", "long_name": long_name, "factor": factor})
+    return xr.Variable(
+        "time", values, {"units": unit or "", "long_name": long_name, "factor": factor}
+    )
 
 
 def unturned(name: str, radians: ArrayLike) -> NDArray:
@@ -138,7 +150,11 @@ def unturned(name: str, radians: ArrayLike) -> NDArray:
 def _align_headings(shown: Dataset, psi: str) -> None:
     """Move other headings by whole turns to lie beside the ship's."""
     for name in shown.data_vars:
-        if name != psi and "psi" in str(name).rpartition(".")[2].split("_") and shown[name].attrs["units"] == "deg":
+        if (
+            name != psi
+            and "psi" in str(name).rpartition(".")[2].split("_")
+            and shown[name].attrs["units"] == "deg"
+        ):
             gap = np.nanmedian(shown[name].values - shown[psi].values)
             if np.isfinite(gap):
                 shown[name].values[:] -= 360.0 * np.round(gap / 360.0)

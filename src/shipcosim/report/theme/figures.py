@@ -45,7 +45,8 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
     >>> len(x) <= 60, float(x[y == 1.0][0]), float(x[0]), float(x[-1])
     (True, 500.0, 0.0, 999.0)
     """
-    x, y = np.asarray(x, float), np.asarray(y, float)
+    x = np.asarray(x, float)
+    y = np.asarray(y, float)
     if len(x) <= most:
         return x, y
     known = np.isfinite(x) & np.isfinite(y)
@@ -53,7 +54,11 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
     for stretch in np.array_split(np.arange(len(x)), most // 6):
         rows = stretch[known[stretch]]
         if rows.size:
-            kept += [rows[0], rows[-1], *(rows[of(values[rows])] for values in (x, y) for of in (np.argmin, np.argmax))]
+            kept += [
+                rows[0],
+                rows[-1],
+                *(rows[of(values[rows])] for values in (x, y) for of in (np.argmin, np.argmax)),
+            ]
     rows = np.unique(np.array(kept, int))
     breaks = np.flatnonzero(np.diff(np.cumsum(~known)[rows])) + 1
     return np.insert(x[rows], breaks, np.nan), np.insert(y[rows], breaks, np.nan)
@@ -68,7 +73,14 @@ def _told_apart(values: NDArray) -> list[float | None]:
 
 
 def line(
-    name: str, x: ArrayLike, y: ArrayLike, colour: str, *, width: float = 1.5, dash: str = "solid", **more: Any
+    name: str,
+    x: ArrayLike,
+    y: ArrayLike,
+    colour: str,
+    *,
+    width: float = 1.5,
+    dash: str = "solid",
+    **more: Any,
 ) -> dict[str, Any]:
     """A curve, thinned where it has more points than a figure shows; the colour is one of `palette`."""
     x, y = thinned_curve(x, y)
@@ -77,10 +89,18 @@ def line(
     return {"type": "scatter", "mode": "lines", "name": name, **places, "line": look} | more
 
 
-def bars(name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str) -> dict[str, Any]:
+def bars(
+    name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str
+) -> dict[str, Any]:
     """Upright bars, one for each category."""
     return {
-        **{"type": "bar", "name": name, "x": list(categories), "y": rounded(sizes, 3), "marker": {"color": colour}},
+        **{
+            "type": "bar",
+            "name": name,
+            "x": list(categories),
+            "y": rounded(sizes, 3),
+            "marker": {"color": colour},
+        },
         "hovertemplate": f"%{{y:.3~g}} {unit}",
     }
 

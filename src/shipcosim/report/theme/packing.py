@@ -12,9 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 LEVELS = 10_000
 """Steps that a series' range has at least: a panel of 200 px may be looked at fifty times closer."""
 
-SPIKY, BEYOND = 50.0, 1e4  # ranges over the spread of most values: from here on finer steps, and single numbers
+SPIKY = 50.0  # ranges over the spread of most values: from here on finer steps, and single numbers
+BEYOND = 1e4
 BYTES_A_NUMBER = 3.4  # of noise, compressed
-SMALLEST, LARGEST = 1e-300, float(np.finfo(np.float32).max)  # of a run that diverged: what is larger becomes a gap
+SMALLEST = 1e-300  # of a run that diverged: what is larger becomes a gap
+LARGEST = float(np.finfo(np.float32).max)
 
 
 def packed_text(text: str) -> str:
@@ -83,7 +85,10 @@ def most_rows(columns: Collection[ArrayLike], budget: int) -> int:
     """
     rows = max((np.size(column) for column in columns), default=0)
     sure = max(int(budget / (BYTES_A_NUMBER * max(len(columns), 1))), 500)
-    if sure < rows <= 3 * sure and len(packed_data([packed_series(column) for column in columns])) <= budget:
+    if (
+        sure < rows <= 3 * sure
+        and len(packed_data([packed_series(column) for column in columns])) <= budget
+    ):
         return rows
     return sure
 
@@ -98,4 +103,6 @@ def _step(known: NDArray, levels: float) -> float | None:
         return None
     finest = max(min(span, SPIKY * spread) / levels, 1e-15 * float(np.abs(known).max()))
     power = int(np.floor(np.log10(finest)))
-    return max(float(f"{m}e{power}") for m in (1, 2, 5) if float(f"{m}e{power}") <= 1.000001 * finest)
+    return max(
+        float(f"{m}e{power}") for m in (1, 2, 5) if float(f"{m}e{power}") <= 1.000001 * finest
+    )

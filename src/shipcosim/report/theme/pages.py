@@ -37,7 +37,12 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.globals |= {"asset": _asset, "packed": packed_data, "plotly": _plotly, "version": shipcosim.__version__}
+    made.globals |= {
+        "asset": _asset,
+        "packed": packed_data,
+        "plotly": _plotly,
+        "version": shipcosim.__version__,
+    }
     return made
 
 
@@ -49,4 +54,6 @@ def _asset(path: str) -> Markup:
 @cache
 def _plotly() -> str:
     """The library that draws, compressed, with the licences of all that is in it."""
-    return packed_text(f"/*{_asset('theme/vendor/LICENSES.txt')}*/{_asset('theme/vendor/plotly.min.js')}")
+    return packed_text(
+        f"/*{_asset('theme/vendor/LICENSES.txt')}*/{_asset('theme/vendor/plotly.min.js')}"
+    )

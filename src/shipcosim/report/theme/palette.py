@@ -3,13 +3,27 @@
 They can be told apart with every kind of colour vision. `templates/figures.js` looks a name up in the style sheet.
 """
 
-BLUE, VERMILLION, GREEN, ORANGE = "@blue", "@vermillion", "@green", "@orange"
-SKY, PURPLE, OLIVE, INK, FAINT = "@sky", "@purple", "@olive", "@ink", "@faint"
-FAULT, BAND = "@fault", "@band"  # behind curves: where a log is faulty, what white noise stays within
+BLUE = "@blue"
+VERMILLION = "@vermillion"
+GREEN = "@green"
+ORANGE = "@orange"
+SKY = "@sky"
+PURPLE = "@purple"
+OLIVE = "@olive"
+INK = "@ink"
+FAINT = "@faint"
+FAULT = "@fault"  # behind curves: where a log is faulty, what white noise stays within
+BAND = "@band"
 CYCLE = (BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, OLIVE, INK)
 
-SHIP, REFERENCE, SET_POINT, MEASURED, EXPECTED, COMMAND = BLUE, ORANGE, INK, FAINT, PURPLE, INK
-PASSED, FAILED = GREEN, VERMILLION
+SHIP = BLUE
+REFERENCE = ORANGE
+SET_POINT = INK
+MEASURED = FAINT
+EXPECTED = PURPLE
+COMMAND = INK
+PASSED = GREEN
+FAILED = VERMILLION
 SOURCES = {"wind": SKY, "drift": GREEN, "hull": ORANGE, "thrusters": BLUE}
 
 

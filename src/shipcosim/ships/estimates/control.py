@@ -15,7 +15,9 @@ import numpy as np
 from shipcosim.ships.attainable import largest_multiple
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 
-TUNED_LENGTH, MOST_PACE, SHARE = 33.9, 1.5, 0.2
+TUNED_LENGTH = 33.9
+MOST_PACE = 1.5
+SHARE = 0.2
 TUNED = {"position": 0.0684, "heading": 0.101, "reference": pi / 60.0}  # rad/s
 RULE = "rule of docs/your-own-ship.md"
 DAMPING = 0.15
@@ -90,7 +92,9 @@ class ControlledShip:
     reach: tuple[float, float, float]
 
 
-def reach_of(effects: np.ndarray, least: np.ndarray, most: np.ndarray) -> tuple[float, float, float]:
+def reach_of(
+    effects: np.ndarray, least: np.ndarray, most: np.ndarray
+) -> tuple[float, float, float]:
     """Largest force forward or astern, to a side, and yaw moment, each alone and to the weaker side.
 
     Parameters
@@ -107,7 +111,10 @@ def reach_of(effects: np.ndarray, least: np.ndarray, most: np.ndarray) -> tuple[
     """
     force, moment = (max(float(np.abs(rows).max()), 1e-9) for rows in (effects[:2], effects[2]))
     scale = np.array([force, force, moment])
-    sets = [np.outer((low, high), effect) / scale for low, high, effect in zip(least, most, effects.T, strict=True)]
+    sets = [
+        np.outer((low, high), effect) / scale
+        for low, high, effect in zip(least, most, effects.T, strict=True)
+    ]
     both = np.concatenate([np.eye(3), -np.eye(3)])
     found = largest_multiple(sets, np.ones((6, len(sets))), both / scale)
     X, Y, N = np.minimum(found[:3], found[3:]).tolist()
@@ -128,7 +135,8 @@ def pace_of(loop: ControlledShip) -> tuple[float, float]:
         [1, 1]
     """
     by_size = min(sqrt(TUNED_LENGTH / loop.length), MOST_PACE)
-    mass, force = max(loop.mass[0, 0], loop.mass[1, 1]), min(loop.reach[:2])
+    mass = max(loop.mass[0, 0], loop.mass[1, 1])
+    force = min(loop.reach[:2])
     by_thrust = sqrt(SHARE * force / mass) / TUNED["position"]
     turn = sqrt(SHARE * loop.reach[2] / (loop.mass[2, 2] * 5.0 * pi / 180.0)) / TUNED["heading"]
     return min(by_size, by_thrust), min(by_size, turn)
@@ -169,9 +177,14 @@ def controller(loop: ControlledShip) -> dict[str, EstimatedNumber]:
     }
     values |= {name: time / min(position, heading, 1.0) for name, time in FILTERS.items()}
     for name, (value, power) in DISTURBANCES.items():
-        values[name] = value * (heading if name in ("rate_disturbance", "bias_drift_yaw") else position) ** power
+        values[name] = (
+            value
+            * (heading if name in ("rate_disturbance", "bias_drift_yaw") else position) ** power
+        )
     found = {name: EstimatedNumber(float(value), 0.0, RULE) for name, value in values.items()}
-    return found | {name: EstimatedNumber(value, 0.0, "docs/dp-loop.md") for name, value in OBSERVER.items()}
+    return found | {
+        name: EstimatedNumber(value, 0.0, "docs/dp-loop.md") for name, value in OBSERVER.items()
+    }
 
 
 def reference(loop: ControlledShip) -> dict[str, EstimatedNumber]:
@@ -209,7 +222,10 @@ def sensors(length: float) -> dict[str, EstimatedNumber]:
     dict of str to Estimate
         Parameters of the sensors.
     """
-    found = {name: EstimatedNumber(value, 0.0, "usual DP sensors; assumed") for name, value in SENSORS.items()}
+    found = {
+        name: EstimatedNumber(value, 0.0, "usual DP sensors; assumed")
+        for name, value in SENSORS.items()
+    }
     return found | mast(length)
 
 
@@ -226,5 +242,12 @@ def mast(length: float) -> dict[str, EstimatedNumber]:
     dict of str to Estimate
         mast_x, mast_y, mast_height. [m, m, m]
     """
-    places = {"mast_x": 0.1 * length, "mast_y": 0.0, "mast_height": min(max(0.45 * length, 3.0), 40.0)}
-    return {name: EstimatedNumber(value, 0.0, "on the wheelhouse; assumed") for name, value in places.items()}
+    places = {
+        "mast_x": 0.1 * length,
+        "mast_y": 0.0,
+        "mast_height": min(max(0.45 * length, 3.0), 40.0),
+    }
+    return {
+        name: EstimatedNumber(value, 0.0, "on the wheelhouse; assumed")
+        for name, value in places.items()
+    }

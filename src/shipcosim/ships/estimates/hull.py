@@ -80,21 +80,33 @@ def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
     The yaw moment has the gyration radius of the strips' added mass: 0.29 L of a box, 0.19 L of a hull with fine ends.
     Clarke's own formula for it falls below a tenth of that for ships as broad as a third of their length.
     """
-    L, B, T, rho = form.length, form.breadth, form.draught, form.density
+    L = form.length
+    B = form.breadth
+    T = form.draught
+    rho = form.density
     volume = form.volume / form.hulls
     A11 = 2.7 * rho * volume ** (5.0 / 3.0) / L**2
     sway = 1.0 + 0.16 * form.block * B / T - 5.1 * (B / L) ** 2
     A22 = 0.5 * rho * L**3 * pi * (T / L) ** 2 * max(sway, 0.3)
-    lever, share = 0.05 * L, form.hulls
-    coupling = EstimatedNumber(0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway")
+    lever = 0.05 * L
+    share = form.hulls
+    coupling = EstimatedNumber(
+        0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway"
+    )
     return {
         "A11": EstimatedNumber(
-            share * A11, max(0.3 * share * A11, 0.08 * form.mass), f"{SODING}; tolerance 8 % of the mass"
+            share * A11,
+            max(0.3 * share * A11, 0.08 * form.mass),
+            f"{SODING}; tolerance 8 % of the mass",
         ),
         "A22": within(share * A22, 0.4, CLARKE),
         "A26": coupling,
         "A62": coupling,
-        "A66": within(share * A22 * (0.23 * L) ** 2, 0.5, f"strips of {CLARKE}'s added mass in sway, gyration 0.23 L"),
+        "A66": within(
+            share * A22 * (0.23 * L) ** 2,
+            0.5,
+            f"strips of {CLARKE}'s added mass in sway, gyration 0.23 L",
+        ),
     }
 
 
@@ -116,7 +128,9 @@ def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
         [kg.m2]
     """
     own = mass * (0.25 * length) ** 2
-    return EstimatedNumber(own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021")
+    return EstimatedNumber(
+        own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021"
+    )
 
 
 def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:
@@ -136,7 +150,11 @@ def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:
     -----
     The tolerance is wide: published values of ships go from 0.6 to 1.5.
     """
-    return within(float(np.interp(0.5 * form.breadth / form.draught, *_HOERNER)), 0.6, "Hoerner's curve over B/(2T)")
+    return within(
+        float(np.interp(0.5 * form.breadth / form.draught, *_HOERNER)),
+        0.6,
+        "Hoerner's curve over B/(2T)",
+    )
 
 
 def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str, EstimatedNumber]:
@@ -154,7 +172,10 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
     dict of str to Estimate
         Y_uv, Y_ur, N_uv, N_ur, X_rv; and added_mass_coriolis, 0.
     """
-    L, B, T, Cb = form.length, form.breadth, form.draught, form.block
+    L = form.length
+    B = form.breadth
+    T = form.draught
+    Cb = form.block
     scale = 0.5 * form.density * form.hulls * pi * (T / L) ** 2
     return {
         "added_mass_coriolis": EstimatedNumber(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),
@@ -162,5 +183,9 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
         "Y_ur": within(scale * L**3 * (0.5 - 2.2 * B / L + 0.08 * B / T), 0.5, CLARKE),
         "N_uv": within(-scale * L**3 * (0.5 + 2.4 * T / L), 0.3, CLARKE),
         "N_ur": within(-scale * L**4 * max(0.25 + 0.039 * B / T - 0.56 * B / L, 0.1), 0.3, CLARKE),
-        "X_rv": within(0.7 * sway_mass, 0.3, "0.7 of the added mass in sway; assumed, as MMG derivatives have it"),
+        "X_rv": within(
+            0.7 * sway_mass,
+            0.3,
+            "0.7 of the added mass in sway; assumed, as MMG derivatives have it",
+        ),
     }

@@ -24,7 +24,9 @@ USUAL_KT = {"open": 0.35, "ducted": 0.55, "tunnel": 0.40}
 MOST_KT = 1.2
 ZERO_THRUST = {"open": 2.4, "ducted": 1.84, "tunnel": 2.4}
 """Advance ratio at no thrust over the thrust coefficient at the bollard. [1]"""
-RESPONSE, INTEGRAL, TIP = 5.0, 2.0, 0.7 * pi  # 1/s, 1/s; speed of the reference section in n D
+RESPONSE = 5.0  # 1/s, 1/s; speed of the reference section in n D
+INTEGRAL = 2.0
+TIP = 0.7 * pi
 _DISC = 0.125 * pi * TIP**2  # C over rho n^2 D^4
 
 
@@ -82,7 +84,11 @@ def bollard_thrust(kind: str, diameter: float, power: float) -> EstimatedNumber:
     EstimatedNumber
         [N]
     """
-    return within(DNV[kind] * (diameter * power / 1000.0 * 0.95) ** (2.0 / 3.0), 0.15, "DNV-ST-0111, 5 % lost in gears")
+    return within(
+        DNV[kind] * (diameter * power / 1000.0 * 0.95) ** (2.0 / 3.0),
+        0.15,
+        "DNV-ST-0111, 5 % lost in gears",
+    )
 
 
 def most_thrust(kind: str, diameter: float, power: float, density: float) -> float:
@@ -142,7 +148,8 @@ def curves(screw: Screw) -> dict[str, EstimatedNumber]:
     bollard value; in the other quadrants the series B4-70 is scaled to meet them and the thrust astern.
     """
     zero = ZERO_THRUST[screw.kind] * screw.thrust_coefficient
-    end, last = 0.9 * zero, degrees(atan(0.9 * zero / TIP))
+    end = 0.9 * zero
+    last = degrees(atan(0.9 * zero / TIP))
     thrust = (screw.thrust_coefficient, -0.75 / zero, -0.25 / zero**2)
     torque = (screw.torque_coefficient, -0.5 / zero, -0.17 / zero**2)
     at_end = [k * (1.0 + a * end + b * end**2) for k, a, b in (thrust, torque)]
@@ -155,7 +162,9 @@ def curves(screw: Screw) -> dict[str, EstimatedNumber]:
     source = "form of the series B4-70, scaled to the bollard points"
     found = {}
     for i, (name, (k, a, b)) in enumerate((("thrust", thrust), ("torque", torque))):
-        found[f"{name}_polynomial"] = EstimatedNumber(f"{last:.4g} {k:.5g} {k * a:.5g} {k * b:.5g} 0", 0.0, source)
+        found[f"{name}_polynomial"] = EstimatedNumber(
+            f"{last:.4g} {k:.5g} {k * a:.5g} {k * b:.5g} 0", 0.0, source
+        )
         rows = f"-180 {astern[i]:.4g}; -90 1; 0 {ahead[i]:.4g}; {last:.4g} {ends[i]:.4g}; 90 1; 180 {astern[i]:.4g}"
         found[f"{name}_factors"] = EstimatedNumber(rows, 0.0, source)
     return found
@@ -179,12 +188,18 @@ def drive(screw: Screw, rise: float) -> dict[str, EstimatedNumber]:
     inertia = 24.0 * screw.diameter**5 * (0.3 if screw.kind == "tunnel" else 1.0)
     inertia = max(inertia, 1e-5)
     return {
-        "thrust_rate": EstimatedNumber(screw.thrust / rise, 0.0, f"full thrust in {rise:g} s; assumed"),
+        "thrust_rate": EstimatedNumber(
+            screw.thrust / rise, 0.0, f"full thrust in {rise:g} s; assumed"
+        ),
         "rpm_max": EstimatedNumber(1.02 * screw.rpm, 0.0, "2 % above that of full thrust; assumed"),
-        "torque_max": EstimatedNumber(1.05 * screw.torque, 0.0, "5 % above that of full power; assumed"),
+        "torque_max": EstimatedNumber(
+            1.05 * screw.torque, 0.0, "5 % above that of full power; assumed"
+        ),
         "power_max": EstimatedNumber(1.05 * screw.power, 0.0, "5 % above the motor's; assumed"),
         "inertia": EstimatedNumber(inertia, 0.0, "24 kg/m3 D^5, Smogeli 2006, of a unit of 4 m"),
-        "friction": EstimatedNumber(0.01 * screw.torque / (screw.rpm * pi / 30.0), 0.0, "1 % at full speed; assumed"),
+        "friction": EstimatedNumber(
+            0.01 * screw.torque / (screw.rpm * pi / 30.0), 0.0, "1 % at full speed; assumed"
+        ),
         "proportional_gain": EstimatedNumber(RESPONSE * inertia, 0.0, "5 1/s times the inertia"),
         "integral_gain": EstimatedNumber(RESPONSE * INTEGRAL * inertia, 0.0, "k_p over 0.5 s"),
     }

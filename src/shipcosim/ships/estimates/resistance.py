@@ -11,13 +11,15 @@ from math import cos, exp, log10, sqrt
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 from shipcosim.ships.estimates.hull import HullDimensions
 
-GRAVITY, VISCOSITY = 9.81, 1.19e-6  # m/s2; m2/s, sea water at 15 deg C
+GRAVITY = 9.81  # m/s2; m2/s, sea water at 15 deg C
+VISCOSITY = 1.19e-6
 APPENDAGES = 1.1
 """Resistance with rudder, thrusters and openings over that of the bare hull; assumed. [1]"""
 MOST_FROUDE = 0.4
 """Beyond which the formula holds no more. [1]"""
 FULL_SCALE = 20.0  # m; the correlation allowance is of ships, not of models and boats
-_FINE, _BROAD = 0.11, 0.25
+_FINE = 0.11
+_BROAD = 0.25
 
 
 def midship_coefficient(block: float) -> float:
@@ -36,7 +38,9 @@ def midship_coefficient(block: float) -> float:
     return min(1.0, max(1.006 - 0.0056 * block**-3.56, 1.02 * block))
 
 
-def wetted_surface(form: HullDimensions, midship: float | None = None, waterplane: float | None = None) -> float:
+def wetted_surface(
+    form: HullDimensions, midship: float | None = None, waterplane: float | None = None
+) -> float:
     """Wetted surface of all hulls without appendages and bulb.
 
     Parameters
@@ -51,14 +55,19 @@ def wetted_surface(form: HullDimensions, midship: float | None = None, waterplan
     float
         [m2]
     """
-    L, B, T, Cb = form.length, form.breadth, form.draught, form.block
+    L = form.length
+    B = form.breadth
+    T = form.draught
+    Cb = form.block
     Cm = midship_coefficient(Cb) if midship is None else midship
     Cwp = (1.0 + 2.0 * Cb) / 3.0 if waterplane is None else waterplane
     shape = 0.453 + 0.4425 * Cb - 0.2862 * Cm - 0.003467 * B / T + 0.3696 * Cwp
     return form.hulls * L * (2.0 * T + B) * sqrt(Cm) * shape
 
 
-def form_factor(form: HullDimensions, *, midship: float | None = None, lcb: float = 0.0, stern: float = 0.0) -> float:
+def form_factor(
+    form: HullDimensions, *, midship: float | None = None, lcb: float = 0.0, stern: float = 0.0
+) -> float:
     """1 + k, the viscous resistance over that of a flat plate.
 
     Parameters
@@ -77,10 +86,16 @@ def form_factor(form: HullDimensions, *, midship: float | None = None, lcb: floa
     float
         [1]
     """
-    L, T, Cp = form.length, form.draught, _prismatic(form, midship)
-    c12 = 0.479948 + 48.20 * max(T / L - 0.02, 0.0) ** 2.078 if T / L < 0.05 else (T / L) ** 0.2228446
+    L = form.length
+    T = form.draught
+    Cp = _prismatic(form, midship)
+    c12 = (
+        0.479948 + 48.20 * max(T / L - 0.02, 0.0) ** 2.078 if T / L < 0.05 else (T / L) ** 0.2228446
+    )
     shape = (form.breadth / _run(L, Cp, lcb)) ** 0.92497 * (0.95 - Cp) ** -0.521448
-    return (1.0 + 0.003 * stern) * (0.93 + c12 * shape * max(0.01, 1.0 - Cp + 0.0225 * lcb) ** 0.6906)
+    return (1.0 + 0.003 * stern) * (
+        0.93 + c12 * shape * max(0.01, 1.0 - Cp + 0.0225 * lcb) ** 0.6906
+    )
 
 
 def friction(speed: float, length: float) -> float:
@@ -105,7 +120,11 @@ def friction(speed: float, length: float) -> float:
 
 
 def wave_resistance(
-    form: HullDimensions, *, midship: float | None = None, waterplane: float | None = None, lcb: float = 0.0
+    form: HullDimensions,
+    *,
+    midship: float | None = None,
+    waterplane: float | None = None,
+    lcb: float = 0.0,
 ) -> float:
     """Wave resistance at the service speed of a hull without bulb and immersed transom.
 
@@ -121,12 +140,19 @@ def wave_resistance(
     float
         [N]
     """
-    L, B, T = form.length, form.breadth, form.draught
-    volume, Cp = form.volume / form.hulls, _prismatic(form, midship)
+    L = form.length
+    B = form.breadth
+    T = form.draught
+    volume = form.volume / form.hulls
+    Cp = _prismatic(form, midship)
     Cwp = min((1.0 + 2.0 * form.block) / 3.0, 0.98) if waterplane is None else waterplane
     froude = max(min(froude_number(form), MOST_FROUDE), 0.05)
     slender = B / L
-    c7 = 0.229577 * slender ** (1.0 / 3.0) if slender < _FINE else min(slender, 0.5 - 0.0625 / slender)
+    c7 = (
+        0.229577 * slender ** (1.0 / 3.0)
+        if slender < _FINE
+        else min(slender, 0.5 - 0.0625 / slender)
+    )
     c7 = slender if _FINE <= slender <= _BROAD else c7
     entrance = _entrance(form, volume, Cp, Cwp, lcb)
     c1 = 2223105.0 * c7**3.78613 * (T / B) ** 1.07961 * (90.0 - entrance) ** -1.37565
@@ -134,11 +160,15 @@ def wave_resistance(
     m1 = 0.0140407 * L / T - 1.75254 * volume ** (1.0 / 3.0) / L - 4.79323 * B / L - c16
     m2 = -1.69385 * Cp**2 * exp(-0.1 / froude**2)
     length = 1.446 * Cp - 0.03 * L / B if L / B < 12.0 else 1.446 * Cp - 0.36
-    shape = exp(min(m1 * froude**-0.9 + m2 * cos(length / froude**2), 5.0))  # beyond it there is no such ship
+    shape = exp(
+        min(m1 * froude**-0.9 + m2 * cos(length / froude**2), 5.0)
+    )  # beyond it there is no such ship
     return form.hulls * c1 * volume * form.density * GRAVITY * shape
 
 
-def resistance(form: HullDimensions, surface: float | None = None, factor: float | None = None) -> float:
+def resistance(
+    form: HullDimensions, surface: float | None = None, factor: float | None = None
+) -> float:
     """Resistance at the service speed in calm water, a tenth of it that of appendages.
 
     Parameters
@@ -210,8 +240,12 @@ def _run(L: float, Cp: float, lcb: float) -> float:
 
 def _entrance(form: HullDimensions, volume: float, Cp: float, Cwp: float, lcb: float) -> float:
     """Half angle of entrance in deg."""
-    L, B, run = form.length, form.breadth, _run(form.length, Cp, lcb)
-    power = (L / B) ** 0.80856 * (1.0 - Cwp) ** 0.30484 * max(0.01, 1.0 - Cp - 0.0225 * lcb) ** 0.6367
+    L = form.length
+    B = form.breadth
+    run = _run(form.length, Cp, lcb)
+    power = (
+        (L / B) ** 0.80856 * (1.0 - Cwp) ** 0.30484 * max(0.01, 1.0 - Cp - 0.0225 * lcb) ** 0.6367
+    )
     power *= (run / B) ** 0.34574 * (100.0 * volume / L**3) ** 0.16302
     return min(1.0 + 89.0 * exp(-power), 85.0)
 

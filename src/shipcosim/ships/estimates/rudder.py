@@ -52,20 +52,27 @@ def propeller_and_rudder(
     dict of str to Estimate
         Parameters of a propeller with a rudder, without places and open-water curve.
     """
-    L, Cb = form.length, form.block
+    L = form.length
+    Cb = form.block
     wake = max(0.5 * Cb - 0.05 if single else 0.55 * Cb - 0.20, 0.02)
     aspect = span**2 / area
     return {
         "wake": EstimatedNumber(wake, 0.08, "Taylor"),
         "thrust_deduction": EstimatedNumber(0.6 * wake, 0.05, "0.6 of the wake fraction"),
-        "lift_gradient": within(6.13 * aspect / (aspect + 2.25), 0.1, "Fujii: 6.13 a/(a + 2.25), a the aspect ratio"),
+        "lift_gradient": within(
+            6.13 * aspect / (aspect + 2.25), 0.1, "Fujii: 6.13 a/(a + 2.25), a the aspect ratio"
+        ),
         "covered": EstimatedNumber(min(covered, 1.0), 0.05, "diameter over span"),
         "race_gain": EstimatedNumber(0.55, 0.1, KVLCC2),
         "wake_ratio": EstimatedNumber(1.05, 0.1, KVLCC2),
         "straightening_starboard": EstimatedNumber(0.55, 0.15, f"{KVLCC2}, mean of both sides"),
         "straightening_port": EstimatedNumber(0.45, 0.15, f"{KVLCC2}, mean of both sides"),
         "straightening_x": within(-0.71 * L, 0.15, KVLCC2),
-        "rudder_deduction": EstimatedNumber(0.45 - 0.28 * Cb, 0.15, f"{KIJIMA}: 1 - t_R = 0.28 C_B + 0.55"),
-        "hull_share": EstimatedNumber(max(0.5 * Cb - 0.1, 0.0), 0.15, f"read off the curve of {KIJIMA}"),
+        "rudder_deduction": EstimatedNumber(
+            0.45 - 0.28 * Cb, 0.15, f"{KIJIMA}: 1 - t_R = 0.28 C_B + 0.55"
+        ),
+        "hull_share": EstimatedNumber(
+            max(0.5 * Cb - 0.1, 0.0), 0.15, f"read off the curve of {KIJIMA}"
+        ),
         "hull_x": within(-0.45 * L, 0.1, KIJIMA),
     }

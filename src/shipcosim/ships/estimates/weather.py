@@ -11,7 +11,8 @@ from math import cos, exp, pi, radians, sin
 
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 
-AIR, GRAVITY = 1.225, 9.81  # kg/m3, m/s2
+AIR = 1.225  # kg/m3, m/s2
+GRAVITY = 9.81
 BLENDERMANN = {
     "car carrier": (0.95, 0.55, 0.60, 0.80),
     "cargo ship, loaded": (0.85, 0.65, 0.55, 0.40),
@@ -67,7 +68,9 @@ def side_area(length: float) -> EstimatedNumber:
     return within(0.18 * length**2, 0.4, "0.18 L^2, as of small work ships; assumed")
 
 
-def wind_table(kind: str, front: float, side: float, centre_x: float, length: float) -> EstimatedNumber:
+def wind_table(
+    kind: str, front: float, side: float, centre_x: float, length: float
+) -> EstimatedNumber:
     """Wind loads over the squared apparent wind speed, every ten degrees.
 
     Parameters
@@ -101,8 +104,12 @@ def wind_table(kind: str, front: float, side: float, centre_x: float, length: fl
         X = -0.5 * AIR * front * along * cos(g) / divisor
         Y = -0.5 * AIR * side * across * sin(g) / divisor
         N = Y * (centre_x + 0.18 * length * (0.5 * pi - g))
-        rows.append(f"{angle} " + " ".join(f"{0.0 if abs(load) < 1e-9 else load:.6g}" for load in (X, Y, N)))
-    source = f"Blendermann 1994, {kind}, A_F {front:.4g} m2, A_L {side:.4g} m2, s_L {centre_x:.3g} m"
+        rows.append(
+            f"{angle} " + " ".join(f"{0.0 if abs(load) < 1e-9 else load:.6g}" for load in (X, Y, N))
+        )
+    source = (
+        f"Blendermann 1994, {kind}, A_F {front:.4g} m2, A_L {side:.4g} m2, s_L {centre_x:.3g} m"
+    )
     return EstimatedNumber("; ".join(rows), 0.0, source)
 
 
@@ -131,9 +138,13 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
         reflected = 1.0 - exp(-2.0 * omega**2 / GRAVITY * draught)
         scale = 0.5 * density * GRAVITY * reflected**2
         for heading in range(0, 181, 30):
-            c, s = cos(radians(heading)), sin(radians(heading))
-            X, Y = scale * breadth * c * abs(c), scale * length * s * s
+            c = cos(radians(heading))
+            s = sin(radians(heading))
+            X = scale * breadth * c * abs(c)
+            Y = scale * length * s * s
             rows.append(f"{omega:g} {heading} {round(X, 3) + 0.0:g} {round(Y, 3) + 0.0:g} 0")
     return EstimatedNumber(
-        "; ".join(rows), 0.0, "reflection above the keel, Faltinsen 1990, ch. 5; a factor of two either way"
+        "; ".join(rows),
+        0.0,
+        "reflection above the keel, Faltinsen 1990, ch. 5; a factor of two either way",
     )

@@ -24,7 +24,9 @@ def bind(draft: Draft, source: str | PathLike[str], element: str, prefix: str | 
 
 def unbind(draft: Draft, source: str | PathLike[str], element: str) -> None:
     """Remove the binding of a parameter set from an element; see `SystemStructure.unbind`."""
-    listed = children(element_named(draft, element), "ssd:ParameterBindings", "ssd:ParameterBinding")
+    listed = children(
+        element_named(draft, element), "ssd:ParameterBindings", "ssd:ParameterBinding"
+    )
     found = [part for part in listed if part.get("source") == quote(str(source))]
     if not found:
         known = [uri for part in listed if (uri := part.get("source"))]

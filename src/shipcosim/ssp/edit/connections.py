@@ -7,7 +7,9 @@ from shipcosim.ssp.edit.names import NameMatch, best_pair, connections
 from shipcosim.ssp.xml.markup import add, drop, ensure
 
 
-def connect(draft: Draft, source: str, target: str, transformation: dict[str, float | None], suppress: bool) -> None:
+def connect(
+    draft: Draft, source: str, target: str, transformation: dict[str, float | None], suppress: bool
+) -> None:
     """Connect two connectors of one system; see `SystemStructure.connect`.
 
     Parameters
@@ -21,7 +23,13 @@ def connect(draft: Draft, source: str, target: str, transformation: dict[str, fl
     suppress : bool
         Whether units are not converted.
     """
-    ends = best_pair(source, target, draft.system, lambda end: _exists(draft, end), draft.package.show(draft.path))
+    ends = best_pair(
+        source,
+        target,
+        draft.system,
+        lambda end: _exists(draft, end),
+        draft.package.show(draft.path),
+    )
     for end in ends:
         _declare(draft, end)
     start, end = reversed(ends) if ends[0].gives() is False or ends[1].gives() else ends
@@ -33,7 +41,9 @@ def connect(draft: Draft, source: str, target: str, transformation: dict[str, fl
         "suppressUnitConversion": "true" if suppress else None,
     }
     connection = add(ensure(start.system, "ssd:Connections"), "ssd:Connection", **names)
-    texts = {name: repr(float(number)) for name, number in transformation.items() if number is not None}
+    texts = {
+        name: repr(float(number)) for name, number in transformation.items() if number is not None
+    }
     if texts:
         add(connection, "ssc:LinearTransformation", **texts)
 

@@ -11,7 +11,9 @@ from shipcosim.ssp.xml.values import SSP_1_TYPES
 from shipcosim.units import Unit, find_unit
 
 
-def declare_variable(element: etree._Element, variable: Variable, fmu: FmuDescription, root: etree._Element) -> None:
+def declare_variable(
+    element: etree._Element, variable: Variable, fmu: FmuDescription, root: etree._Element
+) -> None:
     """Give a component a connector for a variable of its FMU.
 
     Parameters

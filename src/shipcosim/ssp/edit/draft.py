@@ -64,7 +64,9 @@ class Draft:
     def document(self) -> Document:
         """The SSD."""
         document = self.package.held[self.path]
-        assert isinstance(document, Document)  # put there on creation; changes only exchange it for a copy
+        assert isinstance(
+            document, Document
+        )  # put there on creation; changes only exchange it for a copy
         return document
 
     @property
@@ -98,7 +100,9 @@ class Draft:
         """System (None or incomplete where there are errors) and findings, as it is now."""
         findings = Findings()
         self.package.located.clear()
-        system = assemble_package(self.package, parameters, self.file, findings, self._described, swapped)
+        system = assemble_package(
+            self.package, parameters, self.file, findings, self._described, swapped
+        )
         return system, findings
 
     def assembled(self) -> tuple[System | None, Findings]:
@@ -128,7 +132,8 @@ class Draft:
         if self._changing:
             yield
             return
-        before, known = self._snapshot(), Counter(problem.found for problem in self.assembled()[1].errors)
+        before = self._snapshot()
+        known = Counter(problem.found for problem in self.assembled()[1].errors)
         self._changing = True
         try:
             yield
@@ -154,14 +159,17 @@ class Draft:
 
     def resource(self, file: Path) -> str:
         """Address under which a file from elsewhere belongs to the package from now on."""
-        folder, top = self.path.parent / "resources", self.package.folder.resolve()
+        folder = self.path.parent / "resources"
+        top = self.package.folder.resolve()
         known = {top / name: path for name, path in self.package.located.items()}
         known |= {path: held for path, held in self.package.held.items() if isinstance(held, Path)}
         for place, path in known.items():
             if place.name == file.name and path.is_file() and cmp(path, file, shallow=False):
                 return quote(place.relative_to(self.path.parent).as_posix())
         names = {path.name for path in (*known, *self.package.held, *folder.glob("*"))}
-        name = free_name(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
+        name = (
+            free_name(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
+        )
         self.package.held[folder / name] = file.resolve()
         return quote(f"resources/{name}")
 
@@ -183,10 +191,15 @@ class Draft:
             inside = self.package.folder.resolve()
             files = {name: file for name, file in files.items() if not _is_elsewhere(file, inside)}
         if packed:
-            contents = {name: file.read_bytes() if isinstance(file, Path) else file for name, file in files.items()}
+            contents = {
+                name: file.read_bytes() if isinstance(file, Path) else file
+                for name, file in files.items()
+            }
             write_archive(path, _with_ssd(contents, self.package.ssd, SYSTEM_STRUCTURE))
             return
-        folder, ssd = (path.parent, path.name) if path.suffix.lower() == ".ssd" else (path, SYSTEM_STRUCTURE)
+        folder, ssd = (
+            (path.parent, path.name) if path.suffix.lower() == ".ssd" else (path, SYSTEM_STRUCTURE)
+        )
         for name, file in _with_ssd(files, self.package.ssd, ssd).items():
             target = folder / name
             if not (isinstance(file, Path) and target.exists() and target.samefile(file)):
@@ -197,8 +210,14 @@ class Draft:
         self.assemble()
         folder = self.package.folder.resolve()
         files: dict[str, Path | bytes] = {}
-        if not self.file.partition("#")[0].lower().endswith(".ssd"):  # a single .ssd says nothing about its neighbours
-            found = {path.relative_to(folder): path for path in sorted(folder.rglob("*")) if path.is_file()}
+        if (
+            not self.file.partition("#")[0].lower().endswith(".ssd")
+        ):  # a single .ssd says nothing about its neighbours
+            found = {
+                path.relative_to(folder): path
+                for path in sorted(folder.rglob("*"))
+                if path.is_file()
+            }
             files = {name.as_posix(): path for name, path in found.items() if not _is_hidden(name)}
         files |= self.package.located
         for path, held in self.package.held.items():
@@ -206,7 +225,9 @@ class Draft:
                 files[path.relative_to(folder).as_posix()] = to_bytes(
                     relocated(held.root, self.package.moved), *PREFIXES.get(path.suffix, ())
                 )
-        gone = {name for name in self._came_with - set(self.package.located) if name.endswith(".fmu")}
+        gone = {
+            name for name in self._came_with - set(self.package.located) if name.endswith(".fmu")
+        }
         return {name: file for name, file in files.items() if name not in gone}
 
 
@@ -218,7 +239,11 @@ def _is_hidden(name: Path) -> bool:
 
 
 def _is_elsewhere(file: Path | bytes, folder: Path) -> bool:
-    return isinstance(file, Path) and file.suffix == ".fmu" and not file.resolve().is_relative_to(folder)
+    return (
+        isinstance(file, Path)
+        and file.suffix == ".fmu"
+        and not file.resolve().is_relative_to(folder)
+    )
 
 
 def _with_ssd(files: dict[str, Content], name: str, wanted: str) -> dict[str, Content]:

@@ -62,7 +62,9 @@ def system_for(draft: Draft, name: str) -> tuple[etree._Element, str]:
     if owner is None:
         systems = [known for known, part in walk(draft.system) if known and local(part) == "System"]
         outer = name.rpartition(".")[0]
-        raise draft.error(name, f"There is no system '{outer}' to put it into.", suggestion(outer, systems))
+        raise draft.error(
+            name, f"There is no system '{outer}' to put it into.", suggestion(outer, systems)
+        )
     return owner, short
 
 
@@ -91,7 +93,9 @@ def add_element(draft: Draft, name: str, tag: str, **attributes: str | None) -> 
     """
     owner, short = system_for(draft, name)
     if name in _elements(draft):
-        raise draft.error(name, f"{owner.get('name')} has an element '{short}' already.", "Names must differ.")
+        raise draft.error(
+            name, f"{owner.get('name')} has an element '{short}' already.", "Names must differ."
+        )
     return add(ensure(owner, "ssd:Elements"), f"ssd:{tag}", name=short, **attributes)
 
 
@@ -106,7 +110,9 @@ def add_component(
 ) -> None:
     """Add a component of an FMU; see `SystemStructure.add_component`."""
     source = draft.resource(file)
-    element = add_element(draft, name, "Component", type=FMU, source=source, implementation=implementation)
+    element = add_element(
+        draft, name, "Component", type=FMU, source=source, implementation=implementation
+    )
     for variable in fmu.variables.values():
         if variable.causality in kinds:
             declare_variable(element, variable, fmu, draft.root)
@@ -129,11 +135,14 @@ def rename(draft: Draft, old: str, new: str) -> None:
     """Rename an element or a system's connector; see `SystemStructure.rename`."""
     is_element = old in _elements(draft)
     named = element_named(draft, old) if is_element else _connector_named(draft, old)
-    listed, short = parent_of(named), named.get("name", "")
+    listed = parent_of(named)
+    short = named.get("name", "")
     if local(parent_of(listed)) == "Component":
         raise draft.error(old, "It is named by the FMU.", "Connectors of systems can be renamed.")
     full = old.removesuffix(short) + new
-    if full in _elements(draft) or any(part.get("name") == new for part in listed if part is not named):
+    if full in _elements(draft) or any(
+        part.get("name") == new for part in listed if part is not named
+    ):
         raise draft.error(full, "The name is taken.", "Names must differ.")
     for connection, attribute in attached(draft.system, old, is_element):
         connection.set(attribute, new)
@@ -148,7 +157,9 @@ def _elements(draft: Draft) -> list[str]:
 def _connector_named(draft: Draft, name: str) -> etree._Element:
     connector = find_connector(draft.system, name)
     if connector is None:
-        own = [part.get("name") for part in children(draft.system, "ssd:Connectors", "ssd:Connector")]
+        own = [
+            part.get("name") for part in children(draft.system, "ssd:Connectors", "ssd:Connector")
+        ]
         known = [*_elements(draft), *own]
         raise draft.error(name, "There is no such element or connector.", suggestion(name, known))
     return connector

@@ -88,12 +88,17 @@ def connections(system: etree._Element) -> Iterator[tuple[tuple[str, str], etree
     """All connections, nested ones included: the full names of the two ends, and the element."""
     for name, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
-            ends = ((connection.get(f"{s}Element"), connection.get(f"{s}Connector")) for s in ("start", "end"))
+            ends = (
+                (connection.get(f"{s}Element"), connection.get(f"{s}Connector"))
+                for s in ("start", "end")
+            )
             start, end = (".".join(filter(None, (name, *end))) for end in ends)
             yield (start, end), connection
 
 
-def attached(system: etree._Element, name: str, is_element: bool) -> Iterator[tuple[etree._Element, str]]:
+def attached(
+    system: etree._Element, name: str, is_element: bool
+) -> Iterator[tuple[etree._Element, str]]:
     """Ends of connections at an element or, else, at a connector.
 
     Parameters
@@ -131,7 +136,11 @@ def readings(signal: str, system: etree._Element) -> Iterator[NameMatch]:
 
 
 def best_pair(
-    source: str, target: str, system: etree._Element, exists: Callable[[NameMatch], bool], where: str
+    source: str,
+    target: str,
+    system: etree._Element,
+    exists: Callable[[NameMatch], bool],
+    where: str,
 ) -> tuple[NameMatch, NameMatch]:
     """Readings of two signals that a connection can join: both in one system, and existing as far as possible.
 
@@ -152,7 +161,10 @@ def best_pair(
         If one of them names an element that is not there, or the two can only be joined through systems between them.
     """
     pairs = [
-        (start, end) for start in readings(source, system) for end in readings(target, system) if start[0] is end[0]
+        (start, end)
+        for start in readings(source, system)
+        for end in readings(target, system)
+        if start[0] is end[0]
     ]
     start, end = max(pairs, key=lambda pair: sum(_likely(reading, exists) for reading in pair))
     for signal, reading in ((source, start), (target, end)):
@@ -171,12 +183,20 @@ def _names_an_element(reading: NameMatch) -> bool:
 
 
 def _refuse_if_elsewhere(
-    signal: str, reading: NameMatch, system: etree._Element, exists: Callable[[NameMatch], bool], where: str
+    signal: str,
+    reading: NameMatch,
+    system: etree._Element,
+    exists: Callable[[NameMatch], bool],
+    where: str,
 ) -> None:
     """Raise where a signal is in another system, or of an element that is not there; the check finds all else."""
     if any(exists(other) for other in readings(signal, system)):
-        remedy = "A connection stays within one system: go through connectors of the systems between."
-        raise ShipcosimError(Problem(where, f"{signal} is in another system than the other end.", remedy))
+        remedy = (
+            "A connection stays within one system: go through connectors of the systems between."
+        )
+        raise ShipcosimError(
+            Problem(where, f"{signal} is in another system than the other end.", remedy)
+        )
     if _names_an_element(reading):
         names = [part.get("name", "") for part in parts(system)]
         element = signal.partition(".")[0]

@@ -23,7 +23,9 @@ EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SS
 """
 
 
-def read(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | None = None) -> SystemStructure:
+def read(
+    path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | None = None
+) -> SystemStructure:
     """Read a system structure to look at it, change it, run it, write it.
 
     Parameters
@@ -47,11 +49,15 @@ def read(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | Non
     if osp_file(path):
         found = "An OspSystemStructure.xml cannot be edited."
         raise ShipcosimError(Problem(str(path), found, "`simulate` and `read_system` take it."))
-    package = open_package(path, findings, library.fmus(path, build=False) if fmus is None else fmus)
+    package = open_package(
+        path, findings, library.fmus(path, build=False) if fmus is None else fmus
+    )
     document = None if package is None else package.document(findings)
     if document is not None and has_root(document, "ssd:SystemStructureDescription", findings):
         if child(document.root, "ssd:System") is None:
-            findings.error(document.place(document.root), "There is no System in it.", "Add <System name=...>.")
+            findings.error(
+                document.place(document.root), "There is no System in it.", "Add <System name=...>."
+            )
     if package is None or document is None or findings.errors:
         raise ShipcosimError(findings.errors)
     return SystemStructure(Draft(package, document, str(path)))

@@ -13,7 +13,15 @@ from shipcosim.ssp.edit.names import walk
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import TOLERANCE, ParameterValue
 from shipcosim.ssp.xml.definitions import define_unit
-from shipcosim.ssp.xml.document import Document, Findings, child, children, local, parent_of, read_document
+from shipcosim.ssp.xml.document import (
+    Document,
+    Findings,
+    child,
+    children,
+    local,
+    parent_of,
+    read_document,
+)
 from shipcosim.ssp.xml.markup import add, drop, ensure, put
 from shipcosim.ssp.xml.values import KINDS, text_of
 
@@ -72,7 +80,8 @@ class Sets:
     """
 
     def __init__(self, package: Package, document: Document):
-        self.package, self.document = package, document
+        self.package = package
+        self.document = document
         system = child(document.root, "ssd:System")
         self.elements = {} if system is None else dict(walk(system))
         found = [
@@ -82,8 +91,12 @@ class Sets:
         ]
         counts = Counter(self._file(part) for _, part in found)
         bound = [self._bound(name, part, counts) for name, part in found]
-        depths = {name: sum(1 for _ in element.iterancestors()) for name, element in self.elements.items()}
-        self.bound = sorted((one for one in bound if one is not None), key=lambda one: -depths[one.owner])
+        depths = {
+            name: sum(1 for _ in element.iterancestors()) for name, element in self.elements.items()
+        }
+        self.bound = sorted(
+            (one for one in bound if one is not None), key=lambda one: -depths[one.owner]
+        )
 
     def _file(self, binding: etree._Element) -> Path | None:
         """File in the package that a binding or mapping names, or None."""
@@ -92,11 +105,23 @@ class Sets:
             return None
         return (self.document.folder / unquote(urlsplit(source).path)).resolve()
 
-    def _bound(self, owner: str, binding: etree._Element, counts: Mapping[Path | None, int]) -> Bound | None:
+    def _bound(
+        self, owner: str, binding: etree._Element, counts: Mapping[Path | None, int]
+    ) -> Bound | None:
         file = self._file(binding)
         inline = child(binding, "ssd:ParameterValues")
-        root = self._root(file) if file else None if inline is None else child(inline, "ssv:ParameterSet")
-        return None if root is None else Bound(owner, binding, root, file, counts[file] > 1 and file is not None)
+        root = (
+            self._root(file)
+            if file
+            else None
+            if inline is None
+            else child(inline, "ssv:ParameterSet")
+        )
+        return (
+            None
+            if root is None
+            else Bound(owner, binding, root, file, counts[file] > 1 and file is not None)
+        )
 
     def _root(self, file: Path) -> etree._Element | None:
         held = self.package.held.get(file, file)
@@ -126,7 +151,13 @@ class Sets:
             return
         owner = places[-1].owner if places else self._owner(name)
         own = [one for one in self.bound if one.owner == owner]
-        fits = own and not places and not own[0].shared and not own[0].mapped and name.startswith(own[0].prefix)
+        fits = (
+            own
+            and not places
+            and not own[0].shared
+            and not own[0].mapped
+            and name.startswith(own[0].prefix)
+        )
         if fits:
             self._add(own[0].root, name[len(own[0].prefix) :], value)
             self.keep(own[0].file, own[0].root)
@@ -148,7 +179,9 @@ class Sets:
         element = self.elements[owner]
         binding = add(ensure(element, "ssd:ParameterBindings"), "ssd:ParameterBinding")
         title = owner or self.document.root.get("name") or "values"
-        root = add(ensure(binding, "ssd:ParameterValues"), "ssv:ParameterSet", version="1.0", name=title)
+        root = add(
+            ensure(binding, "ssd:ParameterValues"), "ssv:ParameterSet", version="1.0", name=title
+        )
         ensure(root, "ssv:Parameters")
         self._add(root, name.removeprefix(f"{owner}.") if owner else name, value)
 
@@ -158,7 +191,9 @@ class Sets:
 
     def _owner(self, name: str) -> str:
         """Innermost element of this SSD that a parameter's full name begins with."""
-        return max((owner for owner in self.elements if not owner or name.startswith(f"{owner}.")), key=len)
+        return max(
+            (owner for owner in self.elements if not owner or name.startswith(f"{owner}.")), key=len
+        )
 
     def clear(self, name: str) -> bool:
         """Take a parameter out of all sets; false where it is in none, or in one that is bound more than once."""
@@ -198,7 +233,12 @@ class Sets:
         root = self._root(file) if file else child(mapping, "ssm:ParameterMapping")
         if root is None:
             return
-        if any([names.follow(part, "target", root.remove) for part in children(root, "ssm:MappingEntry")]):
+        if any(
+            [
+                names.follow(part, "target", root.remove)
+                for part in children(root, "ssm:MappingEntry")
+            ]
+        ):
             self.keep(file, root)
 
 
@@ -209,7 +249,9 @@ class _Names(NamedTuple):
     new: str | None
     exact: bool
 
-    def follow(self, element: etree._Element, attribute: str, remove: Callable[[etree._Element], None]) -> bool:
+    def follow(
+        self, element: etree._Element, attribute: str, remove: Callable[[etree._Element], None]
+    ) -> bool:
         """Change an attribute if it has the old name, and return whether it had."""
         text = element.get(attribute, "")
         if text != self.old if self.exact else not text.startswith(f"{self.old}."):

@@ -49,7 +49,11 @@ class StartValues(MutableMapping[str, Value]):
         with self._draft.changes():
             if not self._draft.sets.clear(name) or name in self:
                 where = "It is set in a set that is bound more than once, or by a mapping."
-                found, remedy = (where, "") if name in self else ("The system does not set it.", suggestion(name, self))
+                found, remedy = (
+                    (where, "")
+                    if name in self
+                    else ("The system does not set it.", suggestion(name, self))
+                )
                 raise ShipcosimError(self._draft.problem(name, found, remedy))
 
     def __iter__(self) -> Iterator[str]:
@@ -71,7 +75,12 @@ class StartValues(MutableMapping[str, Value]):
         return repr(dict(self))
 
     def put(
-        self, name: str, value: Value, unit: str | None = None, description: str = "", tolerance: float | None = None
+        self,
+        name: str,
+        value: Value,
+        unit: str | None = None,
+        description: str = "",
+        tolerance: float | None = None,
     ) -> None:
         """Set a value where it stands or, if that has no effect, over everything; see `SystemStructure.set`."""
         kind, own, items = _target(self._system(), name)
@@ -81,29 +90,38 @@ class StartValues(MutableMapping[str, Value]):
         value = self._converted(name, value, unit, own)
         kind = self._kind(name, value, kind)
         value = float(value) if kind == "Real" else value
-        given = ParameterValue(name, kind, value, own if kind == "Real" else None, description, tolerance=tolerance)
+        given = ParameterValue(
+            name, kind, value, own if kind == "Real" else None, description, tolerance=tolerance
+        )
         before = len(self._draft.assembled()[1].errors)
         self._draft.sets.put(name, given)
         system, findings = self._draft.assembled()
         wanted = items.get(value, value) if kind == "Enumeration" else value
         if system is not None and len(findings.errors) <= before and _value(system, name) != wanted:
-            self._draft.sets.append("", name, given)  # a mapping or a connector of a system has the last word
+            self._draft.sets.append(
+                "", name, given
+            )  # a mapping or a connector of a system has the last word
 
     def bind_to_components(self) -> None:
         """See `SystemStructure.bind_to_components`."""
-        system, bound = self._system(), self._draft.sets.bound
+        system = self._system()
+        bound = self._draft.sets.bound
         values = {name: _given(system, bound, name) for name in self}
         for binding in list(self._draft.root.iter(qualified("ssd:ParameterBinding"))):
             drop(binding)
         for name, value in values.items():
             self._draft.sets.put(name, value)
         for one in self._draft.sets.bound:
-            one.root.set("name", self._draft.root.get("name") or "values")  # ecos applies the sets of one name alone
+            one.root.set(
+                "name", self._draft.root.get("name") or "values"
+            )  # ecos applies the sets of one name alone
 
     def _kind(self, name: str, value: Value, kind: str | None) -> str:
         if type(value) not in KIND_OF:
             found = f"{value!r} is no value."
-            raise ShipcosimError(self._draft.problem(name, found, "A value is a number, true or false, or a text."))
+            raise ShipcosimError(
+                self._draft.problem(name, found, "A value is a number, true or false, or a text.")
+            )
         if isinstance(value, float) and not isfinite(value):
             raise ShipcosimError(self._draft.problem(name, f"{value} is not a finite number."))
         own = KIND_OF[type(value)]

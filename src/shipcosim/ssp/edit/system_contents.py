@@ -108,7 +108,9 @@ class SystemContents:
     @property
     def step_size(self) -> float | None:
         """Base step that an annotation gives, or None. Setting it writes OSP's, which libcosim needs. [s]"""
-        return next((float(part.get(name, "")) for part, name in step_sizes(self._draft.root)), None)
+        return next(
+            (float(part.get(name, "")) for part, name in step_sizes(self._draft.root)), None
+        )
 
     @step_size.setter
     def step_size(self, step_size: float) -> None:
@@ -129,7 +131,9 @@ class SystemContents:
         """
         return problems_of(*self._draft.assemble(parameters))
 
-    def checked(self, parameters: ParameterSets = (), components: Mapping[str, Path] | None = None) -> System:
+    def checked(
+        self, parameters: ParameterSets = (), components: Mapping[str, Path] | None = None
+    ) -> System:
         """The system ready to run, as `shipcosim.ssp.read_system` gives it.
 
         Parameters

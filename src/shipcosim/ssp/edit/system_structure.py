@@ -68,7 +68,9 @@ class SystemStructure(SystemContents):
         """
         with self.changes():
             description = read_fmu(fmu)
-            elements.add_component(self._draft, name, Path(fmu), description, tuple(kinds), implementation, step_size)
+            elements.add_component(
+                self._draft, name, Path(fmu), description, tuple(kinds), implementation, step_size
+            )
 
     def add_system(self, name: str) -> None:
         """Add a nested system without content."""
@@ -76,7 +78,13 @@ class SystemStructure(SystemContents):
             elements.add_element(self._draft, name, "System")
 
     def add_connector(
-        self, name: str, kind: str, *, type: str = "Real", unit: str | None = None, description: str = ""
+        self,
+        name: str,
+        kind: str,
+        *,
+        type: str = "Real",
+        unit: str | None = None,
+        description: str = "",
     ) -> None:
         """Add a connector to the outermost system, or to a nested one (``"ship.speed"``).
 
@@ -181,7 +189,12 @@ class SystemStructure(SystemContents):
             elements.rename(self._draft, old, new)
 
     def set(
-        self, name: str, value: Value, unit: str | None = None, description: str = "", tolerance: float | None = None
+        self,
+        name: str,
+        value: Value,
+        unit: str | None = None,
+        description: str = "",
+        tolerance: float | None = None,
     ) -> None:
         """Give a parameter or input a start value.
 
@@ -208,7 +221,9 @@ class SystemStructure(SystemContents):
         with self.changes():
             self.parameters.put(name, value, unit, description, tolerance)
 
-    def bind(self, source: str | PathLike[str], element: str = "", *, prefix: str | None = None) -> None:
+    def bind(
+        self, source: str | PathLike[str], element: str = "", *, prefix: str | None = None
+    ) -> None:
         """Bind a parameter set in a file to an element or, without one, to the outermost system; the last one wins.
 
         Parameters

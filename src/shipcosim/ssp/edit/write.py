@@ -25,7 +25,12 @@ KIND_OF = {bool: "Boolean", int: "Integer", float: "Real", str: "String", bytes:
 
 
 def parameter(
-    name: str, value: Value, unit: str | None = None, description: str = "", *, tolerance: float | None = None
+    name: str,
+    value: Value,
+    unit: str | None = None,
+    description: str = "",
+    *,
+    tolerance: float | None = None,
 ) -> ParameterValue:
     """A value for a parameter set, of the kind of its Python type.
 
@@ -53,7 +58,9 @@ def parameter(
     """
     defined = find_unit(unit)
     if defined is not None and defined.exponents is None:
-        raise ShipcosimError(Problem(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'."))
+        raise ShipcosimError(
+            Problem(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
+        )
     kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
@@ -101,7 +108,9 @@ def write_file(path: Path, data: bytes) -> None:
         raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
 
 
-def pack(folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: str | PathLike[str]) -> None:
+def pack(
+    folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: str | PathLike[str]
+) -> None:
     """Pack a folder with a SystemStructure.ssd and its FMUs into an .ssp; the same input gives the same bytes.
 
     Parameters
@@ -118,7 +127,8 @@ def pack(folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: 
     ShipcosimError
         With everything that is wrong with the system, or if the archive cannot be written.
     """
-    findings, folder = Findings(), Path(folder)
+    findings = Findings()
+    folder = Path(folder)
     package = open_package(folder, findings, fmus)
     if package is not None:
         assemble_package(package, (), str(folder), findings)
@@ -127,11 +137,16 @@ def pack(folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: 
     files = {
         path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and not any(part.startswith(".") for part in path.relative_to(folder).parts)
+        if path.is_file()
+        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
     }
-    files |= {name: path.read_bytes() for name, path in package.located.items() if name not in files}
+    files |= {
+        name: path.read_bytes() for name, path in package.located.items() if name not in files
+    }
     if package.moved and (document := package.document(findings)) is not None:
-        files[package.ssd] = to_bytes(relocated(document.root, package.moved), "ssd", "ssc", "ssv", "osp")
+        files[package.ssd] = to_bytes(
+            relocated(document.root, package.moved), "ssd", "ssc", "ssv", "osp"
+        )
     write_archive(out, files)
 
 

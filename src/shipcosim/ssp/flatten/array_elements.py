@@ -37,7 +37,8 @@ def element_connectors(
     (list of Connector, dict of str to tuple of int)
         And the dimensions of the arrays among them.
     """
-    found, known = [], {}
+    found = []
+    known = {}
     for connector in connectors:
         written = connector.dimensions
         given = arrays.get(connector.name, written)
@@ -48,7 +49,11 @@ def element_connectors(
             findings.error(connector.place, f"The connector is {shape_text(dimensions)}.", remedy)
         elif written and (is_open or not _fits(written, dimensions)):
             shown = "x".join("?" if size is None else str(size) for size in written)
-            remedy = f"Write {shape_text(arrays[connector.name])}." if connector.name in arrays else "Give its sizes."
+            remedy = (
+                f"Write {shape_text(arrays[connector.name])}."
+                if connector.name in arrays
+                else "Give its sizes."
+            )
             findings.error(connector.place, f"The connector is an array of {shown}.", remedy)
         elif dimensions:
             known[connector.name] = dimensions
@@ -94,7 +99,11 @@ def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Find
     shapes = [() if link.start_indices else start, () if link.end_indices else end]
     if shapes[0] != shapes[1]:
         found = f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}."
-        findings.error(link.place, found, "Both must have the same shape; startIndices and endIndices name an element.")
+        findings.error(
+            link.place,
+            found,
+            "Both must have the same shape; startIndices and endIndices name an element.",
+        )
         return []
     bare = replace(link, start_indices=(), end_indices=())
     return [replace(bare, start_connector=a, end_connector=b) for a, b in zip(*names, strict=True)]
@@ -110,7 +119,9 @@ def _end_names(
     if len(indices) != len(dimensions) or not all(inside):
         shown = ",".join(map(str, indices))
         findings.error(
-            link.place, f"{name}[{shown}] does not exist: {name} is {shape_text(dimensions)}.", "Count from 1."
+            link.place,
+            f"{name}[{shown}] does not exist: {name} is {shape_text(dimensions)}.",
+            "Count from 1.",
         )
         return None
     return [f"{name}[{','.join(map(str, indices))}]"]
@@ -133,7 +144,9 @@ def element_values(value: ParameterValue, findings: Findings) -> list[ParameterV
     if not value.dimensions:
         return [value]
     if min(value.dimensions) < 1 or prod(value.dimensions) != len(value.value):
-        found = f"{value.name} is {shape_text(value.dimensions)}, but has {len(value.value)} values."
+        found = (
+            f"{value.name} is {shape_text(value.dimensions)}, but has {len(value.value)} values."
+        )
         findings.error(value.place, found, f"Give {prod(value.dimensions)}.")
         return []
     pairs = zip(element_names(value.name, value.dimensions), value.value, strict=True)

@@ -154,7 +154,9 @@ def _is_given(connection: Connection, tree: Hierarchy) -> bool:
 
 def _experiment(structure: Structure) -> Experiment:
     experiment = structure.experiment
-    return replace(experiment, step_size=experiment.step_size or structure.system.annotated_step_size)
+    return replace(
+        experiment, step_size=experiment.step_size or structure.system.annotated_step_size
+    )
 
 
 def _check_names(tree: Hierarchy, findings: Findings) -> None:
@@ -163,7 +165,9 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
     for path, (element, _) in tree.components.items():
         name = ".".join(path)
         if name in seen:
-            findings.error(element.place, f"Two components have the full name '{name}'.", "Rename one of them.")
+            findings.error(
+                element.place, f"Two components have the full name '{name}'.", "Rename one of them."
+            )
         seen[name] = element
 
 
@@ -183,6 +187,10 @@ def remark_unconnected(
     """
     connected = {connection.target for connection in connections}
     for component in components.values():
-        free = [name for name in component.fmu.named("input") if (component.name, name) not in connected]
+        free = [
+            name for name in component.fmu.named("input") if (component.name, name) not in connected
+        ]
         if free:
-            findings.remark(component.name, f"Unconnected inputs keep their start value: {', '.join(free)}.")
+            findings.remark(
+                component.name, f"Unconnected inputs keep their start value: {', '.join(free)}."
+            )

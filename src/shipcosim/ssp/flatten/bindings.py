@@ -65,7 +65,9 @@ def apply_set(tree: Hierarchy, values: ParameterSet) -> None:
     tree.settings += _settings(tree, values, (), "", False)
 
 
-def _settings(tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: str, near: bool) -> list[Setting]:
+def _settings(
+    tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: str, near: bool
+) -> list[Setting]:
     return [
         Setting(path, prefix + one.name, one, near=near)
         for value in values.values
@@ -74,7 +76,11 @@ def _settings(tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: 
 
 
 def _mapped(
-    tree: Hierarchy, values: ParameterSet, path: ElementPath, prefix: str, mapping: Iterable[MappingEntry]
+    tree: Hierarchy,
+    values: ParameterSet,
+    path: ElementPath,
+    prefix: str,
+    mapping: Iterable[MappingEntry],
 ) -> list[Setting]:
     """Values under the names that a parameter mapping gives them; those that it does not name are not used."""
     by_name = {prefix + value.name: value for value in values.values}
@@ -86,5 +92,8 @@ def _mapped(
             continue
         how = (entry.transformation, entry.suppress_unit_conversion)
         renamed = replace(by_name[entry.source], name=entry.target)
-        settings += [Setting(path, one.name, one, *how, near=True) for one in element_values(renamed, tree.findings)]
+        settings += [
+            Setting(path, one.name, one, *how, near=True)
+            for one in element_values(renamed, tree.findings)
+        ]
     return settings

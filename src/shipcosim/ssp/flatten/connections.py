@@ -86,13 +86,18 @@ def _is_end(key: Key, port: Port) -> bool:
 
 def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wire]:
     """Wires that lead to a port, first one first; empty where they go in a circle."""
-    wires, seen = [], set()
+    wires = []
+    seen = set()
     while key in incoming:
         seen.add(key)
         wires.append(incoming[key])
         key = incoming[key].source
         if key in seen:
-            findings.error(wires[0].place, "The connections go in a circle without a component.", "Remove one of them.")
+            findings.error(
+                wires[0].place,
+                "The connections go in a circle without a component.",
+                "Remove one of them.",
+            )
             return []
     return wires[::-1]
 
@@ -105,8 +110,11 @@ def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
     return (None, key.name) if port.owner == "system" and key.path == () else None
 
 
-def _connection(wires: list[Wire], source: tuple[str | None, str], tree: Hierarchy, findings: Findings) -> Connection:
-    first, last = tree.ports[wires[0].source], tree.ports[wires[-1].target]
+def _connection(
+    wires: list[Wire], source: tuple[str | None, str], tree: Hierarchy, findings: Findings
+) -> Connection:
+    first = tree.ports[wires[0].source]
+    last = tree.ports[wires[-1].target]
     flow = Flow(first.type, first.variable_unit or first.unit, first.items)
     for wire in wires:
         what = wire.place, (str(wire.source), str(wire.target))
@@ -115,4 +123,6 @@ def _connection(wires: list[Wire], source: tuple[str | None, str], tree: Hierarc
     key = wires[-1].target
     target = (".".join(key.path) if last.owner == "component" else None, key.name)
     initial = last.owner == "component" and last.kind in ("parameter", "structuralParameter")
-    return Connection(source, target, flow.factor, flow.offset, flow.mapping, initial, wires[-1].place)
+    return Connection(
+        source, target, flow.factor, flow.offset, flow.mapping, initial, wires[-1].place
+    )

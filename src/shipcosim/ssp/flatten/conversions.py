@@ -66,7 +66,11 @@ class Flow:
 
 
 def advance(
-    flow: Flow, wire: Wire | Setting, port: Port, what: tuple[str, tuple[str, str]], findings: Findings
+    flow: Flow,
+    wire: Wire | Setting,
+    port: Port,
+    what: tuple[str, tuple[str, str]],
+    findings: Findings,
 ) -> Flow:
     """Flow behind a wire or a mapping entry.
 
@@ -90,8 +94,14 @@ def advance(
     Flow
     """
     place, names = what
-    if port.type is not None and flow.type is not None and flow.type not in TAKES.get(port.type, (port.type,)):
-        findings.error(place, f"{names[0]} is {flow.type}, {names[1]} is {port.type}.", "Connect equal types.")
+    if (
+        port.type is not None
+        and flow.type is not None
+        and flow.type not in TAKES.get(port.type, (port.type,))
+    ):
+        findings.error(
+            place, f"{names[0]} is {flow.type}, {names[1]} is {port.type}.", "Connect equal types."
+        )
         return replace(flow, type=port.type)
     if wire.suppress_unit_conversion:
         flow = replace(flow, unit=port.unit)
@@ -100,7 +110,12 @@ def advance(
     if transformation is not None and transformation.kind != "Linear":
         flow = _mapped(flow, transformation, port, place, findings)
     flow = _items_checked(flow, port, transformation, place, findings)
-    flow = replace(flow, type=port.type or flow.type, unit=flow.unit or port.unit, items=port.items or flow.items)
+    flow = replace(
+        flow,
+        type=port.type or flow.type,
+        unit=flow.unit or port.unit,
+        items=port.items or flow.items,
+    )
     if transformation is not None and transformation.kind == "Linear":
         if flow.type not in ("Real", None):
             found = f"A linear transformation of {flow.type} values."
@@ -109,36 +124,58 @@ def advance(
     return flow
 
 
-def _compare_units(flow: Flow, port: Port, place: str, names: tuple[str, str], findings: Findings) -> None:
+def _compare_units(
+    flow: Flow, port: Port, place: str, names: tuple[str, str], findings: Findings
+) -> None:
     if flow.unit is None or port.unit is None:
         return
     related = relation(flow.unit, port.unit)
     found = f"{names[0]} is in {flow.unit.name}, {names[1]} in {port.unit.name}"
     if related == "incompatible":
-        remedy = "Correct the unit." if names[0] == "the value" else "Connect like quantities or correct a unit."
+        remedy = (
+            "Correct the unit."
+            if names[0] == "the value"
+            else "Connect like quantities or correct a unit."
+        )
         findings.error(place, f"{found}; these cannot be converted.", remedy)
     elif related == "unknown":
-        findings.remark(place, f"{found}: not converted, the definition of one of them is missing.", "Add it to Units.")
+        findings.remark(
+            place,
+            f"{found}: not converted, the definition of one of them is missing.",
+            "Add it to Units.",
+        )
     elif related == "angle":
         findings.remark(place, f"{found}: taken as equal kinds, with 1 rad = 1.")
 
 
-def _mapped(flow: Flow, transformation: Transformation, port: Port, place: str, findings: Findings) -> Flow:
+def _mapped(
+    flow: Flow, transformation: Transformation, port: Port, place: str, findings: Findings
+) -> Flow:
     kind = transformation.kind
-    allowed = {"Boolean": ("Boolean",), "Integer": ("Integer", "Enumeration"), "Enumeration": ("Enumeration",)}[kind]
+    allowed = {
+        "Boolean": ("Boolean",),
+        "Integer": ("Integer", "Enumeration"),
+        "Enumeration": ("Enumeration",),
+    }[kind]
     if flow.type not in (*allowed, None) or port.type not in (*allowed, None):
         findings.error(
-            place, f"A mapping of {kind} values between {flow.type} and {port.type}.", "Take the one that fits."
+            place,
+            f"A mapping of {kind} values between {flow.type} and {port.type}.",
+            "Take the one that fits.",
         )
         return flow
     table = transformation.table
     if kind == "Enumeration":
         # Table of numbers from a table of item names.
         target = port.items or flow.items
-        for name, items in [(name, flow.items) for name in table] + [(name, target) for name in table.values()]:
+        for name, items in [(name, flow.items) for name in table] + [
+            (name, target) for name in table.values()
+        ]:
             if name not in items:
                 findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, items))
-        table = {flow.items[a]: target[b] for a, b in table.items() if a in flow.items and b in target}
+        table = {
+            flow.items[a]: target[b] for a, b in table.items() if a in flow.items and b in target
+        }
     elif port.items:
         _check_numbers(table, flow.items, port.items, place, findings)
     before = flow.mapping or {}
@@ -146,12 +183,18 @@ def _mapped(flow: Flow, transformation: Transformation, port: Port, place: str, 
     return replace(flow, mapping={**table, **after})
 
 
-def _check_numbers(table: Mapping, source: Items, target: Items, place: str, findings: Findings) -> None:
+def _check_numbers(
+    table: Mapping, source: Items, target: Items, place: str, findings: Findings
+) -> None:
     """What a mapping by numbers makes of a source's items must be items of the target."""
     made = {table.get(value, value) for value in (source.values() or table)}
     if lost := sorted(made - set(target.values())):
         found = f"The mapping gives {', '.join(map(str, lost))}, which the target's enumeration has not."
-        findings.error(place, found, f"It has: {', '.join(f'{name} ({value})' for name, value in target.items())}.")
+        findings.error(
+            place,
+            found,
+            f"It has: {', '.join(f'{name} ({value})' for name, value in target.items())}.",
+        )
 
 
 def _items_checked(
@@ -166,6 +209,8 @@ def _items_checked(
         findings.error(place, found, "Add an EnumerationMappingTransformation.")
     elif any(port.items.get(name, value) != value for name, value in flow.items.items()):
         findings.error(
-            place, "Items of the same name have different values.", "Add an EnumerationMappingTransformation."
+            place,
+            "Items of the same name have different values.",
+            "Add an EnumerationMappingTransformation.",
         )
     return flow

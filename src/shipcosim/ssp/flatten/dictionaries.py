@@ -6,7 +6,9 @@ from shipcosim.ssp.flatten.ports import Key, Port, Wire
 from shipcosim.ssp.read.structure import DictionaryReference, SystemElement
 
 
-def dictionaries_of(tree: Hierarchy, element: SystemElement, path: ElementPath, place: Surroundings) -> Dictionaries:
+def dictionaries_of(
+    tree: Hierarchy, element: SystemElement, path: ElementPath, place: Surroundings
+) -> Dictionaries:
     """Signal dictionaries defined on a system.
 
     Parameters
@@ -33,7 +35,9 @@ def dictionaries_of(tree: Hierarchy, element: SystemElement, path: ElementPath, 
     return found
 
 
-def take_reference(tree: Hierarchy, element: DictionaryReference, path: ElementPath, place: Surroundings) -> None:
+def take_reference(
+    tree: Hierarchy, element: DictionaryReference, path: ElementPath, place: Surroundings
+) -> None:
     """Collect the ports of a dictionary reference, each joined later with the dictionary's.
 
     Parameters
@@ -47,7 +51,9 @@ def take_reference(tree: Hierarchy, element: DictionaryReference, path: ElementP
     place : Surroundings
         Has the dictionaries that it can mean; the innermost one of the name counts.
     """
-    lookup = (known[element.dictionary] for known in place.dictionaries if element.dictionary in known)
+    lookup = (
+        known[element.dictionary] for known in place.dictionaries if element.dictionary in known
+    )
     owner, entries = next(lookup, (None, None))
     if entries is None:
         known = {name for names in place.dictionaries for name in names}
@@ -65,7 +71,9 @@ def take_reference(tree: Hierarchy, element: DictionaryReference, path: ElementP
             continue
         entry = entries[connector.name]
         tree.references[key] = Key(owner, connector.name)
-        tree.ports[tree.references[key]] = Port("inout", entry.kind, "dictionary", entry.unit, entry.items)
+        tree.ports[tree.references[key]] = Port(
+            "inout", entry.kind, "dictionary", entry.unit, entry.items
+        )
 
 
 def join_dictionaries(tree: Hierarchy) -> None:

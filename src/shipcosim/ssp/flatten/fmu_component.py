@@ -14,11 +14,16 @@ from shipcosim.ssp.read.structure import KIND_NAMES, ComponentElement, Connector
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.units import find_unit, relation
 
-CAUSALITIES = {"calculatedParameter": "calculated parameter", "structuralParameter": "structural parameter"}
+CAUSALITIES = {
+    "calculatedParameter": "calculated parameter",
+    "structuralParameter": "structural parameter",
+}
 """Kinds of connectors that are two words."""
 
 
-def take_fmu(tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings) -> None:
+def take_fmu(
+    tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
+) -> None:
     """Collect a component with its FMU, the ports of its connectors and the values that are bound to it.
 
     Parameters
@@ -41,7 +46,9 @@ def take_fmu(tree: Hierarchy, element: ComponentElement, path: ElementPath, plac
     for connector in connectors:
         lacking = fmu is not None and swapped and not has_connector(fmu, connector)
         tree.ports[Key(path, connector.name)] = (
-            _port(connector, None, tree.findings) if lacking else _port(connector, fmu, tree.findings)
+            _port(connector, None, tree.findings)
+            if lacking
+            else _port(connector, fmu, tree.findings)
         )
     if fmu is not None:
         # Note where an FMU does not offer what is asked of it: co-simulation, model exchange or either.
@@ -49,7 +56,9 @@ def take_fmu(tree: Hierarchy, element: ComponentElement, path: ElementPath, plac
         forms = ("CoSimulation", "ModelExchange") if wanted == "any" else (wanted,)
         if not any(form in fmu.interfaces for form in forms):
             remedy = f"It offers {', '.join(fmu.interfaces)}."
-            tree.findings.error(element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy)
+            tree.findings.error(
+                element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy
+            )
     take_bindings(tree, element.bindings, path, place, near=True, fmu=fmu)
 
 
@@ -57,7 +66,9 @@ def _fmu_of(
     tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
 ) -> FmuDescription | None:
     if element.source is None:
-        tree.findings.error(element.place, "It has no source: there is nothing to run.", "Name an FMU or a system.")
+        tree.findings.error(
+            element.place, "It has no source: there is nothing to run.", "Name an FMU or a system."
+        )
         return None
     file = tree.swapped.get(".".join(path)) or tree.library.file(element, element.source, place)
     fmu = tree.library.fmu(file, place.package) if file else None
@@ -77,13 +88,17 @@ def _port(connector: Connector, fmu: FmuDescription | None, findings: Findings) 
     _compare(connector, variable, fmu, findings)
     port = variable_port(variable, fmu, connector.place)
     description = connector.description or variable.description
-    unit, items = connector.unit or port.unit, connector.items or port.items
+    unit = connector.unit or port.unit
+    items = connector.items or port.items
     return replace(port, unit=unit, items=items, description=description)
 
 
-def _compare(connector: Connector, variable: Variable, fmu: FmuDescription, findings: Findings) -> None:
+def _compare(
+    connector: Connector, variable: Variable, fmu: FmuDescription, findings: Findings
+) -> None:
     """Note where a connector is of another kind, type or unit than its variable."""
-    name, place = fmu.path.name, connector.place
+    name = fmu.path.name
+    place = connector.place
     if connector.kind in KIND_NAMES and connector.kind != variable.causality:
         found = f"The connector is of kind {connector.kind}, the variable in {name} of causality {variable.causality}."
         findings.error(place, found, f'Write kind="{variable.causality}".')
@@ -98,5 +113,9 @@ def _compare(connector: Connector, variable: Variable, fmu: FmuDescription, find
     if related == "incompatible":
         findings.error(place, f"{found}; these cannot be converted.", f'Write unit="{own.name}".')
     elif related != "same":
-        how = "not converted, a definition is missing" if related == "unknown" else "values are converted"
+        how = (
+            "not converted, a definition is missing"
+            if related == "unknown"
+            else "values are converted"
+        )
         findings.remark(place, f"{found}: {how}.")

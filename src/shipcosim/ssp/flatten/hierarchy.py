@@ -73,7 +73,8 @@ class Hierarchy:
         self.arrays: dict[ElementPath, dict[str, tuple[int, ...]]] = {}
         self.references: dict[Key, Key] = {}
         self.library = Library(findings, described)
-        self.sizes, self.swapped = sizes or {}, swapped or {}
+        self.sizes = sizes or {}
+        self.swapped = swapped or {}
 
 
 @dataclass(frozen=True)

@@ -67,19 +67,22 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
     circling = {name for part in _strong(_graph(rough), rough) for name in part}
     links = [link for link in links if link[0][0] in circling and link[1][0] in circling]
     fmus = {name: system.components[name].fmu for name in circling}
-    read = {fmu.path: feedthrough(fmu, at_start) for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()}
+    read = {
+        fmu.path: feedthrough(fmu, at_start)
+        for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()
+    }
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
     edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
-    return [_loop(part, edges, links, list(system.components)) for part in _strong(_graph(edges), edges)]
+    return [
+        _loop(part, edges, links, list(system.components)) for part in _strong(_graph(edges), edges)
+    ]
 
 
 def loop_problems(system: System) -> Iterator[Problem]:
     """A remark on each loop of the run, and on each that is one at the start alone; with what it does and breaks it."""
     running = find_loops(system)
     for loop in running:
-        does = (
-            "In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
-        )
+        does = "In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
         yield _problem(system, loop, "An algebraic loop", does)
     seen = [set(loop.components) for loop in running]
     for loop in find_loops(system, at_start=True):
@@ -121,9 +124,13 @@ def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) 
             yield knot, output
 
 
-def _loop(nodes: list[Node], edges: list[Edge], links: list[Edge], names: list[str]) -> AlgebraicLoop:
+def _loop(
+    nodes: list[Node], edges: list[Edge], links: list[Edge], names: list[str]
+) -> AlgebraicLoop:
     part = set(nodes)
-    inside, edges = ([edge for edge in several if part.issuperset(edge)] for several in (links, edges))
+    inside, edges = (
+        [edge for edge in several if part.issuperset(edge)] for several in (links, edges)
+    )
     way = _shortest(inside, edges)
     components = [name for name in names if any(end[0] == name for end in part)]
     silent = [name for name in components if (name, None) in part]
@@ -139,7 +146,9 @@ def _breaks(name: str, edges: list[Edge]) -> bool:
 
 def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
     """Connections of the shortest cycle."""
-    graph, ways, known = _graph(edges), [], set(links)
+    graph = _graph(edges)
+    ways = []
+    known = set(links)
     for source, target in links[:MOST_STARTS]:
         before: dict[Node, Node | None] = {target: None}
         queue = deque([target])
@@ -149,7 +158,8 @@ def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
                 if following not in before:
                     before[following] = node
                     queue.append(following)
-        way, node = [source], source
+        way = [source]
+        node = source
         while (node := before[node]) is not None:
             way.insert(0, node)
         steps = list(zip([source, *way], way, strict=False))
@@ -167,7 +177,8 @@ def _graph(edges: Iterable[tuple]) -> dict:
 
 def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
     """Strongly connected components with at least one edge inside, by Kosaraju's algorithm, without recursion."""
-    done, order = set(), []
+    done = set()
+    order = []
     for start in graph:
         stack = [(start, iter(graph[start]))] if start not in done else []
         done.add(start)
@@ -180,9 +191,12 @@ def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
             else:
                 done.add(fresh)
                 stack.append((fresh, iter(graph[fresh])))
-    back, parts, placed = _graph([(target, source) for source, target in edges]), [], set()
+    back = _graph([(target, source) for source, target in edges])
+    parts = []
+    placed = set()
     for start in reversed(order):
-        part, queue = [], deque([start] if start not in placed else [])
+        part = []
+        queue = deque([start] if start not in placed else [])
         placed.add(start)
         while queue:
             part.append(node := queue.popleft())

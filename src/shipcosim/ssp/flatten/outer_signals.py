@@ -32,18 +32,26 @@ class OuterSignals:
         connections: Iterable[Connection],
         start: Mapping[str, Value],
     ):
-        self.tree, self.components, self.start = tree, components, start
+        self.tree = tree
+        self.components = components
+        self.start = start
         self.connections = tuple(connections)
 
     def of(self, *kinds: str) -> dict[str, Signal]:
         """Signals of these kinds of connector, by name."""
-        keys = [key for key, port in self.tree.ports.items() if key.path == () and port.owner == "system"]
+        keys = [
+            key
+            for key, port in self.tree.ports.items()
+            if key.path == () and port.owner == "system"
+        ]
         return {key.name: self._signal(key) for key in keys if self.tree.ports[key].kind in kinds}
 
     def _signal(self, key: Key) -> Signal:
         port = self.tree.ports[key]
         ends = self._ends(key)
-        unit = port.unit.name if port.unit else next((end.unit for end, _ in ends if end.unit), None)
+        unit = (
+            port.unit.name if port.unit else next((end.unit for end, _ in ends if end.unit), None)
+        )
         start = self.start.get(key.name)
         if start is None and port.kind == "input":
             start = self._derived(ends)
@@ -55,7 +63,11 @@ class OuterSignals:
         near = (None, key.name)
         pairs = [(c.target, c) for c in self.connections if c.source == near]
         pairs += [(c.source, c) for c in self.connections if c.target == near]
-        return [(self.components[name].fmu.variables[variable], c) for (name, variable), c in pairs if name]
+        return [
+            (self.components[name].fmu.variables[variable], c)
+            for (name, variable), c in pairs
+            if name
+        ]
 
     def _derived(self, ends: list[tuple[Variable, Connection]]) -> Value | None:
         """Start of an input that none is set for: what the variables behind it start with, where they agree."""

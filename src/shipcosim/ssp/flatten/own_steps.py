@@ -13,7 +13,10 @@ EXACT = 1e-9
 
 
 def with_whole_steps(
-    components: Mapping[str, Component], base: float | None, findings: Findings, as_libcosim: bool = False
+    components: Mapping[str, Component],
+    base: float | None,
+    findings: Findings,
+    as_libcosim: bool = False,
 ) -> dict[str, Component]:
     """Components whose own steps are multiples of the base step, as far as a file leaves no doubt about them.
 
@@ -34,7 +37,9 @@ def with_whole_steps(
         n = None if step is None or not base else _multiple(step / base, as_libcosim)
         if n is not None and step is not None and base and abs(n * base - step) > EXACT * step:
             found = f"Its step of {step:.9g} s is no multiple of the base step of {base:.9g} s"
-            findings.flaw(name, f"{found}; it takes {n} of them, {n * base:.9g} s.", "Write a multiple.")
+            findings.flaw(
+                name, f"{found}; it takes {n} of them, {n * base:.9g} s.", "Write a multiple."
+            )
             component = replace(component, step_size=n * base)
         fitted[name] = component
     return fitted

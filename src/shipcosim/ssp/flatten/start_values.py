@@ -46,14 +46,19 @@ class Settings:
     """
 
     def __init__(self, tree: Hierarchy, findings: Findings):
-        self.tree, self.findings = tree, findings
-        self.start, self.tolerances, self.system_start = defaultdict(dict), defaultdict(dict), {}
+        self.tree = tree
+        self.findings = findings
+        self.start = defaultdict(dict)
+        self.tolerances = defaultdict(dict)
+        self.system_start = {}
         self.tolerance = None  # of the value that is being delivered
         self.outgoing = defaultdict(list)
         for wire in tree.wires:
             self.outgoing[wire.source].append(wire)
         self.named = self._names()
-        self.unused: dict[str, list[str]] = {}  # of components that run another FMU: parameters which it does not have
+        self.unused: dict[
+            str, list[str]
+        ] = {}  # of components that run another FMU: parameters which it does not have
 
     def _names(self) -> dict[str, list[Key]]:
         """Ports by their full name; names need not be unique where element names have dots, then all are meant."""
@@ -81,16 +86,21 @@ class Settings:
             found = f"{self.tree.swapped[name].name} takes its place and has no {', '.join(dict.fromkeys(unused))}."
             self.findings.remark(f"{WHERE}, {name}", found, "These values are not used.")
 
-    def _deliver(self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str) -> None:
+    def _deliver(
+        self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
+    ) -> None:
         """Take a value over one step to a port, and on from there; once to each port, also where wires go round."""
-        ahead, seen = [(value, flow, step, key)], set()
+        ahead = [(value, flow, step, key)]
+        seen = set()
         while ahead:
             *arriving, key = ahead.pop()
             if key not in seen:
                 seen.add(key)
                 ahead += self._arrive(*arriving, key, place)
 
-    def _arrive(self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str) -> Iterable[Arrival]:
+    def _arrive(
+        self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
+    ) -> Iterable[Arrival]:
         """Next steps of a value that has come to a port."""
         port = self._port(key)
         if flow.type == "Enumeration" and isinstance(value, str):
@@ -102,7 +112,9 @@ class Settings:
             self._start(value, flow, key, port, place)
             return ()
         if port.owner == "system" and port.kind not in SOURCES_INSIDE:
-            self.findings.remark(place, f"{key} is of kind {port.kind}; a start value there has no effect.")
+            self.findings.remark(
+                place, f"{key} is of kind {port.kind}; a start value there has no effect."
+            )
             return ()
         if key.path == () and port.owner == "system":
             self.system_start[key.name] = flow.in_unit(port.unit)(value)
@@ -127,7 +139,9 @@ class Settings:
         table = step.transformation.table if step.transformation else {}
         name = table.get(value, value)
         if name not in port.items:
-            self.findings.error(place, f"The enumeration has no item '{name}'.", it_has(name, port.items))
+            self.findings.error(
+                place, f"The enumeration has no item '{name}'.", it_has(name, port.items)
+            )
         step = replace(step, transformation=None)
         return port.items.get(name), replace(flow, items=port.items), step
 
@@ -143,12 +157,18 @@ class Settings:
         if check_bounds(convert(value), variable, place, str(key), self.findings):
             self.start[key.path][key.name] = convert(value)
             self.tolerances[key.path].pop(key.name, None)
-            if self.tolerance is not None and type(value) in (int, float):  # a text or a truth has none
-                self.tolerances[key.path][key.name] = abs(convert(value + self.tolerance) - convert(value))
+            if self.tolerance is not None and type(value) in (
+                int,
+                float,
+            ):  # a text or a truth has none
+                self.tolerances[key.path][key.name] = abs(
+                    convert(value + self.tolerance) - convert(value)
+                )
 
     def _unknown(self, setting: Setting) -> None:
         """A set may hold more than is used here, as the standard says; but what looks like a slip is an error."""
-        place, name = setting.value.place, setting.name
+        place = setting.value.place
+        name = setting.name
         element, known = self._nearest(setting)
         if element is not None and element in self.tree.swapped:
             self.unused.setdefault(element, []).append(name.removeprefix(f"{element}."))
@@ -158,7 +178,11 @@ class Settings:
             # True if a parameter's name looks like a misspelt one of those that there are: part by part the same or
             # close.
             parts = name.split(".")
-            candidates = [one.split(".") for one in list(known)[:MOST_COMPARED] if one.count(".") == len(parts) - 1]
+            candidates = [
+                one.split(".")
+                for one in list(known)[:MOST_COMPARED]
+                if one.count(".") == len(parts) - 1
+            ]
             is_slip = any(all(map(_is_close, parts, others)) for others in candidates)
             if is_slip:
                 self.findings.error(place, found, it_has(name, known))
@@ -169,9 +193,13 @@ class Settings:
         first = name.split(".")[0]
         close = get_close_matches(first, elements, n=1, cutoff=0.8)
         if close and not _differ_in_number(first, close[0]):
-            self.findings.error(place, f"There is no element '{first}'.", suggestion(first, elements))
+            self.findings.error(
+                place, f"There is no element '{first}'.", suggestion(first, elements)
+            )
         else:
-            self.findings.remark(place, f"There is no element '{first}' in this system; the value is not used.")
+            self.findings.remark(
+                place, f"There is no element '{first}' in this system; the value is not used."
+            )
 
     def _nearest(self, setting: Setting) -> tuple[str | None, list[str]]:
         """Element that a name means, by the longest path that exists, and the names that can be set in it."""
@@ -191,7 +219,9 @@ class Settings:
 
     def _settable(self, names: Iterable[str], start: str) -> list[str]:
         ports = {name: self._port(self.named[start + name][0]) for name in names}
-        return [name for name, port in ports.items() if port.variable is None or port.variable.settable]
+        return [
+            name for name, port in ports.items() if port.variable is None or port.variable.settable
+        ]
 
 
 def _is_close(one: str, other: str) -> bool:
@@ -207,7 +237,9 @@ def _differ_in_number(one: str, other: str) -> bool:
     return re.sub(r"\d+", "", one).strip("_") == re.sub(r"\d+", "", other).strip("_")
 
 
-def check_bounds(value: Value, variable: Variable, place: str, name: str, findings: Findings) -> bool:
+def check_bounds(
+    value: Value, variable: Variable, place: str, name: str, findings: Findings
+) -> bool:
     """Whether a variable can have a value, with an error if not.
 
     Parameters
@@ -224,9 +256,16 @@ def check_bounds(value: Value, variable: Variable, place: str, name: str, findin
     if variable.items and value not in variable.items.values():
         findings.error(place, f"{name} cannot be {value}.", f"Items: {dict(variable.items)}.")
         return False
-    low, high = variable.minimum, variable.maximum
+    low = variable.minimum
+    high = variable.maximum
     if (low is not None and value < low) or (high is not None and value > high):
-        bounds = f"at least {low:g}" if high is None else f"at most {high:g}" if low is None else f"{low:g} to {high:g}"
+        bounds = (
+            f"at least {low:g}"
+            if high is None
+            else f"at most {high:g}"
+            if low is None
+            else f"{low:g} to {high:g}"
+        )
         unit = f" {variable.unit}" if variable.unit else ""
         findings.error(place, f"{name} cannot be {value:.10g}{unit}.", f"Allowed: {bounds}{unit}.")
         return False

@@ -33,26 +33,33 @@ def take_swapped(tree: Hierarchy) -> None:
     wired = {key for wire in tree.wires for key in (wire.source, wire.target)}
     for name in tree.swapped:
         if name not in known:
-            tree.findings.error(f"{WHERE}, {name}", f"There is no component '{name}'.", suggestion(name, known))
+            tree.findings.error(
+                f"{WHERE}, {name}", f"There is no component '{name}'.", suggestion(name, known)
+            )
         elif (fmu := tree.components[known[name]][1]) is not None:
             _take(tree, known[name], fmu, wired)
 
 
 def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Key]) -> None:
-    lacking = [key for key, port in tree.ports.items() if key.path == path and port.variable is None]
+    lacking = [
+        key for key, port in tree.ports.items() if key.path == path and port.variable is None
+    ]
     missed = [key for key in lacking if key in wired]
     for key in lacking:
         if key not in wired:
             del tree.ports[key]
     if not missed:
         return
-    shown, more = missed[:MOST_NAMED], f" and {len(missed) - MOST_NAMED} more" if len(missed) > MOST_NAMED else ""
+    shown = missed[:MOST_NAMED]
+    more = f" and {len(missed) - MOST_NAMED} more" if len(missed) > MOST_NAMED else ""
     lacks = ", ".join(key.name for key in shown) + more
     name = ".".join(path)
     found = f"{fmu.path.name} cannot take the place of '{name}': it lacks {lacks}, which are wired."
     close = []
     for key in shown:
-        names = [name for name in fmu.named(tree.ports[key].kind) if Key(path, name) not in wired][:MOST_COMPARED]
+        names = [name for name in fmu.named(tree.ports[key].kind) if Key(path, name) not in wired][
+            :MOST_COMPARED
+        ]
         close += [f"{name} ({key.name})" for name in get_close_matches(key.name, names, n=1)]
     has = ", ".join([*fmu.named("input"), *fmu.named("output")][:40])
     remedy = f"Close to them are {', '.join(close)}." if close else f"It has: {has}."

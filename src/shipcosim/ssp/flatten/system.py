@@ -47,7 +47,9 @@ class Component:
     def left_out(self) -> list[str]:
         """Parameters that the FMU must be given and the system does not set."""
         known = self.fmu.variables.items()
-        return [name for name, v in known if v.required and self.start.get(name, v.start) == v.start]
+        return [
+            name for name, v in known if v.required and self.start.get(name, v.start) == v.start
+        ]
 
 
 @dataclass(frozen=True)
@@ -111,7 +113,9 @@ class System:
     remarks: tuple[Problem, ...] = ()
     given: tuple[Connection, ...] = ()
     swapped: Mapping[str, str] = field(default_factory=dict)
-    _packages: tuple[Package, ...] = field(default=(), repr=False, compare=False)  # keeps what was unpacked on disk
+    _packages: tuple[Package, ...] = field(
+        default=(), repr=False, compare=False
+    )  # keeps what was unpacked on disk
 
     def __repr__(self) -> str:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
@@ -157,7 +161,9 @@ class System:
             fmu = self.components[component].fmu
             return find_unit(fmu.variables[name].unit or None, fmu.units)
         groups = (self.inputs, self.outputs, self.parameters)
-        return next((find_unit(group[name].unit or None) for group in groups if name in group), None)
+        return next(
+            (find_unit(group[name].unit or None) for group in groups if name in group), None
+        )
 
     def _no_signal(self, signal: str, owners: list[str], where: str) -> Problem:
         if owners:
@@ -167,4 +173,6 @@ class System:
             return Problem(where, f"{owner} has no variable '{variable}'.", it_has(variable, known))
         element = signal.split(".")[0]
         known = [*self.components, *self.inputs, *self.outputs, *self.parameters]
-        return Problem(where, f"There is no component or connector '{element}'.", suggestion(element, known))
+        return Problem(
+            where, f"There is no component or connector '{element}'.", suggestion(element, known)
+        )

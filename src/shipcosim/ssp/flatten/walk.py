@@ -55,13 +55,21 @@ def take_in(tree: Hierarchy, structure: Structure, package: Package) -> None:
 
 
 def _take_system(
-    tree: Hierarchy, element: SystemElement, path: ElementPath, place: Surroundings, outer_bindings: OuterBindings
+    tree: Hierarchy,
+    element: SystemElement,
+    path: ElementPath,
+    place: Surroundings,
+    outer_bindings: OuterBindings,
 ) -> None:
     tree.systems[path] = element
     if len(tree.systems) > MOST_SYSTEMS:
-        too_many = Problem(element.place, f"There are more than {MOST_SYSTEMS} systems.", "Take some away.")
+        too_many = Problem(
+            element.place, f"There are more than {MOST_SYSTEMS} systems.", "Take some away."
+        )
         raise ShipcosimError([*dict.fromkeys(tree.findings.errors), too_many])
-    place = replace(place, dictionaries=(dictionaries_of(tree, element, path, place), *place.dictionaries))
+    place = replace(
+        place, dictionaries=(dictionaries_of(tree, element, path, place), *place.dictionaries)
+    )
     connectors, tree.arrays[path] = element_connectors(element.connectors, {}, tree.findings)
     for connector in connectors:
         fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
@@ -82,7 +90,9 @@ def _take_system(
         take_bindings(tree, bindings, path, outer)
 
 
-def _take_connection(tree: Hierarchy, link: Link, element: SystemElement, path: ElementPath) -> None:
+def _take_connection(
+    tree: Hierarchy, link: Link, element: SystemElement, path: ElementPath
+) -> None:
     """Wires of a connection, one for each element where it joins arrays."""
     ends = ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
     owners = [tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in ends]
@@ -92,22 +102,30 @@ def _take_connection(tree: Hierarchy, link: Link, element: SystemElement, path: 
         tree.wires += [] if wire is None else [wire]
 
 
-def _take_component(tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings) -> None:
+def _take_component(
+    tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
+) -> None:
     if element.type in (SSD, SSP):
         _take_other_file(tree, element, path, place)
     elif element.type == FMU:
         take_fmu(tree, element, path, place)
     else:
         remedy = f"Known are {FMU}, {SSD}, {SSP}."
-        tree.findings.error(element.place, f"Components of type '{element.type}' are not known.", remedy)
+        tree.findings.error(
+            element.place, f"Components of type '{element.type}' are not known.", remedy
+        )
         tree.components[path] = element, None
 
 
-def _take_other_file(tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings) -> None:
+def _take_other_file(
+    tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
+) -> None:
     """A component that is a system in another file or elsewhere in this one counts as if it stood here."""
     found = _system_of(tree, element, place)
     if found is not None and found[1].place in place.around:
-        tree.findings.error(element.place, f"'{element.source}' contains itself.", "Break the circle.")
+        tree.findings.error(
+            element.place, f"'{element.source}' contains itself.", "Break the circle."
+        )
         found = None
     if found is None:
         tree.components[path] = element, None
@@ -125,12 +143,15 @@ def _system_of(
     if not uri:
         system = _with_id(place.structure.system, fragment)
         if system is None:
-            tree.findings.error(element.place, f"No system in this file has the id '{fragment}'.", "Give it one.")
+            tree.findings.error(
+                element.place, f"No system in this file has the id '{fragment}'.", "Give it one."
+            )
         return system and (place.structure, system, place.package)
     file = tree.library.file(element, uri, place)
     if file is None:
         return None
-    package, name = place.package, file
+    package = place.package
+    name = file
     if element.type == SSP:
         shown = place.package.show(file)
         address = f"{file}#{fragment}" if fragment else file

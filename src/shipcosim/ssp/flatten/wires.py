@@ -5,7 +5,14 @@ from typing import NamedTuple
 
 from shipcosim.errors import it_has, suggestion
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy
-from shipcosim.ssp.flatten.ports import FREE, SOURCES_INSIDE, SOURCES_OUTSIDE, Key, Wire, variable_port
+from shipcosim.ssp.flatten.ports import (
+    FREE,
+    SOURCES_INSIDE,
+    SOURCES_OUTSIDE,
+    Key,
+    Wire,
+    variable_port,
+)
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.structure import KIND_NAMES, Link, SystemElement, signal
 from shipcosim.ssp.xml.document import Findings
@@ -54,7 +61,10 @@ def wire_of(link: Link, system: SystemElement, path: ElementPath, tree: Hierarch
     """
     ends = [
         End(element, name, Key(path if element is None else (*path, element), name))
-        for element, name in ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
+        for element, name in (
+            (link.start_element, link.start_connector),
+            (link.end_element, link.end_connector),
+        )
     ]
     exist = [_exists(end, ends, link, system, tree) for end in ends]
     if not all(exist):
@@ -66,10 +76,14 @@ def wire_of(link: Link, system: SystemElement, path: ElementPath, tree: Hierarch
     if directed is None:
         return None
     source, target = directed
-    return Wire(source.key, target.key, link.transformation, link.suppress_unit_conversion, link.place)
+    return Wire(
+        source.key, target.key, link.transformation, link.suppress_unit_conversion, link.place
+    )
 
 
-def _directed(ends: list[End], kinds: Mapping[End, str], link: Link, findings: Findings) -> tuple[End, End] | None:
+def _directed(
+    ends: list[End], kinds: Mapping[End, str], link: Link, findings: Findings
+) -> tuple[End, End] | None:
     """Source and target, or None with an error."""
     start, end = ends
     for source, target in ((start, end), (end, start)):
@@ -83,7 +97,9 @@ def _directed(ends: list[End], kinds: Mapping[End, str], link: Link, findings: F
         if gives and takes:
             return source, target
     which = (
-        "give a value, and neither takes one" if start.gives(kinds[start]) else "take a value, and neither gives one"
+        "give a value, and neither takes one"
+        if start.gives(kinds[start])
+        else "take a value, and neither gives one"
     )
     found = f"{start} ({kinds[start]}) and {end} ({kinds[end]}): both {which}."
     findings.error(link.place, found, "Connect an output to an input.")
@@ -105,7 +121,9 @@ def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: 
     if component is None or fmu is not None:
         wanted, known = _wanted(end, ends, fmu, tree)
         owner = end.element or system.name
-        tree.findings.error(link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, known))
+        tree.findings.error(
+            link.place, f"{owner} has no {wanted} '{end.name}'.", it_has(end.name, known)
+        )
     return False
 
 
@@ -114,11 +132,15 @@ def _undeclared(end: End, fmu: FmuDescription, link: Link, tree: Hierarchy) -> b
     port = variable_port(fmu.variables[end.name], fmu, link.place)
     tree.ports[end.key] = port
     found = f"{end} is not declared as a connector; it is taken from {fmu.path.name}."
-    tree.findings.remark(link.place, found, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.')
+    tree.findings.remark(
+        link.place, found, f'Add <Connector name="{end.name}" kind="{port.kind}"/>.'
+    )
     return True
 
 
-def _wanted(end: End, ends: list[End], fmu: FmuDescription | None, tree: Hierarchy) -> tuple[str, list[str]]:
+def _wanted(
+    end: End, ends: list[End], fmu: FmuDescription | None, tree: Hierarchy
+) -> tuple[str, list[str]]:
     """Kind of connector that is missing at an end, as the other end says, and the names of this kind that there are."""
     other = ends[0] if end is ends[1] else ends[1]
     seeks_source = end is ends[0]
@@ -126,7 +148,11 @@ def _wanted(end: End, ends: list[End], fmu: FmuDescription | None, tree: Hierarc
         seeks_source = not other.gives(tree.ports[other.key].kind)
     kinds = SOURCES_OUTSIDE if seeks_source == (end.element is not None) else SOURCES_INSIDE
     have = {key.name: port.kind for key, port in tree.ports.items() if key.path == end.key.path}
-    have |= {} if fmu is None else {name: variable.causality for name, variable in fmu.variables.items()}
+    have |= (
+        {}
+        if fmu is None
+        else {name: variable.causality for name, variable in fmu.variables.items()}
+    )
     for wanted in kinds:
         if known := [name for name, kind in have.items() if kind == wanted]:
             return wanted, known

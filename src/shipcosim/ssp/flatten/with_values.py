@@ -37,7 +37,8 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
     """
     findings = Findings()
     starts = {name: dict(component.start) for name, component in system.components.items()}
-    inputs, feeding = dict(system.inputs), {connection.target: connection.source for connection in system.connections}
+    inputs = dict(system.inputs)
+    feeding = {connection.target: connection.source for connection in system.connections}
     for signal, value in values.items():
         place = f"{where}: {signal}" if where else signal
         try:
@@ -50,21 +51,33 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             remedy = "Set what feeds it, or hold it with an event (override)."
             findings.error(place, f"It is connected: {source} gives its value.", remedy)
         elif component is not None:
-            variable, unit = system.components[component].fmu.variables[name], system.unit_of(component, name)
+            variable = system.components[component].fmu.variables[name]
+            unit = system.unit_of(component, name)
             _set(starts[component], variable, _number(value, variable.kind, unit), place, findings)
         elif name in inputs:
             value = _number(value, inputs[name].type, system.unit_of(None, name))
             if _fits(value, inputs[name], inputs[name].type, place, findings):
                 inputs[name] = replace(inputs[name], start=value)
         else:
-            findings.error(place, "It is no input of the system.", f"Inputs: {', '.join(inputs) or 'none'}.")
+            findings.error(
+                place, "It is no input of the system.", f"Inputs: {', '.join(inputs) or 'none'}."
+            )
     if findings.errors:
         raise ShipcosimError(findings.errors)
-    components = {name: replace(component, start=starts[name]) for name, component in system.components.items()}
+    components = {
+        name: replace(component, start=starts[name])
+        for name, component in system.components.items()
+    }
     return replace(system, components=components, inputs=inputs)
 
 
-TYPES_OF = {"Real": (int, float), "Integer": (int,), "Boolean": (bool,), "String": (str,), "Enumeration": (int,)}
+TYPES_OF = {
+    "Real": (int, float),
+    "Integer": (int,),
+    "Boolean": (bool,),
+    "String": (str,),
+    "Enumeration": (int,),
+}
 WANTED = {
     "Real": "Give a number, with a decimal point",
     "Integer": "Give a whole number",
@@ -83,7 +96,9 @@ def _number(value: Value, kind: str | None, unit: Unit | None) -> Value | UnitEr
         return error
 
 
-def _set(start: dict[str, Value], variable: Variable, value: Value, place: str, findings: Findings) -> None:
+def _set(
+    start: dict[str, Value], variable: Variable, value: Value, place: str, findings: Findings
+) -> None:
     """Put a value for a variable into `start`, checked and in the variable's type."""
     if variable.items and isinstance(value, str):
         value = variable.items.get(value, value)
@@ -96,7 +111,9 @@ def _set(start: dict[str, Value], variable: Variable, value: Value, place: str, 
         start[variable.name] = float(value) if variable.kind == "Real" else value
 
 
-def _fits(value: Value, owner: Variable | Signal, kind: str | None, place: str, findings: Findings) -> bool:
+def _fits(
+    value: Value, owner: Variable | Signal, kind: str | None, place: str, findings: Findings
+) -> bool:
     """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
     if isinstance(value, UnitError):
         findings.error(place, value.found, value.remedy)
@@ -110,10 +127,18 @@ def _fits(value: Value, owner: Variable | Signal, kind: str | None, place: str, 
         findings.error(place, f"{value} is not a finite number.", _wanted("Real", owner.unit))
         return False
     if kind == "Integer" and not -LARGEST <= value < LARGEST:
-        findings.error(place, f"{value} is too large for an Integer.", f"Give one from {-LARGEST} to {LARGEST - 1}.")
+        findings.error(
+            place,
+            f"{value} is too large for an Integer.",
+            f"Give one from {-LARGEST} to {LARGEST - 1}.",
+        )
         return False
     return True
 
 
 def _wanted(kind: str | None, unit: str | None) -> str:
-    return f"{WANTED[kind]}{f', in {unit}' if kind == 'Real' and unit else ''}." if kind in WANTED else ""
+    return (
+        f"{WANTED[kind]}{f', in {unit}' if kind == 'Real' and unit else ''}."
+        if kind in WANTED
+        else ""
+    )

@@ -50,26 +50,42 @@ def without_arrays(
     if not whole:
         return fmu
     if sum(prod(variable.dimensions) for variable in whole.values()) > MOST_ELEMENTS:
-        findings.error(place, f"{fmu.path.name} has arrays of more than {MOST_ELEMENTS} elements in all.")
+        findings.error(
+            place, f"{fmu.path.name} has arrays of more than {MOST_ELEMENTS} elements in all."
+        )
         return replace(fmu, variables={n: v for n, v in fmu.variables.items() if n not in whole})
     variables = {}
     for name, variable in fmu.variables.items():
-        variables |= {part.name: part for part in _elements(whole[name])} if name in whole else {name: variable}
-    return replace(fmu, variables=variables, arrays={name: v.dimensions for name, v in whole.items()})
+        variables |= (
+            {part.name: part for part in _elements(whole[name])}
+            if name in whole
+            else {name: variable}
+        )
+    return replace(
+        fmu, variables=variables, arrays={name: v.dimensions for name, v in whole.items()}
+    )
 
 
 def _with_sizes(variable: Variable, sizes: Mapping[str, int]) -> Variable:
     """An array with other values of the structural parameters that size it; its start values are unknown then."""
     pairs = zip(variable.sizes, variable.dimensions, strict=True)
-    dimensions = tuple(max(sizes.get(name, size) if isinstance(name, str) else size, 0) for name, size in pairs)
-    return variable if dimensions == variable.dimensions else replace(variable, dimensions=dimensions, start=None)
+    dimensions = tuple(
+        max(sizes.get(name, size) if isinstance(name, str) else size, 0) for name, size in pairs
+    )
+    return (
+        variable
+        if dimensions == variable.dimensions
+        else replace(variable, dimensions=dimensions, start=None)
+    )
 
 
 def _elements(variable: Variable) -> Iterator[Variable]:
     """Elements of an array as variables of their own."""
     names = element_names(variable.name, variable.dimensions)
     starts = variable.start if isinstance(variable.start, tuple) else (variable.start,)
-    starts = starts if len(starts) == len(names) else starts[:1] * len(names)  # one value for all of them
+    starts = (
+        starts if len(starts) == len(names) else starts[:1] * len(names)
+    )  # one value for all of them
     for number, (name, start) in enumerate(zip(names, starts, strict=True)):
         yield replace(variable, name=name, start=start, dimensions=(), whole=variable, place=number)
 

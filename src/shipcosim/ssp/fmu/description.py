@@ -77,7 +77,10 @@ class Variable:
     @property
     def settable(self) -> bool:
         """Whether a start value may be set from outside before initialisation."""
-        given = self.causality in ("input", "parameter", "structuralParameter") or self.initial in ("exact", "approx")
+        given = self.causality in ("input", "parameter", "structuralParameter") or self.initial in (
+            "exact",
+            "approx",
+        )
         return given and self.variability != "constant"
 
 
@@ -139,4 +142,8 @@ class FmuDescription:
 
     def named(self, *causalities: str) -> list[str]:
         """Names of the variables of these causalities."""
-        return [variable.name for variable in self.variables.values() if variable.causality in causalities]
+        return [
+            variable.name
+            for variable in self.variables.values()
+            if variable.causality in causalities
+        ]

@@ -41,12 +41,20 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
         return _direct(variables)
     structure = parts_of(root, "ModelStructure")
     if root.get("fmiVersion", "").startswith("3"):
-        key, names = "valueReference", {part.get("valueReference"): part.get("name") for part in variables}
-        listed = {tag: [part for part in structure if local(part) == tag] for tag in ("Output", "InitialUnknown")}
+        key = "valueReference"
+        names = {part.get("valueReference"): part.get("name") for part in variables}
+        listed = {
+            tag: [part for part in structure if local(part) == tag]
+            for tag in ("Output", "InitialUnknown")
+        }
     else:
-        key, names = "index", {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
+        key = "index"
+        names = {str(number): part.get("name") for number, part in enumerate(variables, start=1)}
         groups = {local(group): [part for part in group if local(part)] for group in structure}
-        listed = {"Output": groups.get("Outputs", []), "InitialUnknown": groups.get("InitialUnknowns", [])}
+        listed = {
+            "Output": groups.get("Outputs", []),
+            "InitialUnknown": groups.get("InitialUnknowns", []),
+        }
     if not (at_start and listed["InitialUnknown"]):
         return _stated(listed["Output"], key, names)
     unknown = {names.get(part.get(key)) for part in listed["InitialUnknown"]}
@@ -54,10 +62,14 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
     return known | _stated(listed["InitialUnknown"], key, names)
 
 
-def _stated(outputs: Iterable[etree._Element], key: str, names: Mapping) -> dict[str, frozenset[str]]:
+def _stated(
+    outputs: Iterable[etree._Element], key: str, names: Mapping
+) -> dict[str, frozenset[str]]:
     """Outputs that have an attribute `dependencies`, which can be empty."""
     return {
-        names[part.get(key)]: frozenset(names[one] for one in part.get("dependencies").split() if one in names)
+        names[part.get(key)]: frozenset(
+            names[one] for one in part.get("dependencies").split() if one in names
+        )
         for part in outputs
         if part.get("dependencies") is not None and part.get(key) in names
     }
@@ -68,5 +80,7 @@ def _direct(variables: Iterable[etree._Element]) -> dict[str, frozenset[str]]:
     found = {}
     for variable in variables:
         for part in (part for part in variable if local(part) == "DirectDependency"):
-            found[variable.get("name")] = frozenset((name.text or "").strip() for name in part if local(name))
+            found[variable.get("name")] = frozenset(
+                (name.text or "").strip() for name in part if local(name)
+            )
     return found

@@ -38,7 +38,8 @@ def traits_of(element: etree._Element, typed: etree._Element, kind: str) -> dict
     -------
     dict of str to (str or None)
     """
-    causality, variability = element.get("causality", "internal"), element.get("variability", "continuous")
+    causality = element.get("causality", "internal")
+    variability = element.get("variability", "continuous")
     if variability == "parameter":
         return {"causality": "parameter", "variability": "fixed", "initial": "exact"}
     if variability == "continuous" and kind != "Real":

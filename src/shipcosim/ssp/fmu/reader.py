@@ -44,7 +44,9 @@ def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescript
     return fmu
 
 
-def describe_fmu(path: str | PathLike[str], findings: Findings, shown: str | None = None) -> FmuDescription | None:
+def describe_fmu(
+    path: str | PathLike[str], findings: Findings, shown: str | None = None
+) -> FmuDescription | None:
     """Description of an FMU, or None where nothing can be read; what is wrong is collected.
 
     Parameters
@@ -64,7 +66,9 @@ def describe_fmu(path: str | PathLike[str], findings: Findings, shown: str | Non
         findings.problems += error.problems
         return None
     if data is None:
-        findings.error(shown, "The archive has no modelDescription.xml.", "It is no FMU; export it again.")
+        findings.error(
+            shown, "The archive has no modelDescription.xml.", "It is no FMU; export it again."
+        )
         return None
     file = f"{shown}/modelDescription.xml"
     root = parse(data, file, findings, utf8=False)
@@ -81,24 +85,36 @@ def describe_fmu(path: str | PathLike[str], findings: Findings, shown: str | Non
 def _is_fmi(root: etree._Element, file: str, findings: Findings) -> bool:
     version = root.get("fmiVersion", "")
     if local(root) != "fmiModelDescription":
-        findings.error(file, f"Its outermost element is <{local(root)}>.", "Right would be <fmiModelDescription>.")
+        findings.error(
+            file,
+            f"Its outermost element is <{local(root)}>.",
+            "Right would be <fmiModelDescription>.",
+        )
         return False
     if not version.startswith(("1.", "2.", "3.")):
         found = f"FMI version '{version}'."
-        findings.error(file, found, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them.")
+        findings.error(
+            file, found, "Versions 1.0, 2.0 and 3.0 are read: export the FMU in one of them."
+        )
         return False
     return True
 
 
-def _description(document: Document, path: Path, names: list[str], findings: Findings) -> FmuDescription:
+def _description(
+    document: Document, path: Path, names: list[str], findings: Findings
+) -> FmuDescription:
     root = document.root
     version = f"{root.get('fmiVersion', '')[:1]}.0"
     note_empty_units(document, parts_of(root, "UnitDefinitions"), findings)
-    platforms = {parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"}
+    platforms = {
+        parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"
+    }
     # Number of continuous states: given in FMI 1.0, that of the listed derivatives in FMI 2.0.
     groups = [group for group in parts_of(root, "ModelStructure") if local(group) == "Derivatives"]
     derivatives = [part for group in groups for part in group]
-    n_states = int(root.get("numberOfContinuousStates") or 0) or len([part for part in derivatives if local(part)])
+    n_states = int(root.get("numberOfContinuousStates") or 0) or len(
+        [part for part in derivatives if local(part)]
+    )
     return FmuDescription(
         path=path,
         fmi_version=version,

@@ -27,7 +27,11 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
         Takes what is wrong.
     """
     types = {part.get("name"): part for part in parts_of(document.root, "TypeDefinitions")}
-    elements = [part for part in parts_of(document.root, "ModelVariables") if _type_element(part) is not None]
+    elements = [
+        part
+        for part in parts_of(document.root, "ModelVariables")
+        if _type_element(part) is not None
+    ]
     sizes = {part.get("valueReference"): (part.get("name"), part.get("start")) for part in elements}
     is_first = document.root.get("fmiVersion", "").startswith("1.")
     variables = {}
@@ -40,15 +44,22 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
                     # libcosim.
                     first = variables[name]
                     place = document.place(element, name)
-                    same = (first.type, first.value_reference) == (variable.type, variable.value_reference)
+                    same = (first.type, first.value_reference) == (
+                        variable.type,
+                        variable.value_reference,
+                    )
                     what = (
                         "the same value"
                         if same
                         else f"another value ({variable.type}, value reference {variable.value_reference})"
                     )
-                    found = f"A second variable has this name, for {what}. The name means the first one"
+                    found = (
+                        f"A second variable has this name, for {what}. The name means the first one"
+                    )
                     findings.flaw(
-                        place, f"{found}." if same else f"{found}; this one cannot be reached.", "Names must differ."
+                        place,
+                        f"{found}." if same else f"{found}; this one cannot be reached.",
+                        "Names must differ.",
                     )
                 variables.setdefault(name, variable)
             except ValueError as error:
@@ -114,13 +125,17 @@ def _size(dimension: etree._Element, sizes: Sizes) -> int:
     """Size of one dimension of an array: given as such, or the start value of a structural parameter."""
     text = dimension.get("start") or sizes.get(dimension.get("valueReference"), (None, None))[1]
     if text is None:
-        raise ValueError("The size of a dimension is neither given nor that of a variable with a start value.")
+        raise ValueError(
+            "The size of a dimension is neither given nor that of a variable with a start value."
+        )
     return read_value("Integer", text)
 
 
 def _size_as_written(dimension: etree._Element, sizes: Sizes) -> int | str:
     text = dimension.get("start")
-    return sizes[dimension.get("valueReference")][0] if text is None else read_value("Integer", text)
+    return (
+        sizes[dimension.get("valueReference")][0] if text is None else read_value("Integer", text)
+    )
 
 
 def _declaration(declared: etree._Element | None) -> etree._Element | None:
@@ -135,7 +150,9 @@ def _attribute(typed: etree._Element, declared: etree._Element | None, name: str
     return typed.get(name) or (declaration.get(name) if declaration is not None else None)
 
 
-def _bound(typed: etree._Element, declared: etree._Element | None, kind: str, name: str) -> float | None:
+def _bound(
+    typed: etree._Element, declared: etree._Element | None, kind: str, name: str
+) -> float | None:
     text = _attribute(typed, declared, name)
     return None if text is None or kind not in ("Real", "Integer", "Enumeration") else float(text)
 

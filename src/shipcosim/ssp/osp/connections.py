@@ -42,13 +42,22 @@ class ConnectionReader:
     """
 
     def __init__(
-        self, document: Document, simulators: Simulators, functions: Mapping[str, Function], findings: Findings
+        self,
+        document: Document,
+        simulators: Simulators,
+        functions: Mapping[str, Function],
+        findings: Findings,
     ):
-        self.document, self.simulators, self.functions, self.findings = document, simulators, functions, findings
+        self.document = document
+        self.simulators = simulators
+        self.functions = functions
+        self.findings = findings
         self.connections: list[Connection] = []
         self.wiring = Wiring(functions, findings)
         self._groups: dict[Path, dict[str, Group] | None] = {}
-        self._fed: dict[tuple[str | None, str], tuple[str, ...]] = {}  # where what feeds a target comes from
+        self._fed: dict[
+            tuple[str | None, str], tuple[str, ...]
+        ] = {}  # where what feeds a target comes from
 
     def read(self, elements: Iterable[etree._Element]) -> list[Connection]:
         """Connections of connection elements; what is wrong is left out, with an error."""
@@ -58,7 +67,9 @@ class ConnectionReader:
             shown = " - ".join(_shown(part) for part in element if local(part))
             place = self.document.place(element, shown)
             if element.get("powerBond"):
-                self.findings.remark(place, "powerBond is not used: it is for the algorithm ecco alone.")
+                self.findings.remark(
+                    place, "powerBond is not used: it is for the algorithm ecco alone."
+                )
             if kind := next((name for name in kinds if name in ends), None):
                 variable = ends["Variable" if kind == "Signal" else "VariableGroup"]
                 kinds[kind](variable, ends[kind], place)
@@ -84,7 +95,10 @@ class ConnectionReader:
         """Connect two groups: the groups in them by their order, and so their variables."""
         counts = [(len(group.variables), len(group.groups)) for group in groups]
         if counts[0] != counts[1]:
-            names = [f"{simulator}.{group.name}" for simulator, group in zip(simulators, groups, strict=True)]
+            names = [
+                f"{simulator}.{group.name}"
+                for simulator, group in zip(simulators, groups, strict=True)
+            ]
             found = f"{names[0]} has {_counted(*counts[0])}, {names[1]} {_counted(*counts[1])}."
             self.findings.error(place, found, "Connect groups of one make.")
             return
@@ -118,7 +132,9 @@ class ConnectionReader:
             remedy = "Functions take and give Real alone." if signal else "Connect equal types."
             self.findings.error(place, found, remedy)
         elif feeding is not None and feeding != signal:
-            self.findings.error(place, f"A second connection into {names[1]}.", "Remove one of them.")
+            self.findings.error(
+                place, f"A second connection into {names[1]}.", "Remove one of them."
+            )
         else:
             if (connection.factor, connection.offset) == (1.0, 0.0):
                 self._compare_units(connection, names)
@@ -131,7 +147,9 @@ class ConnectionReader:
             units.append(find_unit(fmu.variables[variable].unit, fmu.units))
         if None not in units and relation(units[0], units[1]) in ("convertible", "incompatible"):
             found = f"{names[0]} is in {units[0].name}, {names[1]} in {units[1].name}: OSP converts no units."
-            self.findings.remark(connection.place, found, "Put a LinearTransformation between them.")
+            self.findings.remark(
+                connection.place, found, "Put a LinearTransformation between them."
+            )
 
     def _signal(self, variable: etree._Element, signal: etree._Element, place: str) -> None:
         end = self._end(variable, place)
@@ -142,7 +160,8 @@ class ConnectionReader:
         found = self._group(group, place)
         if not self._has_function(signal, place):
             return
-        function, name = self.functions[signal.get("function")], signal.get("name")
+        function = self.functions[signal.get("function")]
+        name = signal.get("name")
         if name not in function.groups:
             text = f"The {function.kind} '{function.name}' has no group of signals '{name}'."
             self.findings.error(place, text, it_has(name, function.groups))
@@ -152,7 +171,9 @@ class ConnectionReader:
             return
         if len(found.variables) != function.dimension:
             self.wiring.give_up(function.name)
-            text = f"{group.get('simulator')}.{found.name} has {_counted(len(found.variables), 0)}, "
+            text = (
+                f"{group.get('simulator')}.{found.name} has {_counted(len(found.variables), 0)}, "
+            )
             self.findings.error(place, f"{text}{function.name} the dimension {function.dimension}.")
             return
         for j, variable in enumerate(found.variables):
@@ -162,11 +183,14 @@ class ConnectionReader:
     def _has_function(self, signal: etree._Element, place: str) -> bool:
         name = signal.get("function")
         if name not in self.functions:
-            self.findings.error(place, f"There is no function '{name}'.", suggestion(name, self.functions))
+            self.findings.error(
+                place, f"There is no function '{name}'.", suggestion(name, self.functions)
+            )
         return name in self.functions
 
     def _group(self, element: etree._Element, place: str) -> Group | None:
-        simulator, name = element.get("simulator"), element.get("name")
+        simulator = element.get("simulator")
+        name = element.get("name")
         fmu = self.simulators.fmu_of(simulator, place)
         if fmu is None:
             return None
@@ -177,17 +201,22 @@ class ConnectionReader:
             found = f"The variable groups of {fmu.path.name} are described nowhere."
             self.findings.error(place, found, f"Put {file_names(fmu)[0]} beside it.")
         elif name not in groups:
-            self.findings.error(place, f"{simulator} has no variable group '{name}'.", it_has(name, groups))
+            self.findings.error(
+                place, f"{simulator} has no variable group '{name}'.", it_has(name, groups)
+            )
         return (groups or {}).get(name)
 
     def _end(self, element: etree._Element, place: str) -> End | None:
         """(simulator, variable) that an end means, or None with an error."""
-        simulator, name = element.get("simulator"), element.get("name")
+        simulator = element.get("simulator")
+        name = element.get("name")
         fmu = self.simulators.fmu_of(simulator, place)
         if fmu is None:
             return None
         if name not in fmu.variables:
-            self.findings.error(place, f"{simulator} has no variable '{name}'.", it_has(name, fmu.variables))
+            self.findings.error(
+                place, f"{simulator} has no variable '{name}'.", it_has(name, fmu.variables)
+            )
             return None
         return simulator, name
 

@@ -52,7 +52,9 @@ class Function:
     @property
     def groups(self) -> list[str]:
         """Names that a SignalGroupConnection can have."""
-        return [f"in[{i}]" for i in range(self.inputs)] + ["out"] if self.kind == "VectorSum" else []
+        return (
+            [f"in[{i}]" for i in range(self.inputs)] + ["out"] if self.kind == "VectorSum" else []
+        )
 
 
 MOST_SIGNALS = 10_000
@@ -77,9 +79,12 @@ def read_function(element: etree._Element, place: str, findings: Findings) -> Fu
     """
     inputs, dimension = (int(element.get(name, 1)) for name in ("inputCount", "dimension"))
     if inputs * dimension > MOST_SIGNALS:
-        findings.error(place, f"It has {inputs * dimension} inputs.", f"At most {MOST_SIGNALS} are taken.")
+        findings.error(
+            place, f"It has {inputs * dimension} inputs.", f"At most {MOST_SIGNALS} are taken."
+        )
         return None
-    factor, offset = float(element.get("factor", 1.0)), float(element.get("offset", 0.0))
+    factor = float(element.get("factor", 1.0))
+    offset = float(element.get("offset", 0.0))
     return Function(local(element), element.get("name"), inputs, dimension, factor, offset, place)
 
 
@@ -95,7 +100,8 @@ class Wiring:
     """
 
     def __init__(self, functions: Mapping[str, Function], findings: Findings):
-        self.functions, self.findings = functions, findings
+        self.functions = functions
+        self.findings = findings
         self._ends: dict[tuple[str, str], list[tuple[tuple[str, str], str]]] = {}
         self._given_up: set[str] = set()
 
@@ -125,9 +131,13 @@ class Wiring:
             return
         ends = self._ends.setdefault((function, signal), [])
         if ends and not signal.startswith("out"):
-            self.findings.error(place, f"A second connection into {function}:{signal}.", "Remove one of them.")
+            self.findings.error(
+                place, f"A second connection into {function}:{signal}.", "Remove one of them."
+            )
         elif ends:
-            found = f"{function}:{signal} has more than one connection; libcosim makes the first alone."
+            found = (
+                f"{function}:{signal} has more than one connection; libcosim makes the first alone."
+            )
             self.findings.remark(place, found, "Give each target a function of its own.")
         ends.append((end, place))
 
@@ -135,13 +145,19 @@ class Wiring:
         """(output signal, connection from variable to variable) of all functions; a sum is several into one."""
         for function in self.functions.values():
             for inputs, output in function.rows if function.name not in self._given_up else ():
-                missing = [name for name in (*inputs, output) if (function.name, name) not in self._ends]
+                missing = [
+                    name for name in (*inputs, output) if (function.name, name) not in self._ends
+                ]
                 if missing:
                     found = f"The {function.kind} '{function.name}' has nothing connected to {', '.join(missing[:5])}."
-                    self.findings.error(function.place, found, "Connect every signal of it, or remove it.")
+                    self.findings.error(
+                        function.place, found, "Connect every signal of it, or remove it."
+                    )
                     continue
                 sources = [self._ends[function.name, name][0][0] for name in inputs]
                 for target, place in self._ends[function.name, output]:
                     for source in sources:
-                        connection = Connection(source, target, function.factor, function.offset, place=place)
+                        connection = Connection(
+                            source, target, function.factor, function.offset, place=place
+                        )
                         yield (function.name, output), connection

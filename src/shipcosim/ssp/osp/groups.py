@@ -64,7 +64,11 @@ def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[s
         for element in filter(local, listed):
             for group in _group(element, fmu, document, findings).all():
                 if group.name in found:
-                    findings.error(document.place(element, group.name), "A second group has this name.", "Rename it.")
+                    findings.error(
+                        document.place(element, group.name),
+                        "A second group has this name.",
+                        "Rename it.",
+                    )
                 found[group.name] = group
     return found
 
@@ -87,14 +91,21 @@ def _file(fmu: FmuDescription, folder: Path, findings: Findings) -> Path | None:
     return None
 
 
-def _group(element: etree._Element, fmu: FmuDescription, document: Document, findings: Findings) -> Group:
-    variables, groups = [], []
+def _group(
+    element: etree._Element, fmu: FmuDescription, document: Document, findings: Findings
+) -> Group:
+    variables = []
+    groups = []
     for part in filter(local, element):
         if local(part) == "Variable":
             name = part.get("ref", "")
             if name not in fmu.variables:
                 found = f"{fmu.path.name} has no variable '{name}'."
-                findings.error(document.place(part, element.get("name", "")), found, it_has(name, fmu.variables))
+                findings.error(
+                    document.place(part, element.get("name", "")),
+                    found,
+                    it_has(name, fmu.variables),
+                )
             variables.append(name)
         else:
             groups.append(_group(part, fmu, document, findings))

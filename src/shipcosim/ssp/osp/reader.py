@@ -70,7 +70,8 @@ def assemble_osp(
     validate_osp(document, findings)
     if len(findings.errors) > before:
         return None
-    before, sets = list(findings.problems), list(parameter_sets(parameters, findings))
+    before = list(findings.problems)
+    sets = list(parameter_sets(parameters, findings))
     folders = [Path(folder) for folder in fmus]
     system = _system(document, folders, sets, Hierarchy(findings, swapped=swapped))
     if any(found for component in system.components.values() for found in resized(component)):
@@ -98,7 +99,9 @@ def _is_osp(document: Document, findings: Findings) -> bool:
     return False
 
 
-def _system(document: Document, folders: list[Path], sets: Iterable[ParameterSet], tree: Hierarchy) -> System:
+def _system(
+    document: Document, folders: list[Path], sets: Iterable[ParameterSet], tree: Hierarchy
+) -> System:
     """System of a document that keeps its schema."""
     findings = tree.findings
     simulators = Simulators(document, folders, tree, findings)
@@ -114,7 +117,9 @@ def _system(document: Document, folders: list[Path], sets: Iterable[ParameterSet
     settings = Settings(tree, findings)
     settings.apply()
     experiment = read_experiment(document, findings)
-    components = with_whole_steps(components_of(tree, settings), experiment.step_size, findings, as_libcosim=True)
+    components = with_whole_steps(
+        components_of(tree, settings), experiment.step_size, findings, as_libcosim=True
+    )
     remark_unconnected(components, connections, findings)
     return System(
         name=Path(document.file).resolve().parent.name,
@@ -127,14 +132,18 @@ def _system(document: Document, folders: list[Path], sets: Iterable[ParameterSet
     )
 
 
-def _functions(document: Document, simulators: Iterable[str], findings: Findings) -> dict[str, Function]:
+def _functions(
+    document: Document, simulators: Iterable[str], findings: Findings
+) -> dict[str, Function]:
     """Functions by name; one that makes no sense is left out, with an error."""
     functions = {}
     for element in parts_of(document.root, "Functions"):
         name = element.get("name")
         place = document.place(element, name)
         if name in functions or name in simulators:
-            findings.error(place, f"'{name}' is the name of something else already.", "Names must differ.")
+            findings.error(
+                place, f"'{name}' is the name of something else already.", "Names must differ."
+            )
         elif not all(isfinite(float(element.get(part, 0.0))) for part in ("factor", "offset")):
             findings.error(place, "Its factor or offset is no finite number.")
         elif (function := read_function(element, place, findings)) is not None:

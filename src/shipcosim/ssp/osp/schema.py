@@ -15,10 +15,17 @@ NAMESPACE = "http://opensimulationplatform.com/MSMI/OSPSystemStructure"
 _VALUES = "".join(
     f'<xs:element name="{kind}"><xs:complexType>'
     f'<xs:attribute name="value" type="xs:{xml}" use="required"/></xs:complexType></xs:element>'
-    for kind, xml in (("Real", "double"), ("Integer", "int"), ("Boolean", "boolean"), ("String", "string"))
+    for kind, xml in (
+        ("Real", "double"),
+        ("Integer", "int"),
+        ("Boolean", "boolean"),
+        ("String", "string"),
+    )
 )
 _END = '<xs:attribute name="name" type="xs:string" use="required"/>'
-_SIZES = ("SafetyFactor StepSize MinimumStepSize MaximumStepSize MinimumChangeRate MaximumChangeRate").split()
+_SIZES = (
+    "SafetyFactor StepSize MinimumStepSize MaximumStepSize MinimumChangeRate MaximumChangeRate"
+).split()
 _GAINS = "ProportionalGain IntegralGain RelativeTolerance AbsoluteTolerance".split()
 
 

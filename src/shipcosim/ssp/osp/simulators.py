@@ -39,8 +39,13 @@ class Simulators:
         Takes what is wrong.
     """
 
-    def __init__(self, document: Document, searched: list[Path], tree: Hierarchy, findings: Findings):
-        self.document, self.searched, self.tree, self.findings = document, searched, tree, findings
+    def __init__(
+        self, document: Document, searched: list[Path], tree: Hierarchy, findings: Findings
+    ):
+        self.document = document
+        self.searched = searched
+        self.tree = tree
+        self.findings = findings
         self._described: dict[Path, FmuDescription | None] = {}
 
     @property
@@ -61,7 +66,9 @@ class Simulators:
         name = element.get("name")
         place = self.document.place(element, name)
         if (name,) in self.tree.components:
-            self.findings.error(place, f"A second simulator is named '{name}'.", "Names must differ.")
+            self.findings.error(
+                place, f"A second simulator is named '{name}'.", "Names must differ."
+            )
             return
         fmu = self._fmu(element.get("source"), place, self.tree.swapped.get(name))
         step = own_step(self.document, element, self.findings)
@@ -95,11 +102,16 @@ class Simulators:
             parts = urlsplit(source)
             if parts.scheme == PROXY and (text := path_of(source)) is not None:
                 found = f"'{source}' is an FMU in a process of its own; {text} is run here."
-                self.findings.flaw(place, found, "Name the FMU's file; `--isolate` runs each FMU in a process.")
-                parts, source = urlsplit(text), text
+                self.findings.flaw(
+                    place, found, "Name the FMU's file; `--isolate` runs each FMU in a process."
+                )
+                parts = urlsplit(text)
+                source = text
             elif parts.scheme not in HERE:
                 remedy = "Name the FMU's file: proxies and servers of FMUs are not supported."
-                self.findings.error(place, f"'{source}' is an address of the kind '{parts.scheme}'.", remedy)
+                self.findings.error(
+                    place, f"'{source}' is an address of the kind '{parts.scheme}'.", remedy
+                )
                 return None
             path = url2pathname(parts.path) if parts.scheme else unquote(parts.path)
             paths = [self.document.folder / path, self.document.folder / source]
@@ -109,7 +121,11 @@ class Simulators:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")
             return None
         if found is None:
-            there = {file.name for file in paths[0].parent.glob("*.fmu")} if paths[0].parent.is_dir() else ()
+            there = (
+                {file.name for file in paths[0].parent.glob("*.fmu")}
+                if paths[0].parent.is_dir()
+                else ()
+            )
             remedy = f"In {paths[0].parent} there{suggestion(paths[0].name, there).removeprefix('There')}"
             self.findings.error(place, f"The file '{source}' does not exist.", remedy)
         return found

@@ -66,7 +66,9 @@ def _remark_algorithm(document: Document, findings: Findings) -> None:
     parts = {local(part): part for part in document.root}
     if "Algorithm" not in parts:
         found = "It names no algorithm, and libcosim refuses such a file."
-        findings.remark(document.place(document.root), found, "Add <Algorithm>fixedStep</Algorithm>.")
+        findings.remark(
+            document.place(document.root), found, "Add <Algorithm>fixedStep</Algorithm>."
+        )
     elif (name := (parts["Algorithm"].text or "").strip()) != "fixedStep":
         found = f"The algorithm '{name}' is not known: it runs with fixed steps."
         findings.remark(document.place(parts["Algorithm"]), found)
@@ -75,7 +77,9 @@ def _remark_algorithm(document: Document, findings: Findings) -> None:
         findings.remark(place, "The configuration of the algorithm ecco is not used.")
 
 
-def _seconds(document: Document, element: etree._Element, text: str | None, findings: Findings) -> float | None:
+def _seconds(
+    document: Document, element: etree._Element, text: str | None, findings: Findings
+) -> float | None:
     """Time in whole nanoseconds, in which OSP counts; None with an error. [s]"""
     with reporting(document, element, findings, local(element)):
         return round(read_value("Real", text or "") * 1e9) / 1e9

@@ -32,7 +32,10 @@ class Simulator:
 
 
 def structure_text(
-    simulators: Sequence[Simulator], connections: Iterable[Connection], step_size: float, end_time: float | None = None
+    simulators: Sequence[Simulator],
+    connections: Iterable[Connection],
+    step_size: float,
+    end_time: float | None = None,
 ) -> str:
     """Text of an OspSystemStructure.xml.
 
@@ -88,9 +91,14 @@ def _lines(simulator: Simulator) -> list[str]:
     return [f"{head}>", "  <InitialValues>", *values, "  </InitialValues>", "</Simulator>"]
 
 
-def _connections(connections: Iterable[Connection], taken: Container[str]) -> tuple[list[str], list[str]]:
+def _connections(
+    connections: Iterable[Connection], taken: Container[str]
+) -> tuple[list[str], list[str]]:
     """Elements of the functions, in the order that libcosim requires, and of the connections."""
-    into, linear, sums, joined = defaultdict(list), [], [], []
+    into = defaultdict(list)
+    linear = []
+    sums = []
+    joined = []
     for connection in connections:
         into[connection.target].append(connection)
     for target, feeding in into.items():
@@ -106,7 +114,9 @@ def _connections(connections: Iterable[Connection], taken: Container[str]) -> tu
             linear.append(f'<LinearTransformation name="{name}" {how}/>')
             joined += [_signal(first.source, name, "in"), _signal(target, name, "out")]
         else:
-            joined.append(f"<VariableConnection>{_variable(first.source)}{_variable(target)}</VariableConnection>")
+            joined.append(
+                f"<VariableConnection>{_variable(first.source)}{_variable(target)}</VariableConnection>"
+            )
     return linear + sums, joined
 
 
@@ -120,4 +130,8 @@ def _variable(end: tuple[str | None, str]) -> str:
 
 
 def _group(name: str, lines: list[str]) -> str:
-    return f"\n  <{name}>" + "".join(f"\n    {line}" for line in lines) + f"\n  </{name}>" if lines else ""
+    return (
+        f"\n  <{name}>" + "".join(f"\n    {line}" for line in lines) + f"\n  </{name}>"
+        if lines
+        else ""
+    )

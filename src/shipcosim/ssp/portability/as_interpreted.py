@@ -69,7 +69,8 @@ def taken_by(
     subject = subject_of(path, fmus)
     if subject is None:
         return [], None
-    whole, found = subject.system, []
+    whole = subject.system
+    found = []
     for change in (_values, _connections, _steps, _forms):
         what, changed = change(host, subject, subject.system)
         if what:
@@ -89,14 +90,18 @@ def _values(host: str, subject: Subject, system: System) -> tuple[str, System]:
             for value in values.values:
                 variable = fmu.variables.get(value.name)
                 if variable is not None and _takes(host, value, variable, fmu):
-                    applied[part.name][value.name] = float(value.value) if variable.kind == "Real" else value.value
+                    applied[part.name][value.name] = (
+                        float(value.value) if variable.kind == "Real" else value.value
+                    )
     other = [
         _instead(component, variable, applied[name])
         for name, component in system.components.items()
         for variable in {**component.start, **applied[name]}
         if _value(component, variable, applied[name]) != component.start_value(variable)
     ]
-    components = {name: replace(part, start=applied[name]) for name, part in system.components.items()}
+    components = {
+        name: replace(part, start=applied[name]) for name, part in system.components.items()
+    }
     return _listed("parameters are not applied", other), replace(system, components=components)
 
 
@@ -113,7 +118,8 @@ def _value(component: Component, variable: str, applied: Mapping[str, Value]) ->
 
 
 def _instead(component: Component, variable: str, applied: Mapping[str, Value]) -> str:
-    there, here = _value(component, variable, applied), component.start_value(variable)
+    there = _value(component, variable, applied)
+    here = component.start_value(variable)
     return f"{component.name}.{variable} is {there!r} instead of {here!r}"
 
 
@@ -132,13 +138,20 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
             ends: ((0.0, how[1]), place) if _holds(place, lines) else (how, place)
             for ends, (how, place) in links.items()
         }
-    taken, other = [], []
+    taken = []
+    other = []
     for connection in system.connections:
-        arrow = " -> ".join(".".join(filter(None, end)) for end in (connection.source, connection.target))
-        ends, name = (connection.source, connection.target), arrow
+        arrow = " -> ".join(
+            ".".join(filter(None, end)) for end in (connection.source, connection.target)
+        )
+        ends = (connection.source, connection.target)
+        name = arrow
         if ends in links and not connection.initial:
             (factor, offset), _ = links[ends]
-            same = (factor, offset) == (connection.factor, connection.offset) and connection.mapping is None
+            same = (factor, offset) == (
+                connection.factor,
+                connection.offset,
+            ) and connection.mapping is None
             if not same:
                 other.append(f"{name} is {_how(factor, offset, connection)}")
             taken.append(replace(connection, factor=factor, offset=offset, mapping=None))
@@ -146,13 +159,19 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
             taken.append(connection)
         else:
             other.append(f"{name} is not made")
-    return _listed("connections are something else", other), replace(system, connections=tuple(taken))
+    return _listed("connections are something else", other), replace(
+        system, connections=tuple(taken)
+    )
 
 
 def _holds(place: str, lines: Container[str]) -> bool:
     """Whether a connection's place is that of a transformation in it, in the same line or the next one."""
     file, _, line = place.partition(": ")[0].rpartition(", line ")
-    return any(f"{file}, line {int(line) + more}" in lines for more in (0, 1)) if line.isdigit() else False
+    return (
+        any(f"{file}, line {int(line) + more}" in lines for more in (0, 1))
+        if line.isdigit()
+        else False
+    )
 
 
 def _how(factor: float, offset: float, connection: Connection) -> str:
@@ -166,7 +185,11 @@ def _steps(host: str, subject: Subject, system: System) -> tuple[str, System]:
     if not any(True for _ in hints_of_others(subject)):
         return "", system
     plain = {name: replace(part, step_size=None) for name, part in system.components.items()}
-    other = [f"{name} steps with the base step" for name, part in system.components.items() if part.step_size]
+    other = [
+        f"{name} steps with the base step"
+        for name, part in system.components.items()
+        if part.step_size
+    ]
     return _listed("step sizes are not read", other), replace(system, components=plain)
 
 

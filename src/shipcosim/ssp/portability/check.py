@@ -21,7 +21,9 @@ def check_host(host: str) -> None:
         If it is not one of HOSTS.
     """
     if host not in HOSTS:
-        raise ShipcosimError(Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS)))
+        raise ShipcosimError(
+            Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS))
+        )
 
 
 def check_for(
@@ -59,11 +61,15 @@ def check_for(
     if osp is not None and host == "ecos":
         remedy = "Give it the system as an SSP."
         return [Problem(str(path), "ecos does not read an OspSystemStructure.xml.", remedy)]
-    subject = subject_of(path, fmus, components) if osp is None else _osp_subject(osp, fmus, components)
+    subject = (
+        subject_of(path, fmus, components) if osp is None else _osp_subject(osp, fmus, components)
+    )
     if subject is None:
         return []
     known = (feature for feature in FEATURES if host in feature.becomes)
-    return list(dict.fromkeys(problem for feature in known for problem in _problems(host, feature, subject)))
+    return list(
+        dict.fromkeys(problem for feature in known for problem in _problems(host, feature, subject))
+    )
 
 
 def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem]:
@@ -81,4 +87,6 @@ def _osp_subject(
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings, components)
     document = read_document(path, str(path), findings)
-    return None if system is None or document is None or findings.errors else Subject(document, system)
+    return (
+        None if system is None or document is None or findings.errors else Subject(document, system)
+    )

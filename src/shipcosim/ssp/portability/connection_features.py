@@ -23,10 +23,15 @@ def reversed_links(subject: Subject) -> Found:
 def undeclared_connectors(subject: Subject) -> Found:
     """A connector that only the FMU declares."""
     declared = {
-        (part.name, connector.name) for part in subject.elements for connector in getattr(part, "connectors", ())
+        (part.name, connector.name)
+        for part in subject.elements
+        for connector in getattr(part, "connectors", ())
     }
     for link, _, _ in subject.links:
-        for end in ((link.start_element, link.start_connector), (link.end_element, link.end_connector)):
+        for end in (
+            (link.start_element, link.start_connector),
+            (link.end_element, link.end_connector),
+        ):
             if end not in declared:
                 yield link.place, f"{'.'.join(filter(None, end))} is not declared as a connector"
 
@@ -34,25 +39,38 @@ def undeclared_connectors(subject: Subject) -> Found:
 def typeless_connectors(subject: Subject) -> Found:
     """A connector without a type."""
     for part in subject.components:
-        yield from ((connector.place, "") for connector in part.connectors if connector.type is None)
+        yield from (
+            (connector.place, "") for connector in part.connectors if connector.type is None
+        )
 
 
 def connectors_of_2(subject: Subject) -> Found:
     """A connector of a type of SSP 2.0."""
     for part in elements_of(subject, "Connector"):
-        yield from ((subject.document.place(part), f"a connector of type {name}") for name in types_of_2(part))
+        yield from (
+            (subject.document.place(part), f"a connector of type {name}")
+            for name in types_of_2(part)
+        )
 
 
 def enumeration_connectors(subject: Subject) -> Found:
     """A connector that is an enumeration."""
     for part in subject.components:
-        yield from ((connector.place, "") for connector in part.connectors if connector.type == "Enumeration")
+        yield from (
+            (connector.place, "")
+            for connector in part.connectors
+            if connector.type == "Enumeration"
+        )
 
 
 def different_types(subject: Subject) -> Found:
     """A connection between different types."""
     for link, start, end in subject.links:
-        kinds = [port.variable.kind for port in (start, end) if port is not None and port.variable is not None]
+        kinds = [
+            port.variable.kind
+            for port in (start, end)
+            if port is not None and port.variable is not None
+        ]
         if len(kinds) == 2 and kinds[0] != kinds[1]:
             yield link.place, f"a connection between {kinds[0]} and {kinds[1]}"
 
@@ -60,7 +78,10 @@ def different_types(subject: Subject) -> Found:
 def enumeration_connections(subject: Subject) -> Found:
     """A connection of enumerations."""
     for link, *ports in subject.links:
-        if any(p is not None and p.variable is not None and p.variable.kind == "Enumeration" for p in ports):
+        if any(
+            p is not None and p.variable is not None and p.variable.kind == "Enumeration"
+            for p in ports
+        ):
             yield link.place, ""
 
 
@@ -99,4 +120,7 @@ def unit_conversions(subject: Subject) -> Found:
         written = (how.factor, how.offset) if how is not None else (1.0, 0.0)
         pairs = zip(written, (whole.factor, whole.offset), strict=True)
         if not all(isclose(one, other, rel_tol=1e-12) for one, other in pairs):
-            yield link.place, f"a conversion of units, {whole.factor:.6g} times the value plus {whole.offset:.6g}"
+            yield (
+                link.place,
+                f"a conversion of units, {whole.factor:.6g} times the value plus {whole.offset:.6g}",
+            )

@@ -11,7 +11,11 @@ from shipcosim.ssp.xml.document import local
 
 
 def _osp(subject: Subject, *tags: str) -> list[etree._Element]:
-    return [] if subject.is_ssp else [part for part in subject.document.root.iter(etree.Element) if local(part) in tags]
+    return (
+        []
+        if subject.is_ssp
+        else [part for part in subject.document.root.iter(etree.Element) if local(part) in tags]
+    )
 
 
 def osp_without_algorithm(subject: Subject) -> Found:
@@ -34,6 +38,8 @@ def osp_group_files(subject: Subject) -> Found:
     """Variable groups in a file that has not the model's name."""
     for name in dict.fromkeys(part.get("simulator") for part in _osp(subject, "VariableGroup")):
         fmu = subject.system.components[name].fmu
-        places = [folder / file_names(fmu)[0] for folder in (fmu.path.parent, subject.document.folder)]
+        places = [
+            folder / file_names(fmu)[0] for folder in (fmu.path.parent, subject.document.folder)
+        ]
         if not any(place.is_file() for place in places):
             yield name, f"variable groups that are not in {places[0].name}"

@@ -47,20 +47,28 @@ def set_prefixes(subject: Subject) -> Found:
 def set_mappings(subject: Subject) -> Found:
     """A parameter mapping (SSM)."""
     for part in subject.components:
-        yield from ((binding.mapping.place, "") for binding in part.bindings if binding.mapping is not None)
+        yield from (
+            (binding.mapping.place, "") for binding in part.bindings if binding.mapping is not None
+        )
 
 
 def sets_in_fmus(subject: Subject) -> Found:
     """A parameter set inside an FMU."""
     for part in subject.components:
-        yield from ((binding.values.place, "") for binding in part.bindings if binding.values.in_component)
+        yield from (
+            (binding.values.place, "") for binding in part.bindings if binding.values.in_component
+        )
 
 
 def set_units(subject: Subject) -> Found:
     """A value in another unit than the FMU's."""
     for value, variable, fmu in subject.values:
         own = find_unit(variable.unit, fmu.units)
-        if value.unit is not None and own is not None and relation(value.unit, own) == "convertible":
+        if (
+            value.unit is not None
+            and own is not None
+            and relation(value.unit, own) == "convertible"
+        ):
             yield value.place, f"a value in {value.unit.name}, where the FMU has {own.name}"
 
 

@@ -28,7 +28,10 @@ def prefixes(subject: Subject) -> Found:
         for part in document.root.iter(etree.Element):
             uri = etree.QName(part).namespace
             if uri in wanted and part.prefix != wanted[uri]:
-                yield document.place(part), f"<{_shown(part)}> instead of <{wanted[uri]}:{local(part)}>"
+                yield (
+                    document.place(part),
+                    f"<{_shown(part)}> instead of <{wanted[uri]}:{local(part)}>",
+                )
                 break
 
 
@@ -61,7 +64,9 @@ def other_files(subject: Subject) -> Found:
 
 def dictionaries(subject: Subject) -> Found:
     """A signal dictionary."""
-    yield from ((part.place, "") for part in subject.elements if isinstance(part, DictionaryReference))
+    yield from (
+        (part.place, "") for part in subject.elements if isinstance(part, DictionaryReference)
+    )
 
 
 def system_connections(subject: Subject) -> Found:
@@ -74,9 +79,15 @@ def system_connections(subject: Subject) -> Found:
 def _osp_steps(subject: Subject) -> Iterator[etree._Element]:
     """FixedStepAlgorithm elements that libcosim looks for, whatever their prefixes."""
     experiment = child(subject.document.root, "ssd:DefaultExperiment")
-    for annotation in () if experiment is None else children(experiment, "ssd:Annotations", "ssc:Annotation"):
+    for annotation in (
+        () if experiment is None else children(experiment, "ssd:Annotations", "ssc:Annotation")
+    ):
         if annotation.get("type") == OSP_TYPE:
-            yield from (part for part in annotation.iter(etree.Element) if local(part) == "FixedStepAlgorithm")
+            yield from (
+                part
+                for part in annotation.iter(etree.Element)
+                if local(part) == "FixedStepAlgorithm"
+            )
 
 
 def steps_of_others(subject: Subject) -> Found:
@@ -109,7 +120,9 @@ def osp_annotations(subject: Subject) -> Found:
     """OSP's algorithm with another prefix than osp:, or with the prefix declared on itself."""
     for step in _osp_steps(subject) if subject.package is not None else ():
         algorithm = step.getparent()
-        declares = subject.package and DECLARING.search((subject.package.folder / subject.package.ssd).read_bytes())
+        declares = subject.package and DECLARING.search(
+            (subject.package.folder / subject.package.ssd).read_bytes()
+        )
         if declares or algorithm.attrib or algorithm.prefix != "osp" or step.prefix != "osp":
             yield subject.document.place(algorithm), ""
 
@@ -118,7 +131,11 @@ def hints_of_others(subject: Subject) -> Found:
     """A component's step size in another tool's annotation."""
     for part in elements_of(subject, "StepSizeHint"):
         annotation = part.getparent()
-        osp = part.prefix == "osp" and local(annotation) == "Annotation" and annotation.get("type") == OSP_TYPE
+        osp = (
+            part.prefix == "osp"
+            and local(annotation) == "Annotation"
+            and annotation.get("type") == OSP_TYPE
+        )
         if not osp:
             yield subject.document.place(part), ""
 
@@ -138,18 +155,27 @@ def fmi_3(subject: Subject) -> Found:
 
 def without_co_simulation(subject: Subject) -> Found:
     """An FMU that offers no co-simulation."""
-    yield from ((n, "") for n, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces and not is_fmi_1(fmu))
+    yield from (
+        (n, "")
+        for n, fmu in subject.fmus
+        if "CoSimulation" not in fmu.interfaces and not is_fmi_1(fmu)
+    )
 
 
 def without_co_simulation_1(subject: Subject) -> Found:
     """An FMU of FMI 1.0 that offers no co-simulation."""
-    yield from ((n, "") for n, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces and is_fmi_1(fmu))
+    yield from (
+        (n, "") for n, fmu in subject.fmus if "CoSimulation" not in fmu.interfaces and is_fmi_1(fmu)
+    )
 
 
 def model_exchange_asked(subject: Subject) -> Found:
     """Model exchange asked for of an FMU that offers co-simulation too."""
     for name, component in subject.system.components.items():
-        if component.implementation == "ModelExchange" and "CoSimulation" in component.fmu.interfaces:
+        if (
+            component.implementation == "ModelExchange"
+            and "CoSimulation" in component.fmu.interfaces
+        ):
             yield name, ""
 
 

@@ -16,7 +16,14 @@ from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.package import Package, open_package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterValue, read_parameter_set
-from shipcosim.ssp.read.structure import Binding, ComponentElement, DictionaryReference, Link, Structure, SystemElement
+from shipcosim.ssp.read.structure import (
+    Binding,
+    ComponentElement,
+    DictionaryReference,
+    Link,
+    Structure,
+    SystemElement,
+)
 from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Document, Findings, local
 from shipcosim.ssp.xml.values import KINDS, SSP_1_TYPES
@@ -82,7 +89,11 @@ class Subject:
         """(component element, FMU, binding, ParameterSet) of sets bound to components."""
         found = []
         for part in self.components:
-            _, fmu = (None, None) if self.tree is None else self.tree.components.get((part.name,), (None, None))
+            _, fmu = (
+                (None, None)
+                if self.tree is None
+                else self.tree.components.get((part.name,), (None, None))
+            )
             for binding in part.bindings:
                 document = binding.values.inline or self._file(binding)
                 if document is not None:
@@ -101,7 +112,11 @@ class Subject:
     def documents(self) -> list[Document]:
         """The SSD, and the files of the sets that are bound to its components; none for an OspSystemStructure.xml."""
         files = [self._file(binding) for part in self.components for binding in part.bindings]
-        return [document for document in (self.document, *files) if document is not None] if self.is_ssp else []
+        return (
+            [document for document in (self.document, *files) if document is not None]
+            if self.is_ssp
+            else []
+        )
 
     @cached_property
     def values(self) -> list[tuple[ParameterValue, Variable, FmuDescription]]:
@@ -147,18 +162,26 @@ def subject_of(
     tree = Hierarchy(findings, swapped=components)
     take_in(tree, structure, package)
     system = assemble_package(package, (), str(path), findings, swapped=components)
-    return None if system is None or findings.errors else Subject(document, system, structure, package, tree)
+    return (
+        None
+        if system is None or findings.errors
+        else Subject(document, system, structure, package, tree)
+    )
 
 
 def elements_of(subject: Subject, *tags: str) -> Iterator[etree._Element]:
     """Elements of an SSD of these local names; none of an OspSystemStructure.xml."""
     if subject.is_ssp:
-        yield from (part for part in subject.document.root.iter(etree.Element) if local(part) in tags)
+        yield from (
+            part for part in subject.document.root.iter(etree.Element) if local(part) in tags
+        )
 
 
 def types_of_2(element: etree._Element) -> list[str]:
     """Types of SSP 2.0 that an element of a connector or value has."""
-    return [local(part) for part in element if local(part) in KINDS and local(part) not in SSP_1_TYPES]
+    return [
+        local(part) for part in element if local(part) in KINDS and local(part) not in SSP_1_TYPES
+    ]
 
 
 def is_fmi_1(fmu: FmuDescription) -> bool:

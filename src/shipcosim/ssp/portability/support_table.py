@@ -7,11 +7,18 @@ table to it. `shipcosim simulate --engine` is another thing: it gives each engin
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from shipcosim.ssp.portability import connection_features, osp_features, parameter_features, structure_features
+from shipcosim.ssp.portability import (
+    connection_features,
+    osp_features,
+    parameter_features,
+    structure_features,
+)
 from shipcosim.ssp.portability.subject import Found, Subject
 
-IGNORED, MISREAD = "goes on without it, and says nothing", "takes it for something else, and says nothing"
-REFUSED, CRASHES = "refuses the system", "crashes"
+IGNORED = "goes on without it, and says nothing"
+MISREAD = "takes it for something else, and says nothing"
+REFUSED = "refuses the system"
+CRASHES = "crashes"
 TOLD = "has to be told it in the call"
 HOSTS = ("libcosim", "ecos")
 
@@ -61,10 +68,22 @@ FEATURES = (
         "Read and write it with shipcosim, which writes ssd:, ssc:, ssv:.",
         structure_features.prefixes,
     ),
-    Feature("version_2", "SSP 2.0", _ecos(REFUSED), 'Write version="1.0".', structure_features.version_2),
-    Feature("nested_system", "a system in a system", _both(REFUSED), FLAT, structure_features.nested_systems),
     Feature(
-        "other_file", "a component that is a system of its own", _both(REFUSED), FLAT, structure_features.other_files
+        "version_2", "SSP 2.0", _ecos(REFUSED), 'Write version="1.0".', structure_features.version_2
+    ),
+    Feature(
+        "nested_system",
+        "a system in a system",
+        _both(REFUSED),
+        FLAT,
+        structure_features.nested_systems,
+    ),
+    Feature(
+        "other_file",
+        "a component that is a system of its own",
+        _both(REFUSED),
+        FLAT,
+        structure_features.other_files,
     ),
     Feature(
         "dictionary",
@@ -158,7 +177,11 @@ FEATURES = (
         connection_features.unit_conversions,
     ),
     Feature(
-        "set_on_system", "a parameter set bound to a system", _both(IGNORED), BIND, parameter_features.sets_on_systems
+        "set_on_system",
+        "a parameter set bound to a system",
+        _both(IGNORED),
+        BIND,
+        parameter_features.sets_on_systems,
     ),
     Feature(
         "several_sets",
@@ -181,8 +204,16 @@ FEATURES = (
         "Give its name: `init(parameter_set=...)`; without one ecos applies none.",
         parameter_features.set_names,
     ),
-    Feature("set_prefix", "a prefix of a binding", _both(IGNORED), BIND, parameter_features.set_prefixes),
-    Feature("set_mapping", "a parameter mapping (SSM)", _both(IGNORED), BIND, parameter_features.set_mappings),
+    Feature(
+        "set_prefix", "a prefix of a binding", _both(IGNORED), BIND, parameter_features.set_prefixes
+    ),
+    Feature(
+        "set_mapping",
+        "a parameter mapping (SSM)",
+        _both(IGNORED),
+        BIND,
+        parameter_features.set_mappings,
+    ),
     Feature(
         "set_in_fmu",
         "a parameter set inside an FMU",
@@ -281,7 +312,13 @@ FEATURES = (
         "Rename the file so that nothing has to be escaped.",
         structure_features.escaped_addresses,
     ),
-    Feature("fmi_3", "an FMU of FMI 3.0", _libcosim(REFUSED), "Export the FMU as FMI 2.0.", structure_features.fmi_3),
+    Feature(
+        "fmi_3",
+        "an FMU of FMI 3.0",
+        _libcosim(REFUSED),
+        "Export the FMU as FMI 2.0.",
+        structure_features.fmi_3,
+    ),
     Feature(
         "model_exchange_1",
         "an FMU of FMI 1.0 that offers no co-simulation",

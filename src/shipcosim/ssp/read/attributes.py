@@ -10,7 +10,12 @@ from shipcosim.ssp.xml.values import Value, read_value
 
 
 def attribute(
-    document: Document, element: etree._Element, name: str, kind: str, findings: Findings, what: str = ""
+    document: Document,
+    element: etree._Element,
+    name: str,
+    kind: str,
+    findings: Findings,
+    what: str = "",
 ) -> Value | None:
     """Value of an attribute; None where it is missing or, with an error, makes no sense.
 
@@ -29,14 +34,17 @@ def attribute(
     what : str
         The attribute's name in messages, where it is another.
     """
-    value, text = None, element.get(name)
+    value = None
+    text = element.get(name)
     if text is not None:
         with reporting(document, element, findings, what or name):
             value = read_value(kind, text)
     return value
 
 
-def whole_numbers(document: Document, element: etree._Element, name: str, findings: Findings) -> tuple[int, ...]:
+def whole_numbers(
+    document: Document, element: etree._Element, name: str, findings: Findings
+) -> tuple[int, ...]:
     """Whole numbers listed in an attribute.
 
     Parameters

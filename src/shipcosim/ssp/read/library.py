@@ -54,7 +54,8 @@ class Library:
     """
 
     def __init__(self, findings: Findings, described: dict | None = None):
-        self.findings, self.packages = findings, list[Package]()
+        self.findings = findings
+        self.packages = list[Package]()
         self._described = {} if described is None else described
         self._kept: dict[Hashable, Any] = {}
 
@@ -104,7 +105,9 @@ class Library:
         document = package.read(file, self.findings)
         return None if document is None else read_structure(document, self.findings)
 
-    def content(self, source: Source, place: InPackage, fmu: FmuDescription | None = None) -> Document | None:
+    def content(
+        self, source: Source, place: InPackage, fmu: FmuDescription | None = None
+    ) -> Document | None:
         """Document of a parameter set, mapping or dictionary, inline or in a file, or None with an error.
 
         Parameters
@@ -123,24 +126,38 @@ class Library:
         if source.inline is not None or source.uri is None:
             return source.inline
         if source.in_component:
-            return None if fmu is None else self._once((fmu.path, source.uri), lambda: self._inside(fmu, source))
+            return (
+                None
+                if fmu is None
+                else self._once((fmu.path, source.uri), lambda: self._inside(fmu, source))
+            )
         file = self.file(source, source.uri, place)
-        return None if file is None else self._once(("file", file), lambda: place.package.read(file, self.findings))
+        return (
+            None
+            if file is None
+            else self._once(("file", file), lambda: place.package.read(file, self.findings))
+        )
 
     def _inside(self, fmu: FmuDescription, source: Source) -> Document | None:
         return read_in_component(fmu, source.uri or "", source.place, self.findings)
 
     def parameter_set(self, document: Document) -> ParameterSet:
         """Parameter set of a document."""
-        return self._once(("set", id(document.root)), lambda: read_parameter_set(document, self.findings))
+        return self._once(
+            ("set", id(document.root)), lambda: read_parameter_set(document, self.findings)
+        )
 
     def mapping(self, document: Document) -> tuple[MappingEntry, ...]:
         """Entries of a parameter mapping."""
-        return self._once(("mapping", id(document.root)), lambda: read_mapping(document, self.findings))
+        return self._once(
+            ("mapping", id(document.root)), lambda: read_mapping(document, self.findings)
+        )
 
     def dictionary(self, document: Document) -> dict[str, DictionaryEntry]:
         """Entries of a signal dictionary by name."""
-        return self._once(("dictionary", id(document.root)), lambda: read_dictionary(document, self.findings))
+        return self._once(
+            ("dictionary", id(document.root)), lambda: read_dictionary(document, self.findings)
+        )
 
     def fmu(self, file: Path, package: Package) -> FmuDescription | None:
         """Description of an FMU, or None."""

@@ -52,8 +52,13 @@ class Package:
 
     def show(self, path: str | PathLike[str]) -> str:
         """Name of a file of the package as the user knows it."""
-        path, folder = Path(path).resolve(), self.folder.resolve()
-        return f"{self.shown}/{path.relative_to(folder).as_posix()}" if path.is_relative_to(folder) else str(path)
+        path = Path(path).resolve()
+        folder = self.folder.resolve()
+        return (
+            f"{self.shown}/{path.relative_to(folder).as_posix()}"
+            if path.is_relative_to(folder)
+            else str(path)
+        )
 
     def __getstate__(self) -> dict:
         # a copy in another process uses the files, and does not remove them
@@ -66,7 +71,9 @@ class Package:
     def read(self, path: str | PathLike[str], findings: Findings) -> Document | None:
         """Document of one of the package's files."""
         held = self.held.get(Path(path).resolve())
-        return held if isinstance(held, Document) else read_document(path, self.show(path), findings)
+        return (
+            held if isinstance(held, Document) else read_document(path, self.show(path), findings)
+        )
 
     def locate(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
         """File that a relative address means, or None with an error.
@@ -84,18 +91,30 @@ class Package:
         """
         try:
             return self._located(uri, base, place, findings)
-        except (ValueError, OSError) as error:  # a NUL in it, longer than any file system takes, ...
+        except (
+            ValueError,
+            OSError,
+        ) as error:  # a NUL in it, longer than any file system takes, ...
             findings.error(place, f"'{uri[:80]}' is no usable address: {error}.")
             return None
 
     def _located(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
         folder = self.folder.resolve()
-        parts, wild = urlsplit(uri), None
+        parts = urlsplit(uri)
+        wild = None
         plain = not (parts.scheme or parts.netloc or uri.startswith("/")) and bool(parts.path)
-        paths = [(base / name).resolve() for name in (unquote(parts.path), parts.path)] if plain else []
+        paths = (
+            [(base / name).resolve() for name in (unquote(parts.path), parts.path)] if plain else []
+        )
         inside = plain and all(path.is_relative_to(folder) for path in paths)
-        elsewhere = [folder / paths[0].name for folder in self.fmus if inside and paths[0].suffix == ".fmu"]
-        found = next((path for path in (*paths, *elsewhere) if self._is_there(path)), None) if inside else None
+        elsewhere = [
+            folder / paths[0].name for folder in self.fmus if inside and paths[0].suffix == ".fmu"
+        ]
+        found = (
+            next((path for path in (*paths, *elsewhere) if self._is_there(path)), None)
+            if inside
+            else None
+        )
         if found is None and (wild := meant(uri, base, folder, self.unpacked is None)) is not None:
             return self._taken(uri, wild, place, findings)
         if not plain:
@@ -103,7 +122,11 @@ class Package:
             findings.error(place, f"'{uri}' is no address within the package.", remedy)
             return None
         if not inside:
-            findings.error(place, f"'{uri}' lies outside the package.", "Put the file beside the SSD, in resources/.")
+            findings.error(
+                place,
+                f"'{uri}' lies outside the package.",
+                "Put the file beside the SSD, in resources/.",
+            )
             return None
         if found is None:
             is_folder = any(path.is_dir() for path in (*paths, *elsewhere))
@@ -123,9 +146,17 @@ class Package:
         shown = self.show(found)
         findings.flaw(place, f"'{uri}' is no address within the package; {shown} is taken.", INSIDE)
         folder = self.folder.resolve()
-        name = found.relative_to(folder).as_posix() if found.is_relative_to(folder) else f"resources/{found.name}"
+        name = (
+            found.relative_to(folder).as_posix()
+            if found.is_relative_to(folder)
+            else f"resources/{found.name}"
+        )
         if self.located.setdefault(name, found) != found:
-            findings.error(place, f"Two files are named {found.name}: {shown} and {self.located[name]}.", INSIDE)
+            findings.error(
+                place,
+                f"Two files are named {found.name}: {shown} and {self.located[name]}.",
+                INSIDE,
+            )
             return None
         self.moved[uri] = name
         return found
@@ -136,7 +167,9 @@ class Package:
 
     def _present(self, path: Path) -> str:
         folders = [path.parent, *(self.fmus if path.suffix == ".fmu" else ())]
-        files = [file for folder in folders if folder.is_dir() for file in folder.glob(f"*{path.suffix}")]
+        files = [
+            file for folder in folders if folder.is_dir() for file in folder.glob(f"*{path.suffix}")
+        ]
         there = {file.name for file in files if file.is_file()}
         return f"In {' and '.join(map(str, folders))} there{suggestion(path.name, there).removeprefix('There')}"
 
@@ -161,11 +194,17 @@ def open_package(
         Name of the path in messages, where it is another.
     """
     text, _, variant = str(path).partition("#")
-    path, shown, fmus = Path(text), shown or text, tuple(Path(folder) for folder in fmus)
+    path = Path(text)
+    shown = shown or text
+    fmus = tuple(Path(folder) for folder in fmus)
     if path.is_dir():
         return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
     if not path.is_file():
-        findings.error(shown, "There is no such file or folder.", "Right would be a .ssp, a .ssd or a folder with one.")
+        findings.error(
+            shown,
+            "There is no such file or folder.",
+            "Right would be a .ssp, a .ssd or a folder with one.",
+        )
         return None
     if path.suffix.lower() == ".ssd":
         return Package(path.parent, str(Path(shown).parent), path.name, fmus)
@@ -178,12 +217,16 @@ def open_package(
     package = Package(Path(unpacked.name), shown, variant or SYSTEM_STRUCTURE, fmus, unpacked)
     if not (package.folder / package.ssd).is_file():
         there = [file.name for file in package.folder.glob("*.ssd")]
-        findings.error(shown, f"The archive has no {package.ssd} at its top.", it_has(package.ssd, there))
+        findings.error(
+            shown, f"The archive has no {package.ssd} at its top.", it_has(package.ssd, there)
+        )
         return None
     return package
 
 
-def read_in_component(fmu: FmuDescription, uri: str, place: str, findings: Findings) -> Document | None:
+def read_in_component(
+    fmu: FmuDescription, uri: str, place: str, findings: Findings
+) -> Document | None:
     """Document inside an FMU (``sourceBase="component"``), or None with an error.
 
     Parameters
@@ -208,7 +251,9 @@ def read_in_component(fmu: FmuDescription, uri: str, place: str, findings: Findi
         findings.problems += error.problems
         return None
     if data is None:
-        findings.error(place, f"{fmu.path.name} has no file '{name}'.", "Addresses start at the FMU's top.")
+        findings.error(
+            place, f"{fmu.path.name} has no file '{name}'.", "Addresses start at the FMU's top."
+        )
         return None
     file = f"{fmu.path.name}/{name}"
     return parsed(data, file, findings)

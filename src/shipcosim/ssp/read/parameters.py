@@ -11,7 +11,16 @@ import lxml.etree as etree
 
 from shipcosim.ssp.read.attributes import attribute
 from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
-from shipcosim.ssp.xml.document import NAMESPACES, Document, Findings, children, is_true, local, qualified, reporting
+from shipcosim.ssp.xml.document import (
+    NAMESPACES,
+    Document,
+    Findings,
+    children,
+    is_true,
+    local,
+    qualified,
+    reporting,
+)
 from shipcosim.ssp.xml.mend import mend
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS, Value, read_value
@@ -159,7 +168,11 @@ def has_root(document: Document, tag: str, findings: Findings) -> bool:
         return True
     found = f"Its outermost element is <{local(document.root)}>."
     prefix, name = tag.split(":")
-    findings.error(document.place(document.root), found, f'Right would be <{name} xmlns="{NAMESPACES[prefix]}">.')
+    findings.error(
+        document.place(document.root),
+        found,
+        f'Right would be <{name} xmlns="{NAMESPACES[prefix]}">.',
+    )
     return False
 
 
@@ -195,7 +208,11 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
             line = first.place.rpartition(", line ")[2].partition(":")[0]
             found = f"The set has this parameter already, in line {line}"
             if (first.kind, first.value, first.unit) == (value.kind, value.value, value.unit):
-                findings.flaw(value.place, f"{found}, with the same value; it counts once.", "Keep one of them.")
+                findings.flaw(
+                    value.place,
+                    f"{found}, with the same value; it counts once.",
+                    "Keep one of them.",
+                )
             else:
                 findings.error(value.place, f"{found}.", "Keep one of them.")
         elif value is not None:
@@ -209,19 +226,32 @@ def _parameter(
     name = element.get("name", "")
     typed = next((part for part in element if local(part) in KINDS), None)
     if typed is None or not name:
-        findings.error(document.place(element, name), "A parameter needs a name and one element with type and value.")
+        findings.error(
+            document.place(element, name),
+            "A parameter needs a name and one element with type and value.",
+        )
         return None
     kind = KINDS[local(typed)]
     try:
-        sizes = tuple(read_value("Integer", part.get("size", "")) for part in element if local(part) == "Dimension")
+        sizes = tuple(
+            read_value("Integer", part.get("size", ""))
+            for part in element
+            if local(part) == "Dimension"
+        )
         value = _values(kind, typed) if sizes else read_value(kind, _text(typed))
         tolerance = tolerance_of(element)
     except ValueError as error:
-        findings.error(document.place(element, name), str(error), "Correct it, or leave the parameter to its default.")
+        findings.error(
+            document.place(element, name),
+            str(error),
+            "Correct it, or leave the parameter to its default.",
+        )
         return None
     unit = find_unit(typed.get("unit"), units)
     description = element.get("description", "")
-    return ParameterValue(name, kind, value, unit, description, document.place(element, name), tolerance, sizes)
+    return ParameterValue(
+        name, kind, value, unit, description, document.place(element, name), tolerance, sizes
+    )
 
 
 def _values(kind: str, typed: etree._Element) -> tuple[Value, ...]:
@@ -263,13 +293,18 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
     before = len(findings.errors)
     validate(document.root, "ssm", document.file, findings)
     entries = {}
-    for element in children(document.root, "ssm:MappingEntry") if len(findings.errors) == before else ():
-        source, target = element.get("source", ""), element.get("target", "")
+    for element in (
+        children(document.root, "ssm:MappingEntry") if len(findings.errors) == before else ()
+    ):
+        source = element.get("source", "")
+        target = element.get("target", "")
         place = document.place(element, f"{source} -> {target}")
         suppressed = is_true(element.get("suppressUnitConversion"))
         if target in entries:
             findings.error(
-                place, f"'{entries[target].source}' is mapped to this parameter already.", "Keep one of them."
+                place,
+                f"'{entries[target].source}' is mapped to this parameter already.",
+                "Keep one of them.",
             )
         entries[target] = MappingEntry(
             source, target, read_transformation(document, element, findings), suppressed, place
@@ -277,7 +312,9 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
     return tuple(entries.values())
 
 
-def read_transformation(document: Document, element: etree._Element, findings: Findings) -> Transformation | None:
+def read_transformation(
+    document: Document, element: etree._Element, findings: Findings
+) -> Transformation | None:
     """Transformation that a connection or a mapping entry contains, or None.
 
     Parameters
@@ -295,21 +332,34 @@ def read_transformation(document: Document, element: etree._Element, findings: F
     """
     for part in element:
         if local(part) == "LinearTransformation":
-            numbers = [_attribute_of(document, part, name, "Real", findings) for name in ("factor", "offset")]
-            return Transformation(factor=1.0 if numbers[0] is None else numbers[0], offset=numbers[1] or 0.0)
+            numbers = [
+                _attribute_of(document, part, name, "Real", findings)
+                for name in ("factor", "offset")
+            ]
+            return Transformation(
+                factor=1.0 if numbers[0] is None else numbers[0], offset=numbers[1] or 0.0
+            )
         if local(part) in MAPPINGS:
             return _table(document, part, MAPPINGS[local(part)], findings)
     return None
 
 
-def _table(document: Document, element: etree._Element, kind: str, findings: Findings) -> Transformation:
+def _table(
+    document: Document, element: etree._Element, kind: str, findings: Findings
+) -> Transformation:
     table = {}
     for entry in children(element, "ssc:MapEntry"):
-        source, target = (_attribute_of(document, entry, name, kind, findings) for name in ("source", "target"))
+        source, target = (
+            _attribute_of(document, entry, name, kind, findings) for name in ("source", "target")
+        )
         if source is None or target is None:
             continue  # an error already
         if source in table:
-            findings.error(document.place(entry), f"The value '{source}' is mapped twice.", "Keep one of the entries.")
+            findings.error(
+                document.place(entry),
+                f"The value '{source}' is mapped twice.",
+                "Keep one of the entries.",
+            )
         table[source] = target
     return Transformation(kind=kind, table=table)
 
@@ -341,7 +391,8 @@ def read_dictionary(document: Document, findings: Findings) -> dict[str, Diction
     validate(root, "ssb", document.file, findings)
     if len(findings.errors) > before:
         return {}
-    units, enumerations = {}, {}
+    units = {}
+    enumerations = {}
     with reporting(document, root, findings):
         units = read_units(children(root, "ssb:Units", "ssc:Unit"))
         enumerations = read_enumerations(children(root, "ssb:Enumerations", "ssc:Enumeration"))
@@ -354,5 +405,7 @@ def read_dictionary(document: Document, findings: Findings) -> dict[str, Diction
         if typed is not None:
             items = enumerations.get(typed.get("name"), {})
             unit = find_unit(typed.get("unit"), units)
-            entries[element.get("name")] = DictionaryEntry(element.get("name"), KINDS[local(typed)], unit, items)
+            entries[element.get("name")] = DictionaryEntry(
+                element.get("name"), KINDS[local(typed)], unit, items
+            )
     return entries

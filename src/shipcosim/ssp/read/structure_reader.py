@@ -23,7 +23,15 @@ from shipcosim.ssp.read.structure import (
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored
 from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
-from shipcosim.ssp.xml.document import Document, Findings, child, children, is_true, local, reporting
+from shipcosim.ssp.xml.document import (
+    Document,
+    Findings,
+    child,
+    children,
+    is_true,
+    local,
+    reporting,
+)
 from shipcosim.ssp.xml.schemas import is_slip
 from shipcosim.ssp.xml.validation import validate
 from shipcosim.ssp.xml.values import KINDS
@@ -42,12 +50,15 @@ def read_structure(document: Document, findings: Findings) -> Structure | None:
     """
     if not has_root(document, "ssd:SystemStructureDescription", findings):
         return None
-    root, before = document.root, len(findings.errors)
+    root = document.root
+    before = len(findings.errors)
     validate(root, "ssd", document.file, findings)
     system = child(root, "ssd:System")
     if system is None:
         if len(findings.errors) == before:
-            findings.error(document.place(root), "There is no System in it.", "Add <System name=...>.")
+            findings.error(
+                document.place(root), "There is no System in it.", "Add <System name=...>."
+            )
         return None
     reader = _Reader(document, findings)
     structure = Structure(
@@ -67,22 +78,34 @@ class _Reader:
     """Reads the elements of one document, with its units and enumerations at hand."""
 
     def __init__(self, document: Document, findings: Findings):
-        self.document, self.findings = document, findings
-        self.units, self.enumerations = {}, {}
+        self.document = document
+        self.findings = findings
+        self.units = {}
+        self.enumerations = {}
         self.validated = not document.root.get("version", "").startswith("2.")
         root = document.root
         with reporting(document, root, findings):
             self.units = read_units(children(root, "ssd:Units", "ssc:Unit"))
             note_empty_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
-            self.enumerations = read_enumerations(children(root, "ssd:Enumerations", "ssc:Enumeration"))
+            self.enumerations = read_enumerations(
+                children(root, "ssd:Enumerations", "ssc:Enumeration")
+            )
 
     def place(self, element: etree._Element, what: str = "") -> str:
         return self.document.place(element, what)
 
     def system(self, element: etree._Element) -> SystemElement:
-        readers = {"Component": self.component, "SignalDictionaryReference": self.reference, "System": self.system}
+        readers = {
+            "Component": self.component,
+            "SignalDictionaryReference": self.reference,
+            "System": self.system,
+        }
         parts = child(element, "ssd:Elements")
-        elements = [] if parts is None else [readers[local(part)](part) for part in parts if local(part) in readers]
+        elements = (
+            []
+            if parts is None
+            else [readers[local(part)](part) for part in parts if local(part) in readers]
+        )
         name = element.get("name", "")
         self.distinct(elements, "element", name)
         return SystemElement(
@@ -90,7 +113,9 @@ class _Reader:
             connectors=self.connectors(element),
             bindings=self.bindings(element),
             elements=tuple(elements),
-            links=tuple(self.link(part) for part in children(element, "ssd:Connections", "ssd:Connection")),
+            links=tuple(
+                self.link(part) for part in children(element, "ssd:Connections", "ssd:Connection")
+            ),
             dictionaries={
                 part.get("name", ""): self.source(part, part, "ssb:SignalDictionary")
                 for part in children(element, "ssd:SignalDictionaries", "ssd:SignalDictionary")
@@ -116,21 +141,29 @@ class _Reader:
     def reference(self, element: etree._Element) -> DictionaryReference:
         name = element.get("name", "")
         dictionary = element.get("dictionary", "")
-        return DictionaryReference(name, dictionary, self.connectors(element), self.place(element, name))
+        return DictionaryReference(
+            name, dictionary, self.connectors(element), self.place(element, name)
+        )
 
     def connectors(self, element: etree._Element) -> tuple[Connector, ...]:
         owner = element.get("name", "")
-        found = [self.connector(part, owner) for part in children(element, "ssd:Connectors", "ssd:Connector")]
+        found = [
+            self.connector(part, owner)
+            for part in children(element, "ssd:Connectors", "ssd:Connector")
+        ]
         self.distinct(found, "connector", owner)
         return tuple(found)
 
     def connector(self, element: etree._Element, owner: str) -> Connector:
         typed = next((part for part in element if local(part) in KINDS), None)
-        name, kind = element.get("name", ""), element.get("kind", "")
+        name = element.get("name", "")
+        kind = element.get("kind", "")
         place = self.place(element, f"{owner}.{name}")
         if kind not in KIND_NAMES and not self.validated:
             self.findings.error(
-                place, f"The kind of connector '{kind}' does not exist.", f"Kinds: {', '.join(KIND_NAMES)}."
+                place,
+                f"The kind of connector '{kind}' does not exist.",
+                f"Kinds: {', '.join(KIND_NAMES)}.",
             )
         return Connector(
             name=name,
@@ -152,7 +185,11 @@ class _Reader:
             return {}
         name = typed.get("name", "")
         if name not in self.enumerations:
-            what = f"The enumeration '{name}' is not defined in this file." if name else "The enumeration has no name."
+            what = (
+                f"The enumeration '{name}' is not defined in this file."
+                if name
+                else "The enumeration has no name."
+            )
             if is_slip(name, self.enumerations):
                 self.findings.error(place, what, suggestion(name, self.enumerations))
             else:
@@ -164,11 +201,16 @@ class _Reader:
         seen = set()
         for one in named:
             if one.name in seen:
-                self.findings.error(one.place, f"{owner} has a second {what} '{one.name}'.", "Names must differ.")
+                self.findings.error(
+                    one.place, f"{owner} has a second {what} '{one.name}'.", "Names must differ."
+                )
             seen.add(one.name)
 
     def link(self, element: etree._Element) -> Link:
-        ends = [element.get(key) for key in ("startElement", "startConnector", "endElement", "endConnector")]
+        ends = [
+            element.get(key)
+            for key in ("startElement", "startConnector", "endElement", "endConnector")
+        ]
         shown = " -> ".join(signal(ends[i], ends[i + 1] or "") for i in (0, 2))
         return Link(
             ends[0],
@@ -190,7 +232,9 @@ class _Reader:
         mapping = child(element, "ssd:ParameterMapping")
         return Binding(
             values=self.source(element, child(element, "ssd:ParameterValues"), "ssv:ParameterSet"),
-            mapping=None if mapping is None else self.source(mapping, mapping, "ssm:ParameterMapping"),
+            mapping=None
+            if mapping is None
+            else self.source(mapping, mapping, "ssm:ParameterMapping"),
             prefix=element.get("prefix", ""),
         )
 
@@ -200,19 +244,31 @@ class _Reader:
         if element.get("source") and inline is not None:
             self.findings.error(place, "It has a source and the same inline.", "Keep one of them.")
         if not element.get("source") and inline is None:
-            self.findings.error(place, "It has neither a source nor content.", f"Give a source or an inline <{tag}>.")
-        document = None if inline is None else Document(self.document.file, inline, self.document.folder)
-        return Source(element.get("source"), document, element.get("sourceBase") == "component", place)
+            self.findings.error(
+                place,
+                "It has neither a source nor content.",
+                f"Give a source or an inline <{tag}>.",
+            )
+        document = (
+            None if inline is None else Document(self.document.file, inline, self.document.folder)
+        )
+        return Source(
+            element.get("source"), document, element.get("sourceBase") == "component", place
+        )
 
     def experiment(self) -> Experiment:
         element = child(self.document.root, "ssd:DefaultExperiment")
         if element is None:
             return Experiment()
         start, stop = (
-            attribute(self.document, element, name, "Real", self.findings) for name in ("startTime", "stopTime")
+            attribute(self.document, element, name, "Real", self.findings)
+            for name in ("startTime", "stopTime")
         )
         start = start or 0.0
         if stop is not None and stop <= start:
-            place, found = self.place(element, "DefaultExperiment"), f"startTime is {start:g}, stopTime {stop:g}."
+            place = self.place(element, "DefaultExperiment")
+            found = f"startTime is {start:g}, stopTime {stop:g}."
             self.findings.error(place, found, "The stop comes after the start.")
-        return Experiment(start, stop, annotated_number(self.document, element, STEP_SIZES, self.findings))
+        return Experiment(
+            start, stop, annotated_number(self.document, element, STEP_SIZES, self.findings)
+        )

@@ -9,7 +9,15 @@ from collections.abc import Iterator, Mapping
 
 import lxml.etree as etree
 
-from shipcosim.ssp.xml.document import Document, Findings, child, children, local, parent_of, qualified
+from shipcosim.ssp.xml.document import (
+    Document,
+    Findings,
+    child,
+    children,
+    local,
+    parent_of,
+    qualified,
+)
 
 STEP_SIZES = {"FixedStepAlgorithm": "baseStepSize", "FixedStepMaster": "stepSize"}
 """Where annotations give the base step size: libcosim and ecos; OMSimulator and older OSP."""
@@ -26,7 +34,9 @@ def step_sizes(root: etree._Element) -> Iterator[tuple[etree._Element, str]]:
         yield from stated(owner, STEP_SIZES)
 
 
-def stated(owner: etree._Element | None, names: Mapping[str, str]) -> Iterator[tuple[etree._Element, str]]:
+def stated(
+    owner: etree._Element | None, names: Mapping[str, str]
+) -> Iterator[tuple[etree._Element, str]]:
     """Elements and attributes in an element's own annotations that give a number under one of these names."""
     for annotation in () if owner is None else children(owner, "ssd:Annotations", "ssc:Annotation"):
         for part in annotation.iter("{*}*"):
@@ -66,10 +76,14 @@ def _repeats(part: etree._Element, honoured: list[etree._Element]) -> bool:
     return len(sizes) == 2 and sizes[0] is not None and sizes[0] == sizes[1]
 
 
-def _remark(part: etree._Element, annotation: etree._Element, document: Document, findings: Findings) -> None:
+def _remark(
+    part: etree._Element, annotation: etree._Element, document: Document, findings: Findings
+) -> None:
     owner = parent_of(parent_of(annotation))
     numbers = STEP_SIZES | STEP_SIZE_HINTS
-    attribute = "description" if part.get("description") else numbers.get(local(part), "description")
+    attribute = (
+        "description" if part.get("description") else numbers.get(local(part), "description")
+    )
     detail = f" ({part.get(attribute)})" if part.get(attribute) else ""
     found = f"An annotation asks for {local(part)}{detail}, which is ignored."
     remedy = "All components step with one fixed base step, or a multiple of it that their StepSizeHint gives."

@@ -17,11 +17,25 @@ MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
 LARGEST_RATIO = 200  # unpacked to packed; text reaches some 20
 SMALL = 64 * 2**20  # bytes; below this size any ratio is harmless
-BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, struct.error, NotImplementedError, RuntimeError, ValueError)
-CANNOT = (*BROKEN, OSError, MemoryError)  # sizes and places that a damaged directory states can be absurd
+BROKEN = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    struct.error,
+    NotImplementedError,
+    RuntimeError,
+    ValueError,
+)
+CANNOT = (
+    *BROKEN,
+    OSError,
+    MemoryError,
+)  # sizes and places that a damaged directory states can be absurd
 
 
-def unpack(path: str | PathLike[str], folder: str | PathLike[str], shown: str | None = None) -> None:
+def unpack(
+    path: str | PathLike[str], folder: str | PathLike[str], shown: str | None = None
+) -> None:
     """Unpack an archive into a folder, nothing outside it and nothing beyond the limits.
 
     Parameters
@@ -48,7 +62,9 @@ def unpack(path: str | PathLike[str], folder: str | PathLike[str], shown: str | 
             raise _damaged(shown, error) from None
         except OSError as error:
             found = f"Cannot be unpacked into {folder}: {error.strerror}."
-            raise ShipcosimError(Problem(shown, found, "Make room there, or name another folder in TMPDIR.")) from None
+            raise ShipcosimError(
+                Problem(shown, found, "Make room there, or name another folder in TMPDIR.")
+            ) from None
 
 
 def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
@@ -65,7 +81,9 @@ def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
         return [entry.filename for entry in archive.infolist() if not entry.is_dir()]
 
 
-def read_entry(path: str | PathLike[str], name: str, limit: int, shown: str | None = None) -> bytes | None:
+def read_entry(
+    path: str | PathLike[str], name: str, limit: int, shown: str | None = None
+) -> bytes | None:
     """Bytes of one file of an archive, or None where the archive has no such file.
 
     Parameters
@@ -114,23 +132,44 @@ def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
 
 
 def _damaged(shown: str, error: object) -> ShipcosimError:
-    return ShipcosimError(Problem(shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."))
+    return ShipcosimError(
+        Problem(
+            shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."
+        )
+    )
 
 
 def _check(archive: zipfile.ZipFile, shown: str) -> None:
     listed = archive.infolist()
     problems = [Problem(shown, found) for entry in listed if (found := _unsafe(entry))]
-    total, packed = sum(e.file_size for e in listed), sum(e.compress_size for e in listed)
+    total = sum(e.file_size for e in listed)
+    packed = sum(e.compress_size for e in listed)
     if len(listed) > MOST_ENTRIES:
-        problems.append(Problem(shown, f"The archive has {len(listed)} entries.", f"At most {MOST_ENTRIES} are taken."))
+        problems.append(
+            Problem(
+                shown,
+                f"The archive has {len(listed)} entries.",
+                f"At most {MOST_ENTRIES} are taken.",
+            )
+        )
     if total > LARGEST_TOTAL:
         problems.append(
-            Problem(shown, f"Unpacked it has {total >> 20} MiB.", f"At most {LARGEST_TOTAL >> 20} are taken.")
+            Problem(
+                shown,
+                f"Unpacked it has {total >> 20} MiB.",
+                f"At most {LARGEST_TOTAL >> 20} are taken.",
+            )
         )
     if total > SMALL and total > LARGEST_RATIO * packed:
-        problems.append(Problem(shown, f"It unpacks to {total // max(packed, 1)} times its size; this is no model."))
+        problems.append(
+            Problem(
+                shown, f"It unpacks to {total // max(packed, 1)} times its size; this is no model."
+            )
+        )
     counts = Counter(entry.filename for entry in listed)
-    problems += [Problem(shown, f"{n} entries are named '{name}'.") for name, n in counts.items() if n > 1]
+    problems += [
+        Problem(shown, f"{n} entries are named '{name}'.") for name, n in counts.items() if n > 1
+    ]
     if problems:
         raise ShipcosimError(problems[:20])
 
@@ -138,8 +177,15 @@ def _check(archive: zipfile.ZipFile, shown: str) -> None:
 def _unsafe(entry: zipfile.ZipInfo) -> str | None:
     """Sentence on what makes an entry unsafe, or None."""
     name = PurePosixPath(entry.orig_filename.replace("\\", "/"))
-    if name.is_absolute() or ".." in name.parts or ":" in name.as_posix() or "\0" in entry.orig_filename:
-        return f"Entry '{entry.orig_filename}' would land outside the folder that it is unpacked into."
+    if (
+        name.is_absolute()
+        or ".." in name.parts
+        or ":" in name.as_posix()
+        or "\0" in entry.orig_filename
+    ):
+        return (
+            f"Entry '{entry.orig_filename}' would land outside the folder that it is unpacked into."
+        )
     if stat.S_ISLNK(entry.external_attr >> 16):
         return f"Entry '{entry.filename}' is a symbolic link."
     if entry.flag_bits & 1:
@@ -169,8 +215,11 @@ def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None
         with zipfile.ZipFile(partial, "w") as archive:
             for name in sorted(files):
                 entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-                entry.create_system, entry.external_attr = 3, 0o644 << 16
-                entry.compress_type = zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
+                entry.create_system = 3
+                entry.external_attr = 0o644 << 16
+                entry.compress_type = (
+                    zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
+                )
                 archive.writestr(entry, files[name], compresslevel=9)
         os.replace(partial, path)
     except OSError as error:

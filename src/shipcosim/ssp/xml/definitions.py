@@ -23,7 +23,11 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
     units = {}
     for element in elements:
         base = next((part for part in element if local(part) == "BaseUnit"), None)
-        if base is not None and element.get("name") is not None and not _says_nothing(element, base):
+        if (
+            base is not None
+            and element.get("name") is not None
+            and not _says_nothing(element, base)
+        ):
             exponents = tuple(int(base.get(name, 0)) for name in BASE_UNITS)
             scale = float(base.get("factor", 1.0)), float(base.get("offset", 0.0))
             units[element.get("name")] = Unit(element.get("name"), exponents, *scale)
@@ -36,13 +40,17 @@ def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
     return not base.attrib and known is not None and any(known.exponents or ())
 
 
-def note_empty_units(document: Document, elements: Iterable[etree._Element], findings: Findings) -> None:
+def note_empty_units(
+    document: Document, elements: Iterable[etree._Element], findings: Findings
+) -> None:
     """Note as flaws the units whose base unit says nothing and that are therefore taken by their common spelling."""
     for element in elements:
         for base in (part for part in element if local(part) == "BaseUnit"):
             if _says_nothing(element, base):
                 found = f"The base unit of '{element.get('name')}' says nothing; the unit is what it is commonly."
-                findings.flaw(document.place(base), found, "State its exponents, or leave BaseUnit out.")
+                findings.flaw(
+                    document.place(base), found, "State its exponents, or leave BaseUnit out."
+                )
 
 
 def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:
@@ -55,7 +63,8 @@ def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str,
     """
     return {
         element.get("name"): {
-            item.get("name"): read_value("Integer", item.get("value", "")) for item in children(element, "ssc:Item")
+            item.get("name"): read_value("Integer", item.get("value", ""))
+            for item in children(element, "ssc:Item")
         }
         for element in elements
     }

@@ -32,7 +32,8 @@ REMEDIES = {
     "is invalid": "Correct it.",
 }
 """What would be right, by part of what was found."""
-MOST_PREFIXES, UNDECLARED = 10, "Namespace prefix"
+MOST_PREFIXES = 10
+UNDECLARED = "Namespace prefix"
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
 
 
@@ -41,8 +42,11 @@ class Findings:
 
     def __init__(self):
         self.problems: list[Problem] = []
-        self._errors, self._looked_at = list[Problem](), 0
-        self.refused_lines: set[str] = set()  # by a schema: what else is wrong with a value there has been said
+        self._errors = list[Problem]()
+        self._looked_at = 0
+        self.refused_lines: set[str] = (
+            set()
+        )  # by a schema: what else is wrong with a value there has been said
 
     def error(self, where: str, found: str, remedy: str = "") -> None:
         """Note what makes the input unusable.
@@ -77,12 +81,15 @@ class Findings:
     def back_to(self, count: int) -> None:
         """Forget all but the first problems."""
         del self.problems[count:]
-        self._errors, self._looked_at = [], 0
+        self._errors = []
+        self._looked_at = 0
 
     @property
     def errors(self) -> list[Problem]:
         """Those of the problems that make the input unusable."""
-        self._errors += [problem for problem in self.problems[self._looked_at :] if problem.severity == "error"]
+        self._errors += [
+            problem for problem in self.problems[self._looked_at :] if problem.severity == "error"
+        ]
         self._looked_at = len(self.problems)
         return self._errors
 
@@ -115,12 +122,16 @@ class Document:
 
     def place(self, element: etree._Element, what: str = "") -> str:
         """Where an element stands, for the user to look it up."""
-        line = f", line {element.sourceline}" if element.sourceline else ""  # none where it was made in memory
+        line = (
+            f", line {element.sourceline}" if element.sourceline else ""
+        )  # none where it was made in memory
         return f"{self.file}{line}" + (f": {what}" if what else "")
 
 
 @contextmanager
-def reporting(document: Document, element: etree._Element, findings: Findings, what: str = "") -> Iterator[None]:
+def reporting(
+    document: Document, element: etree._Element, findings: Findings, what: str = ""
+) -> Iterator[None]:
     """Turn a ValueError within a ``with`` block into an error of the file.
 
     Parameters
@@ -197,7 +208,9 @@ def is_true(text: str | None) -> bool:
     return (text or "").strip() in ("true", "1")
 
 
-def parse(data: bytes, file: str, findings: Findings, *, utf8: bool = True) -> etree._Element | None:
+def parse(
+    data: bytes, file: str, findings: Findings, *, utf8: bool = True
+) -> etree._Element | None:
     """Root element of an XML text.
 
     Parameters
@@ -216,23 +229,35 @@ def parse(data: bytes, file: str, findings: Findings, *, utf8: bool = True) -> e
     lxml element, or None where there is no usable one.
     """
     if len(data) > LARGEST_FILE:
-        findings.error(file, "The file is too large.", f"At most {LARGEST_FILE >> 20} MiB are read.")
+        findings.error(
+            file, "The file is too large.", f"At most {LARGEST_FILE >> 20} MiB are read."
+        )
         return None
     if utf8 and not _is_utf8(data):
-        findings.error(file, "The file is not UTF-8.", "SSP files must be: save it with this encoding.")
+        findings.error(
+            file, "The file is not UTF-8.", "SSP files must be: save it with this encoding."
+        )
         return None
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False)
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False
+    )
     try:
         root = etree.fromstring(data, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
         line = getattr(error, "lineno", None)
         text = re.sub(r", line \d+, column \d+.*", "", str(error), flags=re.DOTALL)
         findings.error(
-            f"{file}, line {line}" if line else file, f"Not well-formed XML: {text}.", "Correct or export anew."
+            f"{file}, line {line}" if line else file,
+            f"Not well-formed XML: {text}.",
+            "Correct or export anew.",
         )
         return None
     if root.getroottree().docinfo.internalDTD is not None:
-        findings.error(file, "The file has a document type declaration.", "Remove <!DOCTYPE ...> and its entities.")
+        findings.error(
+            file,
+            "The file has a document type declaration.",
+            "Remove <!DOCTYPE ...> and its entities.",
+        )
         return None
     return root
 
@@ -277,7 +302,8 @@ def parsed(data: bytes, shown: str, findings: Findings, folder: Path = Path()) -
     folder : Path
         Folder that relative addresses in it start from.
     """
-    flaws, tried = Findings(), Findings()
+    flaws = Findings()
+    tried = Findings()
     root = parse(data, shown, tried)
     if any(UNDECLARED in problem.found for problem in tried.problems):
         root = parse(with_prefixes(data, shown, flaws), shown, findings)
@@ -290,7 +316,9 @@ def parsed(data: bytes, shown: str, findings: Findings, folder: Path = Path()) -
 def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
     """An XML text in which every prefix is declared; those of SSP mean what they mean everywhere."""
     first, *others = data.split(b"<!--")
-    text = b"".join([first, *(part.partition(b"-->")[2] for part in others)])  # prefixes in comments are none
+    text = b"".join(
+        [first, *(part.partition(b"-->")[2] for part in others)]
+    )  # prefixes in comments are none
     used = set(re.findall(rb"</?([A-Za-z_][\w.-]{0,30}):[A-Za-z_]", text))
     missing = sorted(prefix for prefix in used - {b"xml"} if b"xmlns:" + prefix not in text)
     start = re.search(rb"<[A-Za-z_][^\s/>]*", data)
@@ -298,14 +326,18 @@ def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
         return data
     spaces = {p: NAMESPACES.get(p.decode(), f"urn:undeclared:{p.decode()}") for p in missing}
     listed = ", ".join(f"'{prefix.decode()}'" for prefix in missing)
-    known = ", ".join(f'xmlns:{prefix.decode()}="{uri}"' for prefix, uri in spaces.items() if "urn:" not in uri)
+    known = ", ".join(
+        f'xmlns:{prefix.decode()}="{uri}"' for prefix, uri in spaces.items() if "urn:" not in uri
+    )
     line = data[: start.start()].count(b"\n") + 1
     findings.flaw(
         f"{shown}, line {line}",
         f"Prefixes that are not declared: {listed}. Those of SSP are taken as everywhere, others as unknown.",
         f"Add {known} to the outermost element." if known else "Declare them.",
     )
-    declared = b"".join(b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in spaces.items())
+    declared = b"".join(
+        b' xmlns:%s="%s"' % (prefix, uri.encode()) for prefix, uri in spaces.items()
+    )
     return data[: start.end()] + declared + data[start.end() :]
 
 

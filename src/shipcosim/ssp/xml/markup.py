@@ -12,7 +12,13 @@ from shipcosim.ssp.xml.document import NAMESPACES, child, children, local, paren
 
 INDENT = "  "
 ORDER = {
-    "SystemStructureDescription": ("System", "Enumerations", "Units", "DefaultExperiment", "Annotations"),
+    "SystemStructureDescription": (
+        "System",
+        "Enumerations",
+        "Units",
+        "DefaultExperiment",
+        "Annotations",
+    ),
     "System": (
         "Connectors",
         "ElementGeometry",
@@ -83,7 +89,8 @@ def ensure(parent: etree._Element, *tags: str) -> etree._Element:
 
 def drop(element: etree._Element) -> None:
     """Remove an element, and the list that it was the last one of: the schema has no empty ones."""
-    parent, before = parent_of(element), element.getprevious()
+    parent = parent_of(element)
+    before = element.getprevious()
     if element.getnext() is None and before is not None:
         before.tail = element.tail
     parent.remove(element)
@@ -129,22 +136,35 @@ def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
     """
     used = {etree.QName(element).namespace for element in root.iter(etree.Element)}
     known = NAMESPACES | {"osp": osp_namespace(root)}
-    known = dict(sorted(known.items(), key=lambda item: item[1] != etree.QName(root).namespace))  # its own one first
+    known = dict(
+        sorted(known.items(), key=lambda item: item[1] != etree.QName(root).namespace)
+    )  # its own one first
     names = {prefix: uri for prefix, uri in known.items() if prefix in prefixes or uri in used}
-    foreign = {p: uri for p, uri in root.nsmap.items() if p and p not in names and uri not in names.values()}
+    foreign = {
+        p: uri
+        for p, uri in root.nsmap.items()
+        if p and p not in names and uri not in names.values()
+    }
     copied = etree.Element(root.tag, dict(root.attrib), names | foreign)
     copied.text = root.text
-    copied.extend(deepcopy(part) for part in root)  # which brings their prefixes in line with the root's
+    copied.extend(
+        deepcopy(part) for part in root
+    )  # which brings their prefixes in line with the root's
     for outside in reversed(list(root.itersiblings(preceding=True))):
         copied.addprevious(deepcopy(outside))
     for outside in reversed(list(root.itersiblings())):
         copied.addnext(deepcopy(outside))
-    return etree.tostring(copied.getroottree(), xml_declaration=True, encoding="UTF-8").rstrip() + b"\n"
+    return (
+        etree.tostring(copied.getroottree(), xml_declaration=True, encoding="UTF-8").rstrip()
+        + b"\n"
+    )
 
 
 def osp_namespace(root: etree._Element) -> str:
     """Namespace of the OSP annotations in a file, first of all of the algorithm; the usual one where there are none."""
-    found = [element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag]
+    found = [
+        element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag
+    ]
     found.sort(key=lambda tag: not tag.endswith("}Algorithm"))
     return etree.QName(found[0]).namespace if found else OSP
 
@@ -157,7 +177,8 @@ def free_name(name: str, taken: Container[str]) -> str:
     >>> free_name("line", ["line", "line_2"])
     'line_3'
     """
-    number, free = 1, name
+    number = 1
+    free = name
     while free in taken:
         number += 1
         free = f"{name}_{number}"

@@ -22,8 +22,26 @@ PREFIXES = {
 }
 """Prefix of the kind of a file by its outermost element."""
 
-COMMON = ("Unit", "BaseUnit", "Item", "Annotation", "MapEntry", "Dimension", "MetaData", "Signature")
-EMPTY_IS_ABSENT = ("startElement", "endElement", "source", "sourceBase", "implementation", "type", "unit", "id")
+COMMON = (
+    "Unit",
+    "BaseUnit",
+    "Item",
+    "Annotation",
+    "MapEntry",
+    "Dimension",
+    "MetaData",
+    "Signature",
+)
+EMPTY_IS_ABSENT = (
+    "startElement",
+    "endElement",
+    "source",
+    "sourceBase",
+    "implementation",
+    "type",
+    "unit",
+    "id",
+)
 EMPTY_IS_ABSENT += ("suppressUnitConversion", "startTime", "stopTime", "factor", "offset")
 ORDER = {
     "SystemStructureDescription": "System Enumerations Units DefaultExperiment MetaData Annotations",
@@ -37,7 +55,15 @@ ORDER = {
 }
 """Parts of elements in the order of the standard."""
 
-LISTS = ("Connectors", "Elements", "Connections", "ParameterBindings", "Enumerations", "Units", "SignalDictionaries")
+LISTS = (
+    "Connectors",
+    "Elements",
+    "Connections",
+    "ParameterBindings",
+    "Enumerations",
+    "Units",
+    "SignalDictionaries",
+)
 LISTS += ("GraphicalElements", "Annotations")
 ONCE = ("MappingEntry", "MapEntry", "Unit", "Enumeration", "Item")
 """Elements of which a second one that says the same says nothing."""
@@ -63,7 +89,9 @@ def mend(document: Document, tag: str) -> None:
         _drop_empty_attributes(document, element, noted)
         _move_source(document, element, noted)
         # The type of a connector that is an enumeration without a name gets an empty one.
-        is_type = local(element) == "Enumeration" and element.get("value") is None and not len(element)
+        is_type = (
+            local(element) == "Enumeration" and element.get("value") is None and not len(element)
+        )
         if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
             element.set("name", "")
         _mend_boolean(document, element, noted)
@@ -86,11 +114,13 @@ def _own(element: etree._Element) -> Iterator[etree._Element]:
 
 def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
     """Namespaces that are missing or those of another part of the standard, by the place of an element."""
-    said, ahead = set(), [(document.root, prefix)]
+    said = set()
+    ahead = [(document.root, prefix)]
     known = names_of("ssd").elements
     while ahead:
         element, kind = ahead.pop()
-        name, space = local(element), etree.QName(element).namespace or ""
+        name = local(element)
+        space = etree.QName(element).namespace or ""
         plain = space.replace("https:", "http:").rstrip("/")
         ours = not space or plain in NAMESPACES.values()
         right = NAMESPACES[_prefix_of(element, kind)]
@@ -98,7 +128,11 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
             if (space, right) not in said:
                 its = f"the namespace '{space}'" if space else "no namespace"
                 found = f"<{name}> is in {its}"
-                noted.flaw(document.place(element), f"{found}; it is taken for one of {right}.", "Correct xmlns.")
+                noted.flaw(
+                    document.place(element),
+                    f"{found}; it is taken for one of {right}.",
+                    "Correct xmlns.",
+                )
             said.add((space, right))
             element.tag = f"{{{right}}}{name}"
         if name != "Annotation" and (ours or name in known):
@@ -107,7 +141,8 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
 
 def _prefix_of(element: etree._Element, kind: str) -> str:
     """Prefix of an element of a kind of file."""
-    name, parent = local(element), element.getparent()
+    name = local(element)
+    parent = element.getparent()
     if name in COMMON or name.endswith("Transformation"):
         return "ssc"
     if name == "Enumeration" and parent is not None and local(parent) == "Enumerations":
@@ -117,21 +152,40 @@ def _prefix_of(element: etree._Element, kind: str) -> str:
 
 def _kind_within(element: etree._Element, part: etree._Element, kind: str) -> str:
     """Kind of file that a part of an element is of: another one within the bindings of an SSD."""
-    inline = kind == "ssd" and local(part) in PREFIXES and local(element) in ("ParameterValues", local(part))
+    inline = (
+        kind == "ssd"
+        and local(part) in PREFIXES
+        and local(element) in ("ParameterValues", local(part))
+    )
     return PREFIXES[local(part)] if inline else kind
 
 
 def _complete(document: Document, noted: Findings) -> None:
     """Version and name, where the outermost element or a set in it has none."""
     outer = document.root.get("version") or "1.0"
-    for element in document.root.iter(*(f"{{{NAMESPACES[p]}}}{name}" for name, p in PREFIXES.items())):
-        if local(element) != "ParameterMapping" and not element.get("name") and local(element) != "SignalDictionary":
+    for element in document.root.iter(
+        *(f"{{{NAMESPACES[p]}}}{name}" for name, p in PREFIXES.items())
+    ):
+        if (
+            local(element) != "ParameterMapping"
+            and not element.get("name")
+            and local(element) != "SignalDictionary"
+        ):
             element.set("name", Path(document.file).stem)
-            noted.flaw(document.place(element), f"<{local(element)}> has no name.", 'Add name="...".')
-        is_binding = local(element) in ("ParameterMapping", "SignalDictionary") and "ssd" == _prefix_in(element)
+            noted.flaw(
+                document.place(element), f"<{local(element)}> has no name.", 'Add name="...".'
+            )
+        is_binding = local(element) in (
+            "ParameterMapping",
+            "SignalDictionary",
+        ) and "ssd" == _prefix_in(element)
         if not element.get("version") and not is_binding:
             element.set("version", outer)
-            noted.flaw(document.place(element), f"<{local(element)}> has no version; {outer} is taken.", "Add it.")
+            noted.flaw(
+                document.place(element),
+                f"<{local(element)}> has no version; {outer} is taken.",
+                "Add it.",
+            )
 
 
 def _prefix_in(element: etree._Element) -> str:
@@ -141,11 +195,17 @@ def _prefix_in(element: etree._Element) -> str:
 
 def _drop_empty_attributes(document: Document, element: etree._Element, noted: Findings) -> None:
     for name in EMPTY_IS_ABSENT:
-        if element.get(name) == "" and not (name == "source" and local(element) in ("Component", "MapEntry")):
+        if element.get(name) == "" and not (
+            name == "source" and local(element) in ("Component", "MapEntry")
+        ):
             if name == "source" and local(element) == "MappingEntry":
                 continue
             del element.attrib[name]
-            noted.flaw(document.place(element), f'{name}="" is taken as if it were not there.', "Leave it out.")
+            noted.flaw(
+                document.place(element),
+                f'{name}="" is taken as if it were not there.',
+                "Leave it out.",
+            )
 
 
 def _move_source(document: Document, element: etree._Element, noted: Findings) -> None:
@@ -164,9 +224,18 @@ def _mend_boolean(document: Document, element: etree._Element, noted: Findings) 
     for name in ("value", "suppressUnitConversion"):
         text = element.get(name)
         of_type = name != "value" or local(element) == "Boolean"
-        if text is not None and of_type and text.lower() in ("true", "false") and text != text.lower():
+        if (
+            text is not None
+            and of_type
+            and text.lower() in ("true", "false")
+            and text != text.lower()
+        ):
             element.set(name, text.lower())
-            noted.flaw(document.place(element), f"'{text}' is taken for {text.lower()}.", "Write true or false.")
+            noted.flaw(
+                document.place(element),
+                f"'{text}' is taken for {text.lower()}.",
+                "Write true or false.",
+            )
 
 
 def _drop_unknown(document: Document, element: etree._Element, noted: Findings) -> None:
@@ -180,7 +249,9 @@ def _drop_unknown(document: Document, element: etree._Element, noted: Findings) 
         name = local(part)
         if name not in known and not is_slip(name, known):
             noted.flaw(
-                document.place(part), f"The element <{name}> is not of the standard. It is not used.", "Remove it."
+                document.place(part),
+                f"The element <{name}> is not of the standard. It is not used.",
+                "Remove it.",
             )
             element.remove(part)
 
@@ -195,7 +266,9 @@ def _sort(document: Document, element: etree._Element, noted: Findings) -> None:
         element[:] = ordered
         listed = ", ".join(dict.fromkeys(local(part) for part in ordered))
         noted.flaw(
-            document.place(element), f"Its parts are in another order than the standard's: {listed}.", "Sort them."
+            document.place(element),
+            f"Its parts are in another order than the standard's: {listed}.",
+            "Sort them.",
         )
 
 
@@ -204,7 +277,9 @@ def _drop_empty_lists(document: Document, element: etree._Element, noted: Findin
         if not any(local(one) for one in part):
             element.remove(part)
             noted.flaw(
-                document.place(part), f"<{local(part)}> is empty; it is taken as if it were not there.", "Remove it."
+                document.place(part),
+                f"<{local(part)}> is empty; it is taken as if it were not there.",
+                "Remove it.",
             )
 
 
@@ -222,6 +297,17 @@ def _drop_repeated(document: Document, element: etree._Element, noted: Findings)
 
 def _said(element: etree._Element) -> tuple:
     """What an element says, without how it is drawn and described."""
-    attributes = {name: text for name, text in element.attrib.items() if name not in ("id", "description")}
-    parts = [part for part in element if local(part) and not re.search("Geometry$|^Annotations$", local(part))]
-    return element.tag, tuple(sorted(attributes.items())), (element.text or "").strip(), tuple(map(_said, parts))
+    attributes = {
+        name: text for name, text in element.attrib.items() if name not in ("id", "description")
+    }
+    parts = [
+        part
+        for part in element
+        if local(part) and not re.search("Geometry$|^Annotations$", local(part))
+    ]
+    return (
+        element.tag,
+        tuple(sorted(attributes.items())),
+        (element.text or "").strip(),
+        tuple(map(_said, parts)),
+    )

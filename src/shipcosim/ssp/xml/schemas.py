@@ -54,10 +54,14 @@ def is_slip(name: str, known: Collection[str]) -> bool:
     (True, False)
     """
     shown = name[:LONGEST_NAME].lower()
-    return name in known or bool(get_close_matches(shown, [one.lower() for one in known], n=1, cutoff=0.77))
+    return name in known or bool(
+        get_close_matches(shown, [one.lower() for one in known], n=1, cutoff=0.77)
+    )
 
 
-def report_schema(checker: etree.XMLSchema, names: Names, root: etree._Element, file: str, findings: Findings) -> None:
+def report_schema(
+    checker: etree.XMLSchema, names: Names, root: etree._Element, file: str, findings: Findings
+) -> None:
     """Note every place where an element breaks a schema; unknown attributes that are no slip are flaws.
 
     Parameters
@@ -79,12 +83,18 @@ def report_schema(checker: etree.XMLSchema, names: Names, root: etree._Element, 
         text = re.sub(r"\{(http|urn)[^}]*\}", "", entry.message)
         for kind, word in WORDS.items():
             text = text.replace(f"a valid value of the atomic type 'xs:{kind}'", word)
-        text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(" is not an element of the set ")
-        found, _, expected = (f"{text} does not exist." if choice else text).partition(" Expected is ")
+        text, _, choice = re.sub(r"\[facet '[^']*'\] ", "", text).partition(
+            " is not an element of the set "
+        )
+        found, _, expected = (f"{text} does not exist." if choice else text).partition(
+            " Expected is "
+        )
         where = f"{file}, line {entry.line}" if entry.line else file
         if _is_flaw(text, names):
             findings.flaw(
-                where, f"{text.partition(' Expected is ')[0]} It is not used.", "Correct its name or remove it."
+                where,
+                f"{text.partition(' Expected is ')[0]} It is not used.",
+                "Correct its name or remove it.",
             )
             continue
         findings.refused_lines.add(where)
@@ -95,7 +105,9 @@ def report_schema(checker: etree.XMLSchema, names: Names, root: etree._Element, 
 
 def _is_flaw(text: str, names: Names) -> bool:
     """Whether what breaks a schema has only one meaning."""
-    unknown = re.search(r"^Element '(\w+)', attribute '([^']+)': The attribute '\2' is not allowed\.", text)
+    unknown = re.search(
+        r"^Element '(\w+)', attribute '([^']+)': The attribute '\2' is not allowed\.", text
+    )
     if unknown is None:
         return HARMLESS.search(text) is not None
     return unknown[1] not in SAYING and not is_slip(unknown[2], names.attributes)
@@ -117,7 +129,12 @@ def names_of(name: str) -> Names:
 
 def names_in(text: str) -> Names:
     """Names that the text of a schema declares."""
-    return Names(*(frozenset(re.findall(rf'<xs:{kind} name="([^"]+)"', text)) for kind in ("element", "attribute")))
+    return Names(
+        *(
+            frozenset(re.findall(rf'<xs:{kind} name="([^"]+)"', text))
+            for kind in ("element", "attribute")
+        )
+    )
 
 
 def _file_of(name: str) -> Path:

@@ -66,7 +66,9 @@ def read_value(kind: str, text: str) -> Value:
 
 def _number(convert: Callable[[str], float], text: str, name: str) -> float:
     try:
-        value = convert(text.replace("_", "x"))  # Python would take "1_000" for a number, XML does not
+        value = convert(
+            text.replace("_", "x")
+        )  # Python would take "1_000" for a number, XML does not
     except ValueError:
         raise ValueError(f"'{text}' is not a {name}.") from None
     if not math.isfinite(value):

@@ -43,7 +43,8 @@ def validate_2(root: etree._Element, schema: str, file: str, findings: Findings)
 
 def _reduce(element: etree._Element) -> None:
     """Make an element one of SSP 1.0 or, where that has nothing of the kind, take it out."""
-    name, parent = local(element), element.getparent()
+    name = local(element)
+    parent = element.getparent()
     if name in ADDED and parent is not None:
         parent.remove(element)
         return
@@ -69,7 +70,8 @@ def _reduce_type(element: etree._Element, name: str) -> None:
         element.remove(part)
     if listed:
         element.set("value", listed[0].get("value") or listed[0].text or "")
-    kind, text = KINDS[name], element.get("value")
+    kind = KINDS[name]
+    text = element.get("value")
     if text is not None and kind in ("Real", "Integer", "Boolean"):
         texts = text.split() or [""]
         bad = [one for one in texts if not _is(kind, one)]
@@ -88,7 +90,11 @@ def _out_of_range(element: etree._Element) -> tuple[str, str] | None:
     """Found and remedy where an integer of so many bits cannot have a value that it is given, or None."""
     low, high = RANGES.get(local(element), (0, 0))
     texts = (element.get("value") or "").split() if high else []
-    bad = [text for text in texts if _is("Integer", text) and not low <= read_value("Integer", text) <= high]
+    bad = [
+        text
+        for text in texts
+        if _is("Integer", text) and not low <= read_value("Integer", text) <= high
+    ]
     if not bad:
         return None
     return f"'{bad[0]}' is not a value of {local(element)}.", f"It has those from {low} to {high}."

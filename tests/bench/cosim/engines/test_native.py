@@ -18,5 +18,7 @@ def test_every_scenario_is_that_of_python_but_for_rounding(root):
         scenario = read_scenario(path)
         python, native = both(scenario, min(scenario.stop_time, 120.0))
         if not any(name in text for name in AMPLIFIES for text in by_python(native).values()):
-            off |= {f"{path.stem}: {name}": value for name, value in far_off(python, native).items()}
+            off |= {
+                f"{path.stem}: {name}": value for name, value in far_off(python, native).items()
+            }
     assert not off

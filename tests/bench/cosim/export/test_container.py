@@ -19,10 +19,24 @@ EXPRESSED = {
 }
 
 
-EXPRESSED |= {"parameter_enumeration", "ssm_transformations", "ssv_several", "start_values", "units_suppressed"}
+EXPRESSED |= {
+    "parameter_enumeration",
+    "ssm_transformations",
+    "ssv_several",
+    "start_values",
+    "units_suppressed",
+}
 
 
-NOT_EXPRESSED = {"boolean_mapping", "calculated", "enumeration_mapping", "integer_to_real", "linear", "nested", "units"}
+NOT_EXPRESSED = {
+    "boolean_mapping",
+    "calculated",
+    "enumeration_mapping",
+    "integer_to_real",
+    "linear",
+    "nested",
+    "units",
+}
 
 
 NOT_EXPRESSED |= {"step_component"}
@@ -37,7 +51,9 @@ def test_each_system_of_the_conformance_suite_is_exported_with_its_values_or_ref
             system = read_system(path)
             export_fmu(system, fmu, case.step_size or system.experiment.step_size)
         except ShipcosimError as error:
-            assert all("container FMU" in problem.remedy or problem.where for problem in error.problems), name
+            assert all(
+                "container FMU" in problem.remedy or problem.where for problem in error.problems
+            ), name
         assert fmu.exists() or name not in EXPRESSED, name
         outcome[fmu.exists()].add(name)
     assert outcome[True] >= EXPRESSED and outcome[False] >= NOT_EXPRESSED

@@ -30,12 +30,16 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("name", [name for name in conformance.cases() if not name.startswith("gap_")])
+@pytest.mark.parametrize(
+    "name", [name for name in conformance.cases() if not name.startswith("gap_")]
+)
 def test_a_system_has_our_values_in_libcosim_or_is_refused(name, tmp_path, needs):
     if missing := engines_missing().get("libcosim"):
         needs("libcosim", str(missing))
     case = conformance.cases()[name]
-    path = conformance.write(case, tmp_path, "folder, 1.0" if "1.0" in case.versions else "ssp, 2.0")
+    path = conformance.write(
+        case, tmp_path, "folder, 1.0" if "1.0" in case.versions else "ssp, 2.0"
+    )
     system = read_system(path)
     step = case.run.get("step_size", case.step_size)
     scenario = Scenario(stop_time=step * 8, step_size=step)
@@ -50,5 +54,9 @@ def test_a_system_has_our_values_in_libcosim_or_is_refused(name, tmp_path, needs
     for signal in theirs.data_vars:
         rows = slice(None)
         if steps := system.components[system.split(str(signal))[0]].step_size:
-            rows = slice(round(steps / step) - 1, None, round(steps / step))  # between its steps libcosim shows the end
-        np.testing.assert_array_equal(theirs[signal].values[rows], ours[signal].values[rows].astype(float), str(signal))
+            rows = slice(
+                round(steps / step) - 1, None, round(steps / step)
+            )  # between its steps libcosim shows the end
+        np.testing.assert_array_equal(
+            theirs[signal].values[rows], ours[signal].values[rows].astype(float), str(signal)
+        )

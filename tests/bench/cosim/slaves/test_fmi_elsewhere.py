@@ -31,7 +31,9 @@ def table(packages):
     """The table as the page has it."""
     rows = [f"| | {' | '.join(ENGINES)} |", "|---|" + "---|" * len(ENGINES)]
     for name, (*_, right) in CASES.items():
-        rows.append(f"| {name} | {' | '.join(verdict(engine, packages[name], right) for engine in ENGINES)} |")
+        rows.append(
+            f"| {name} | {' | '.join(verdict(engine, packages[name], right) for engine in ENGINES)} |"
+        )
     return "\n".join(rows) + "\n"
 
 

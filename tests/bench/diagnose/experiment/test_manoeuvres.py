@@ -25,10 +25,16 @@ def logged(values, manoeuvre=None, seed=1, minutes=8.0):
     dp, random = DpController(model, 1.0), np.random.default_rng(seed)
     track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), (6.0, 0.5))
     jolts = random.standard_normal((record.time.size, 3, 1)) * NOISE.jolt[:, None]
-    motion, units = kept_on_track(model.with_values(values), 1, track, record, dp, jolts=jolts, held=held)
-    measured = np.stack([v[0] for v in motion], -1) + NOISE.white * random.standard_normal((record.time.size, 6))
+    motion, units = kept_on_track(
+        model.with_values(values), 1, track, record, dp, jolts=jolts, held=held
+    )
+    measured = np.stack([v[0] for v in motion], -1) + NOISE.white * random.standard_normal(
+        (record.time.size, 6)
+    )
     units = {name: tuple(series[0] for series in pair) for name, pair in units.items()}
-    record = replace(record, measured=measured, units=units, wind=tuple(series[0] for series in record.wind))
+    record = replace(
+        record, measured=measured, units=units, wind=tuple(series[0] for series in record.wind)
+    )
     names = {"current", "wave_drift", "tow", "wind_scale", "thrust_loss of port"}
     asked = tuple(hypothesis for hypothesis in problem().hypotheses if hypothesis.label in names)
     return prepared(IdentificationProblem(record, model, asked, NOISE, first_motion(record, model)))

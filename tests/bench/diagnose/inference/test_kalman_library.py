@@ -13,4 +13,6 @@ from shipcosim.diagnose.inference.kalman.compile import TARGETS, compile_filter
 def test_compiled_again_it_has_the_same_bytes(platform, tmp_path, needs):
     if importlib.util.find_spec("ziglang") is None:
         needs("ziglang", 'Install it: pip install -e ".[native]".')
-    assert compile_filter(platform, tmp_path).read_bytes() == kalman.library_for(platform).read_bytes(), REMEDY
+    assert (
+        compile_filter(platform, tmp_path).read_bytes() == kalman.library_for(platform).read_bytes()
+    ), REMEDY

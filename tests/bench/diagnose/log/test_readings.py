@@ -15,7 +15,9 @@ def on_station(seed):
         smooth(time, seed + 1, 0.006) + 1j * smooth(time, seed + 2, 0.006),
     )
     noise = random.normal(size=(6, len(time)))
-    position = np.cumsum(velocity * np.exp(1j * np.radians(heading))) + 0.2 * (noise[0] + 1j * noise[1])
+    position = np.cumsum(velocity * np.exp(1j * np.radians(heading))) + 0.2 * (
+        noise[0] + 1j * noise[1]
+    )
     return {
         "time": time,
         "north": position.real,

@@ -22,4 +22,6 @@ def test_a_segment_that_is_spliced_is_as_likely_as_one_that_is_linearised(step, 
     time = problem.record.time
     segment = ((float(time[ends[0]]), float(time[ends[1]])),)
     whole = likelihood(problem, record_of(with_label(log, KNOTS, segment), model))
-    assert _Relabelled(log, KNOTS, problem).likelihood(ends, segment) == pytest.approx(whole, rel=1e-12)
+    assert _Relabelled(log, KNOTS, problem).likelihood(ends, segment) == pytest.approx(
+        whole, rel=1e-12
+    )

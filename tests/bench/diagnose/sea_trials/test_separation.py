@@ -19,16 +19,24 @@ def separated(found, sets):
 
 def test_what_was_sailed_already_separates_nothing(separated):
     """The trials held circles with 10, 20 and 32 deg: sailing such again tells no more, by whatever is computed."""
-    again = [one for one in separated if one.manoeuvre == "turning circle with 20 deg at full speed"]
+    again = [
+        one for one in separated if one.manoeuvre == "turning circle with 20 deg at full speed"
+    ]
     assert all(max(one.nats.values()) < 3.0 for one in again) and again
 
 
 def test_sailing_what_is_prescribed_tells_the_planted_drag_from_the_others(found, sets, separated):
     assert len(sets) > 1
     designs = designed(separated, sets)
-    chosen = [one for one in catalogue(found.model) if one.name in {design.manoeuvre for design in designs}]
+    chosen = [
+        one
+        for one in catalogue(found.model)
+        if one.name in {design.manoeuvre for design in designs}
+    ]
     assert chosen and all(one.kind in SOUGHT for one in chosen)
     more = [trial for _, pair in as_trials(chosen, found.model, SHAFTS, PLANTED) for trial in pair]
-    ranking = ranked(trial_evidence([*found.trials, *more], found.model, found.hypotheses, orders=True))
+    ranking = ranked(
+        trial_evidence([*found.trials, *more], found.model, found.hypotheses, orders=True)
+    )
     assert {cause.cause for cause in best_of(ranking).hypotheses} == {"drift_drag", "late_orders"}
     assert not rivals_of(ranking)

@@ -64,7 +64,9 @@ def test_the_extended_boat_replays_with_less_error(tmp_path):
     extension = extend(boat.structure(), diagnosis.findings, tmp_path)
     extended = Replayed(sc.read(extension.ssp).checked(), extension.signals)
     errors = simulated(
-        compare(diagnosis.basis.problem, diagnosis.basis.fit), Replayed(boat.structure().checked()), extended
+        compare(diagnosis.basis.problem, diagnosis.basis.fit),
+        Replayed(boat.structure().checked()),
+        extended,
     )
     rms = np.sqrt((errors["position"].sel(horizon=60.0) ** 2).mean("segment"))
     assert rms.sel(model="extended") < 0.25 * rms.sel(model="plain")

@@ -12,7 +12,9 @@ from shipcosim.diagnose.validation.split import HORIZONS
 def test_ordinary_logs_of_forty_minutes_gain_beyond_the_bias_observer(diagnosed, kind):
     shares = []
     for cause in ("current", "thrust_loss", "wave_drift", "wind_scale", "tow"):
-        twin, faulty = (compare(*diagnosed(cause, one, kind, 2010, 40)[:2]).errors for one in (True, False))
+        twin, faulty = (
+            compare(*diagnosed(cause, one, kind, 2010, 40)[:2]).errors for one in (True, False)
+        )
         rival, after, possible = (
             rms(errors, "position", model)
             for errors, model in ((faulty, "bias_observer"), (faulty, "extended"), (twin, "plain"))

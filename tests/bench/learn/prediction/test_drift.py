@@ -34,16 +34,24 @@ def test_rollouts_of_paper_iv_are_its_predictions_and_learn_bit_by_bit():
         inputs, targets, replace(training.PAPER_IV, members=1, most_epochs=2), lambda done, of: None
     )
     pieces = paper_iv_rollouts.stretches(data, ship, first=20, every=100)
-    weights = [torch.from_numpy(arrays[f"{k}.{name}"]) for k in (1, 2, 3) for name in ("weights", "bias")]
-    found = paper_iv_rollouts.ahead(weights, arrays, pieces._replace(air=pieces.air[:1].expand(60, -1, -1)), ship)
+    weights = [
+        torch.from_numpy(arrays[f"{k}.{name}"]) for k in (1, 2, 3) for name in ("weights", "bias")
+    ]
+    found = paper_iv_rollouts.ahead(
+        weights, arrays, pieces._replace(air=pieces.air[:1].expand(60, -1, -1)), ship
+    )
     everything = rollouts.known_of(data.known, ship)
     past = law.begin(rollouts.mapped(lambda array: array[0], everything))
     for row in range(1, 21):
         now = rollouts.mapped(lambda array, row=row: array[row], everything)
         past = law.step(past, now, hull=ship.hull, wind=ship.wind)
-    expected = law.predict(past, now, law.ensemble_of(arrays), seconds=60, hull=ship.hull, wind=ship.wind)
+    expected = law.predict(
+        past, now, law.ensemble_of(arrays), seconds=60, hull=ship.hull, wind=ship.wind
+    )
     for k, horizon in enumerate(rollouts.HORIZONS):
-        np.testing.assert_allclose(found[k, 0].numpy().T, expected[int(horizon) - 1][:3], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(
+            found[k, 0].numpy().T, expected[int(horizon) - 1][:3], rtol=1e-9, atol=1e-9
+        )
     recipe = replace(training.PAPER_IV, members=2, width=4)
     one, history = paper_iv_rollouts.fit(arrays, pieces, ship, recipe, 4, lambda done, total: None)
     other, _ = paper_iv_rollouts.fit(arrays, pieces, ship, recipe, 4, lambda done, total: None)

@@ -60,9 +60,18 @@ class LearnedForce(Fmu):
 
     def _own_record(self):
         stern = self.port_X + self.starboard_X, self.port_Y + self.starboard_Y
-        wind, thrust = (self.wind_X, self.wind_Y, self.wind_N), own_model.Thrust(self.tunnel_Y, *stern)
+        wind, thrust = (
+            (self.wind_X, self.wind_Y, self.wind_N),
+            own_model.Thrust(self.tunnel_Y, *stern),
+        )
         return own_model.residual_load(
-            tuple(self.learned["coefficients"].tolist()), self.u_r, self.v_r, self.r, wind, thrust, hull=self.hull
+            tuple(self.learned["coefficients"].tolist()),
+            self.u_r,
+            self.v_r,
+            self.r,
+            wind,
+            thrust,
+            hull=self.hull,
         )
 
     def _paper_iv(self):
@@ -71,4 +80,6 @@ class LearnedForce(Fmu):
         N = self.port_N + self.starboard_N + self.tunnel_N + self.wind_N
         dot = accelerations(self.u, self.v, self.r, X, Y, N, hull=self.hull)
         inputs = np.array([[self.u, self.v, self.r, *dot, *self.residual]])
-        return tuple(paper_iv.outputs(paper_iv.ensemble_of(self.learned), inputs).mean(axis=0)[0].tolist())
+        return tuple(
+            paper_iv.outputs(paper_iv.ensemble_of(self.learned), inputs).mean(axis=0)[0].tolist()
+        )

@@ -8,7 +8,16 @@ import pandas as pd
 import pytest
 
 from truth import cases, effects, unknowns
-from truth.cases import CAUSES, FIXED_SEED, KINDS, bench_seed, draw, draw_many, share_held, weekly_seed
+from truth.cases import (
+    CAUSES,
+    FIXED_SEED,
+    KINDS,
+    bench_seed,
+    draw,
+    draw_many,
+    share_held,
+    weekly_seed,
+)
 from truth.sensors import ROLES
 
 SHORT = {"minutes": 10}
@@ -24,7 +33,10 @@ def one_of_each():
 
 def test_log_has_the_columns_of_the_contract(one_of_each):
     log = one_of_each["drag"].log
-    assert list(log.columns) == ["time [s]", *(f"{role} [{unit}]" for role, (unit, _) in ROLES.items())]
+    assert list(log.columns) == [
+        "time [s]",
+        *(f"{role} [{unit}]" for role, (unit, _) in ROLES.items()),
+    ]
     assert log["time [s]"].iloc[[0, -1]].tolist() == [0.0, 600.0]
     assert log["heading [deg]"].between(0, 360, inclusive="left").all()
 
@@ -60,10 +72,14 @@ def test_another_day_has_the_same_ship_in_other_weather():
     first, second = (cases.set_up("work", 8, day=day, **SHORT) for day in (0, 1))
     trial = cases.set_up("trial", 8, causes=0, ship="work", **SHORT)
     for other in (second, trial):
-        assert all(np.array_equal(a, b) for a, b in zip(*map(coefficients, (first, other)), strict=True))
+        assert all(
+            np.array_equal(a, b) for a, b in zip(*map(coefficients, (first, other)), strict=True)
+        )
         assert other.style == first.style and other.weather != first.weather
         assert not np.array_equal(other.noise.log, first.noise.log)
-    assert [effect.answer for effect in second.effects] == [effect.answer for effect in first.effects]
+    assert [effect.answer for effect in second.effects] == [
+        effect.answer for effect in first.effects
+    ]
     assert not np.array_equal(second.plan.eta, first.plan.eta)
 
 
@@ -98,7 +114,9 @@ def test_outside_its_segments_and_channels_a_fault_leaves_the_twins_log(one_of_e
         (answer,) = case.answer
         ours, twins = (c.log.set_index("time [s]") for c in (case, case.twin()))
         at = twins.index.intersection(ours.index)
-        outside = [t for t in at if answer.segments and not any(a <= t <= b for a, b in answer.segments)]
+        outside = [
+            t for t in at if answer.segments and not any(a <= t <= b for a, b in answer.segments)
+        ]
         pd.testing.assert_frame_equal(ours.loc[outside], twins.loc[outside])
         others = [c for c in ours if c.split(" [")[0] not in answer.channels]
         pd.testing.assert_frame_equal(ours.loc[at, others], twins.loc[at, others])
@@ -107,8 +125,13 @@ def test_outside_its_segments_and_channels_a_fault_leaves_the_twins_log(one_of_e
 def test_a_lag_is_found_by_shifting_the_twins_log():
     case = draw("trial", 5, among=["navigation_lag"], **SHORT)
     lag = case.answer[0].parameters["lag"]
-    rate, twins = (c.log.set_index("time [s]")["yaw_rate [deg/s]"].dropna() for c in (case, case.twin()))
-    misfit = {d: np.mean((np.interp(rate.index - d, twins.index, twins) - rate) ** 2) for d in np.arange(0, 6, 0.1)}
+    rate, twins = (
+        c.log.set_index("time [s]")["yaw_rate [deg/s]"].dropna() for c in (case, case.twin())
+    )
+    misfit = {
+        d: np.mean((np.interp(rate.index - d, twins.index, twins) - rate) ** 2)
+        for d in np.arange(0, 6, 0.1)
+    }
     assert min(misfit, key=misfit.get) == pytest.approx(lag, abs=0.5)
 
 
@@ -123,7 +146,9 @@ def test_answers_are_the_parameters_of_the_contract(one_of_each):
     }
     names |= dict.fromkeys(("thrust_loss", "reverse_loss", "thruster_interaction"), {"loss"})
     names |= dict.fromkeys(("wind_scale", "mass", "drag", "crossflow", "velocity_scale"), {"scale"})
-    names |= dict.fromkeys(("wind_direction", "azimuth_offset", "rpm_offset", "heading_bias"), {"offset"})
+    names |= dict.fromkeys(
+        ("wind_direction", "azimuth_offset", "rpm_offset", "heading_bias"), {"offset"}
+    )
     names |= dict.fromkeys(("navigation_lag", "thruster_lag"), {"lag"})
     for cause, case in one_of_each.items():
         ((named, component, parameters, *_),) = case.answer
@@ -148,7 +173,9 @@ def test_every_cause_is_drawn_and_about_as_often():
 
 def test_every_unknown_effect_is_drawn_where_it_can_show():
     for kind in KINDS:
-        notes = {cases.set_effects(kind, seed, causes="unknown")[0].answer.note for seed in range(300)}
+        notes = {
+            cases.set_effects(kind, seed, causes="unknown")[0].answer.note for seed in range(300)
+        }
         assert notes == set(unknowns.SHOWS_AT_REST if kind == "hold" else unknowns.ALL)
 
 

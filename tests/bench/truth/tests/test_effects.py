@@ -27,19 +27,28 @@ def coefficients():
 
 def hidden(cause, parameters, component=None, shape=None):
     """Knobs of two ships of which the first has an effect, at the start of the log and heading north."""
-    knobs, effect = Knobs(N), effects.Effect(effects.Answer(cause, component, parameters), shape or {})
+    knobs, effect = (
+        Knobs(N),
+        effects.Effect(effects.Answer(cause, component, parameters), shape or {}),
+    )
     effects.ACT[cause](effect, knobs, 0, 0.0, ship_at(0.0), 1.0)
     return knobs
 
 
 def ship_at(psi):
-    coefficients = Coefficients.stack([draw_coefficients(np.random.default_rng(0), mismatch=0.0)] * N)
-    return plant.at_rest(ZERO, ZERO, ZERO + psi, both(80, 80, 500), both(0, 0), coefficients, Knobs(N))
+    coefficients = Coefficients.stack(
+        [draw_coefficients(np.random.default_rng(0), mismatch=0.0)] * N
+    )
+    return plant.at_rest(
+        ZERO, ZERO, ZERO + psi, both(80, 80, 500), both(0, 0), coefficients, Knobs(N)
+    )
 
 
 def units(coefficients, knobs, rpm=(80, 80, 0), azimuth=(0, 0)):
     """Load of the units, of the ship with the effect and of the one without."""
-    return np.array(unit_loads(ZERO, ZERO, ZERO, both(*rpm), np.radians(both(*azimuth)), coefficients, knobs))
+    return np.array(
+        unit_loads(ZERO, ZERO, ZERO, both(*rpm), np.radians(both(*azimuth)), coefficients, knobs)
+    )
 
 
 def started(coefficients, knobs, **turned):
@@ -75,11 +84,18 @@ def test_varying_current_has_its_values_at_the_first_and_last_row():
 
 def test_wave_drift_on_the_beam_is_the_vector_of_the_contract():
     _, parameters, shape = effects.draw_wave_drift(np.random.default_rng(1), 1.0, 40)
-    size, towards = np.hypot(*parameters.values()), np.arctan2(parameters["east"], parameters["north"])
+    size, towards = (
+        np.hypot(*parameters.values()),
+        np.arctan2(parameters["east"], parameters["north"]),
+    )
     effect = effects.Effect(effects.Answer("wave_drift", None, parameters), shape)
     on_beam, from_astern, quartering = [], [], []
     for t in range(0, 20000, 100):
-        for psi, seen in ((towards - np.pi / 2, on_beam), (towards, from_astern), (towards - np.pi / 4, quartering)):
+        for psi, seen in (
+            (towards - np.pi / 2, on_beam),
+            (towards, from_astern),
+            (towards - np.pi / 4, quartering),
+        ):
             knobs = Knobs(N)
             effects.act_wave_drift(effect, knobs, 0, t, ship_at(psi), 1.0)
             seen.append((knobs.force_x[0], knobs.force_y[0], knobs.moment[0]))
@@ -110,7 +126,9 @@ def test_azimuth_offset_turns_the_real_thrust_clockwise_of_the_logged(coefficien
     knobs = hidden("azimuth_offset", {"offset": 10.0}, "port")
     rpm, azimuth = both(80, 80, 0), np.radians(both(0, 0))
     for _ in range(100):
-        rpm, azimuth = plant.turn_drives(rpm, azimuth, both(80, 80, 0), both(0, 0), coefficients, knobs, 0.25)
+        rpm, azimuth = plant.turn_drives(
+            rpm, azimuth, both(80, 80, 0), both(0, 0), coefficients, knobs, 0.25
+        )
     assert np.degrees(azimuth[0, 0]) == pytest.approx(10.0, abs=0.1)
     assert np.degrees(azimuth[1, 0]) == pytest.approx(0.0, abs=0.1)
 
@@ -119,7 +137,9 @@ def test_rpm_offset_is_logged_minus_real(coefficients):
     knobs = hidden("rpm_offset", {"offset": 12.0}, "starboard")
     rpm, azimuth = both(80, 80, 0), both(0, 0)
     for _ in range(200):
-        rpm, azimuth = plant.turn_drives(rpm, azimuth, both(80, 80, 0), azimuth, coefficients, knobs, 0.25)
+        rpm, azimuth = plant.turn_drives(
+            rpm, azimuth, both(80, 80, 0), azimuth, coefficients, knobs, 0.25
+        )
     assert rpm[1, 0] == pytest.approx(68.0, abs=0.1)
     assert rpm[0, 0] == pytest.approx(80.0, abs=0.1)
 
@@ -134,7 +154,11 @@ def test_reverse_loss_is_at_negative_rpm_only(coefficients):
 @pytest.mark.parametrize(
     ("rpm", "azimuth", "share"),
     [
-        ((80, 0, 0), (-90, 0), 1.0),  # port pushes to port: its slipstream hits starboard, which does not run
+        (
+            (80, 0, 0),
+            (-90, 0),
+            1.0,
+        ),  # port pushes to port: its slipstream hits starboard, which does not run
         ((80, 80, 0), (-90, 0), 0.6),  # and which does
         ((80, 80, 0), (-90, 45), 0.6),
         ((80, 80, 0), (90, 0), 1.0),  # away
@@ -167,11 +191,15 @@ def test_drag_and_cross_flow_scale_their_terms_alone(coefficients):
     drag = plant.hull_load(*moving, coefficients, hidden("drag", {"scale": 2.0}))
     assert drag[0][0] == pytest.approx(2 * drag[0][1]) and drag[1][0] == drag[1][1]
     flow = plant.hull_load(ZERO, *moving[1:], coefficients, hidden("crossflow", {"scale": 1.5}))
-    assert flow[1][0] == pytest.approx(1.5 * flow[1][1]) and flow[2][0] == pytest.approx(1.5 * flow[2][1])
+    assert flow[1][0] == pytest.approx(1.5 * flow[1][1]) and flow[2][0] == pytest.approx(
+        1.5 * flow[2][1]
+    )
 
 
 def test_wind_scale_is_of_the_force(coefficients):
-    load = plant.wind_load(ZERO, ZERO, ZERO, ZERO + 5, ZERO + 3, coefficients, hidden("wind_scale", {"scale": 1.3}))
+    load = plant.wind_load(
+        ZERO, ZERO, ZERO, ZERO + 5, ZERO + 3, coefficients, hidden("wind_scale", {"scale": 1.3})
+    )
     np.testing.assert_allclose(load[:, 0], 1.3 * load[:, 1])
 
 
@@ -192,7 +220,9 @@ def test_sizes_keep_to_the_table_and_use_it(cause):
     if cause == "rpm_offset":
         sizes = sizes / np.array([12.0 if c == "tunnel" else 1.0 for c, _, _ in drawn])
     if cause in ("current", "current_varying", "wave_drift", "tow", "lever_arm"):
-        sizes = np.array([np.max(np.hypot(*np.reshape(list(p.values()), (-1, 2)).T)) for _, p, _ in drawn])
+        sizes = np.array(
+            [np.max(np.hypot(*np.reshape(list(p.values()), (-1, 2)).T)) for _, p, _ in drawn]
+        )
     least = 0.6 * low if cause == "crossflow" else low
     assert least <= sizes.min() < least + 0.1 * (high - low)
     assert high - 0.1 * (high - low) < sizes.max() <= high
@@ -201,11 +231,17 @@ def test_sizes_keep_to_the_table_and_use_it(cause):
 def test_the_table_of_sizes_in_the_readme_is_the_one_in_use():
     text = (Path(truth.__file__).with_name("README.md")).read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\w+) \| ([\d.]+) \| ([\d.]+) \| (.*?)\|$", text, flags=re.M)
-    assert {name: (float(low), float(high), unit.strip()) for name, low, high, unit in rows} == effects.SIZES
+    assert {
+        name: (float(low), float(high), unit.strip()) for name, low, high, unit in rows
+    } == effects.SIZES
 
 
 def test_catalogue_is_that_of_the_contract(shared):
-    text = (shared / "contracts.md").read_text(encoding="utf-8").split("### Causes, their parameters and units")[1]
+    text = (
+        (shared / "contracts.md")
+        .read_text(encoding="utf-8")
+        .split("### Causes, their parameters and units")[1]
+    )
     rows = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
     assert {name for row in rows for name in re.findall(r"`(\w+)`", row)} == set(effects.SIZES)
 

@@ -27,7 +27,9 @@ def channels():
 
 
 def spoilt(channels, cause, segments=(), roles=(), note="", **shape):
-    return faults.spoil(channels, TIMES, Effect(Answer(cause, None, {}, segments, roles, note=note), shape))
+    return faults.spoil(
+        channels, TIMES, Effect(Answer(cause, None, {}, segments, roles, note=note), shape)
+    )
 
 
 def test_clock_passes_rate_true_seconds_per_logged_second_in_its_segment():
@@ -38,10 +40,14 @@ def test_clock_passes_rate_true_seconds_per_logged_second_in_its_segment():
 
 
 def test_lagging_channels_show_what_was():
-    navigation, thrusters, air = faults.true_times(TIMES, [Answer("navigation_lag", None, {"lag": 2.5})])
+    navigation, thrusters, air = faults.true_times(
+        TIMES, [Answer("navigation_lag", None, {"lag": 2.5})]
+    )
     np.testing.assert_allclose(navigation, TIMES - 2.5)
     np.testing.assert_allclose((thrusters, air), (TIMES, TIMES))
-    navigation, thrusters, air = faults.true_times(TIMES, [Answer("thruster_lag", None, {"lag": 2.5})])
+    navigation, thrusters, air = faults.true_times(
+        TIMES, [Answer("thruster_lag", None, {"lag": 2.5})]
+    )
     np.testing.assert_allclose(thrusters, TIMES - 2.5)
     np.testing.assert_allclose((navigation, air), (TIMES, TIMES))
 
@@ -70,8 +76,12 @@ def test_earth_fixed_velocities_are_north_and_east(channels):
 
 
 def test_other_units_and_frames(channels):
-    assert spoilt(channels, "frame", note="velocity_knots")[0]["surge"] == pytest.approx(channels["surge"] * 1.943844)
-    assert spoilt(channels, "frame", note="wind_knots")[0]["wind_speed"] == pytest.approx(5.0 * 1.943844)
+    assert spoilt(channels, "frame", note="velocity_knots")[0]["surge"] == pytest.approx(
+        channels["surge"] * 1.943844
+    )
+    assert spoilt(channels, "frame", note="wind_knots")[0]["wind_speed"] == pytest.approx(
+        5.0 * 1.943844
+    )
     assert spoilt(channels, "frame", note="rate_radians")[0]["yaw_rate"] == pytest.approx(
         channels["yaw_rate"] * np.pi / 180
     )
@@ -81,8 +91,13 @@ def test_other_units_and_frames(channels):
 
 def test_wind_over_ground_of_a_calm_is_none(channels):
     ahead, starboard = channels["surge"], channels["sway"]
-    channels |= {"wind_speed": np.hypot(ahead, starboard), "wind_from": np.degrees(np.arctan2(starboard, ahead))}
-    np.testing.assert_allclose(spoilt(channels, "frame", note="wind_over_ground")[0]["wind_speed"], 0.0, atol=1e-9)
+    channels |= {
+        "wind_speed": np.hypot(ahead, starboard),
+        "wind_from": np.degrees(np.arctan2(starboard, ahead)),
+    }
+    np.testing.assert_allclose(
+        spoilt(channels, "frame", note="wind_over_ground")[0]["wind_speed"], 0.0, atol=1e-9
+    )
 
 
 def test_swapped_channels_are_each_others_in_their_part(channels):

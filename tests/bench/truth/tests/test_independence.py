@@ -20,5 +20,7 @@ def test_no_file_of_the_truth_names_the_project_in_an_import():
 
 def test_importing_the_truth_loads_nothing_of_the_project():
     code = "import sys, truth; print([m for m in sys.modules if m.split('.')[0] == 'shipcosim'])"
-    done = subprocess.run([sys.executable, "-c", code], cwd=HERE.parent, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=HERE.parent, capture_output=True, text=True, check=True
+    )
     assert done.stdout.strip() == "[]"

@@ -63,7 +63,9 @@ def test_without_power_propellers_run_down_and_the_ship_drifts_until_the_log_end
     drifting = log.loc[BEGINS + 30 + orders.LATE + 20 :]
     assert drifting[["port_rpm [rpm]", "starboard_rpm [rpm]"]].abs().max().max() < 3.0
     assert drifting["tunnel_rpm [rpm]"].abs().max() < 20.0
-    stopping = log["port_rpm [rpm]"].loc[BEGINS + 30 : BEGINS + 30 + orders.LATE + 20].dropna().abs()
+    stopping = (
+        log["port_rpm [rpm]"].loc[BEGINS + 30 : BEGINS + 30 + orders.LATE + 20].dropna().abs()
+    )
     assert ((stopping > 5.0) & (stopping < 0.8 * stopping.iloc[0])).any()
     assert case.off_track[-1] > 15.0 > case.off_track[BEGINS]
 
@@ -96,10 +98,15 @@ def test_a_unit_by_hand_turns_evenly():
 
 def test_a_current_that_varied_goes_on_varying():
     for seed in range(4):
-        before, after = (cases.set_up("hold", seed, among=["current_varying"], after=a) for a in (None, TURN))
+        before, after = (
+            cases.set_up("hold", seed, among=["current_varying"], after=a) for a in (None, TURN)
+        )
         longer = (after.rows - 1) / (before.rows - 1)
         one, other = before.effects[0], after.effects[0]
-        ends = [np.hypot(e.answer.parameters["north_end"], e.answer.parameters["east_end"]) for e in (one, other)]
+        ends = [
+            np.hypot(e.answer.parameters["north_end"], e.answer.parameters["east_end"])
+            for e in (one, other)
+        ]
         slow, fast = one.shape["speeds"]
         assert ends[1] == pytest.approx(abs(slow + longer * (fast - slow)))
         assert other.answer.parameters["north_start"] == one.answer.parameters["north_start"]
@@ -110,6 +117,8 @@ def test_a_lengthened_stream_keeps_its_start_and_goes_on_smoothly():
     for seed in range(400):
         first, then = np.random.default_rng(seed), np.random.default_rng(1000 + seed)
         long = gauss_markov(Lengthened(first, then, {60: 40}), 60, 1.0, 20.0)
-        np.testing.assert_array_equal(long[:40], gauss_markov(np.random.default_rng(seed), 40, 1.0, 20.0))
+        np.testing.assert_array_equal(
+            long[:40], gauss_markov(np.random.default_rng(seed), 40, 1.0, 20.0)
+        )
         jumps.append(long[40] - long[39])
     assert np.std(jumps) == pytest.approx(np.sqrt(2 - 2 * np.exp(-1 / 20)), rel=0.1)

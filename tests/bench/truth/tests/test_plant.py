@@ -20,7 +20,15 @@ def both(*values, n=N):
 
 
 def sail(
-    seconds, rpm=(0, 0, 0), azimuth=(0, 0), wind=(0, 0), nu=(0, 0, 0), h=0.25, psi=0.0, turn=(), coefficients=None
+    seconds,
+    rpm=(0, 0, 0),
+    azimuth=(0, 0),
+    wind=(0, 0),
+    nu=(0, 0, 0),
+    h=0.25,
+    psi=0.0,
+    turn=(),
+    coefficients=None,
 ):
     """Ship after some seconds with its thrusters as they are."""
     coefficients = coefficients or ships()
@@ -60,7 +68,8 @@ def test_speed_ahead_is_that_of_the_nominal_model(rpm, knots):
 
 
 @pytest.mark.parametrize(
-    ("angle", "rpm", "diameter", "rate"), [(10, 170, 223, 2.56), (20, 164, 125, 3.72), (30, 110, 84, 3.01)]
+    ("angle", "rpm", "diameter", "rate"),
+    [(10, 170, 223, 2.56), (20, 164, 125, 3.72), (30, 110, 84, 3.01)],
 )
 def test_steady_turns_are_those_of_the_nominal_model(angle, rpm, diameter, rate):
     ship = sail(900, rpm=(rpm, rpm, 0), azimuth=(angle, angle))
@@ -69,7 +78,9 @@ def test_steady_turns_are_those_of_the_nominal_model(angle, rpm, diameter, rate)
 
 
 def test_speeds_of_drawn_ships_scatter_as_little_as_the_tolerances():
-    drawn = Coefficients.stack([draw_coefficients(np.random.default_rng(seed)) for seed in range(60)])
+    drawn = Coefficients.stack(
+        [draw_coefficients(np.random.default_rng(seed)) for seed in range(60)]
+    )
     speeds = sail(600, rpm=(170, 170, 0), coefficients=drawn).u / KNOT
     assert np.mean(speeds) == pytest.approx(10.62, rel=0.02)
     assert 0.003 < np.std(speeds) / 10.62 < 0.04
@@ -87,7 +98,8 @@ def test_an_ideal_fluid_keeps_energy_and_earth_fixed_momentum():
 def test_resistance_only_takes_energy():
     coefficients = ships(mismatch=1.0)
     energies = [
-        energy(sail(t, nu=(0.8, -0.5, 0.03), coefficients=coefficients), coefficients)[0] for t in range(0, 100, 10)
+        energy(sail(t, nu=(0.8, -0.5, 0.03), coefficients=coefficients), coefficients)[0]
+        for t in range(0, 100, 10)
     ]
     assert np.all(np.diff(energies) < 0)
 
@@ -96,18 +108,24 @@ def test_port_and_starboard_mirror():
     ship = sail(120, (90, 40, 600), (30, -50), (5, 4), (0.4, 0.2, 0.01))
     mirror = sail(120, (40, 90, -600), (50, -30), (5, -4), (0.4, -0.2, -0.01))
     for name, sign in (("x", 1), ("u", 1), ("y", -1), ("psi", -1), ("v", -1), ("r", -1)):
-        np.testing.assert_allclose(getattr(mirror, name), sign * getattr(ship, name), rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(
+            getattr(mirror, name), sign * getattr(ship, name), rtol=1e-9, atol=1e-9
+        )
 
 
 def test_earth_may_be_turned():
     ship = sail(120, (90, 40, 600), (30, -50), (5, 4))
     c, s = np.cos(1.1), np.sin(1.1)
     other = sail(120, (90, 40, 600), (30, -50), (5 * c - 4 * s, 5 * s + 4 * c), psi=1.1)
-    np.testing.assert_allclose((other.x, other.y), (c * ship.x - s * ship.y, s * ship.x + c * ship.y), atol=1e-9)
+    np.testing.assert_allclose(
+        (other.x, other.y), (c * ship.x - s * ship.y, s * ship.x + c * ship.y), atol=1e-9
+    )
 
 
 def test_half_the_step_ends_within_two_centimetres_after_a_minute():
-    coarse, fine = (sail(60, (90, 40, 600), (30, -50), (5, 4), (0.4, 0.2, 0.02), h=h) for h in (0.25, 0.125))
+    coarse, fine = (
+        sail(60, (90, 40, 600), (30, -50), (5, 4), (0.4, 0.2, 0.02), h=h) for h in (0.25, 0.125)
+    )
     assert np.hypot(coarse.x - fine.x, coarse.y - fine.y)[0] < 0.02
 
 
@@ -120,7 +138,11 @@ def test_cross_flow_of_the_strips_is_the_closed_form():
 
 
 def test_a_dead_ship_drifts_with_the_current():
-    turn = {"current_north": 0.25, "current_east": -0.1, "drag": 20.0}  # more, so that it need not take hours
+    turn = {
+        "current_north": 0.25,
+        "current_east": -0.1,
+        "drag": 20.0,
+    }  # more, so that it need not take hours
     ship = sail(1500, nu=(0.5, 0.3, 0.0), turn=turn)
     north, east = plant.to_earth(ship.psi, ship.u, ship.v)
     assert north[0] == pytest.approx(0.25, abs=0.03)
@@ -153,4 +175,7 @@ def test_a_side_wind_heels_a_rough_ship_away_from_it():
 
 def test_nothing_moves_without_cause():
     ship = sail(100)
-    assert max(np.abs(value).max() for value in (ship.x, ship.y, ship.psi, ship.u, ship.v, ship.r)) < 1e-12
+    assert (
+        max(np.abs(value).max() for value in (ship.x, ship.y, ship.psi, ship.u, ship.v, ship.r))
+        < 1e-12
+    )

@@ -25,7 +25,12 @@ def turning(rate=0.02, speed=1.0):
     """Record of a ship that sails a circle, and where it is."""
     psi = rate * GRID
     still = np.zeros(GRID.size)
-    record = {"x": speed / rate * np.sin(psi), "y": -speed / rate * np.cos(psi), "psi": psi, "u": still + speed}
+    record = {
+        "x": speed / rate * np.sin(psi),
+        "y": -speed / rate * np.cos(psi),
+        "psi": psi,
+        "u": still + speed,
+    }
     record |= {"v": still, "r": still + rate, "roll": still, "roll_rate": still}
     return record | {name: still + 10.0 * i for i, name in enumerate(sensors.THRUSTER_ROWS)}
 
@@ -33,7 +38,9 @@ def turning(rate=0.02, speed=1.0):
 def log(wind=(0.0, 0.0), record=None, **turned):
     record = (record or turning()) | {"sensor": knobs(**turned)}
     wind = np.repeat(np.array(wind)[:, None], GRID.size, axis=1)
-    return sensors.log_channels(record, GRID, WHEN, CALM, wind, np.zeros(GRID.size, complex), silent())
+    return sensors.log_channels(
+        record, GRID, WHEN, CALM, wind, np.zeros(GRID.size, complex), silent()
+    )
 
 
 def test_without_noise_the_log_is_the_truth():
@@ -86,7 +93,9 @@ def test_wind_to_the_east_comes_from_port_of_a_ship_that_heads_north():
 
 
 def test_headings_wrap_and_channels_have_their_resolution():
-    rounded = sensors.wrap_and_round({"heading": np.array([359.96, -10.04]), "port_azimuth": np.array([190.0, -190.0])})
+    rounded = sensors.wrap_and_round(
+        {"heading": np.array([359.96, -10.04]), "port_azimuth": np.array([190.0, -190.0])}
+    )
     np.testing.assert_allclose(rounded["heading"], [0.0, 350.0])
     np.testing.assert_allclose(rounded["port_azimuth"], [-170.0, 170.0])
 
@@ -105,7 +114,9 @@ def test_slow_noise_has_the_stated_size_and_memory():
 
 
 def test_wind_gusts_by_the_stated_turbulence():
-    mast, ship = wind_series(Weather(8.0, 0.3, 0.12, 0.2, 5.0, 0.3), np.random.default_rng(1), 200_000, 0.5)
+    mast, ship = wind_series(
+        Weather(8.0, 0.3, 0.12, 0.2, 5.0, 0.3), np.random.default_rng(1), 200_000, 0.5
+    )
     speed = np.hypot(*mast)
     assert speed.mean() == pytest.approx(8.0, rel=0.02)
     assert speed.std() / 8.0 == pytest.approx(0.12, rel=0.1)

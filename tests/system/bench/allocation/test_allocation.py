@@ -36,13 +36,18 @@ PLANTED = {
 @pytest.mark.parametrize("name", PLANTED)
 def test_violation_that_was_planted_is_counted_once_and_as_what_it_is(name):
     thrusts, azimuths, expected = PLANTED[name]
-    found = {kind: int(count[0]) for kind, count in measures.violations(commanded(thrusts, azimuths)).items()}
+    found = {
+        kind: int(count[0])
+        for kind, count in measures.violations(commanded(thrusts, azimuths)).items()
+    }
     assert found == dict.fromkeys(("force", "angle", "rate", "sector"), 0) | expected
 
 
 def test_unit_that_drops_out_breaks_no_rate():
     usable = [[True] * 3, [True, True, False]]
-    found = measures.violations(commanded([[0, 0, 500], [0, 0, 0]], [[0, 0], [0, 0]], available=usable))
+    found = measures.violations(
+        commanded([[0, 0, 500], [0, 0, 0]], [[0, 0], [0, 0]], available=usable)
+    )
     assert found["rate"].tolist() == [0]
 
 
@@ -53,7 +58,9 @@ def test_power_is_full_at_every_limit():
 
 def test_load_is_that_of_the_full_configuration_matrix():
     X, Y, N = loops.loads(np.array([1e3, 2e3, 3e3]), np.array([np.pi / 2, 0.0]))
-    assert (X, Y) == pytest.approx((2e3, 4e3)) and pytest.approx(-14.02e3 - 2.0 * 2e3 + 14.48 * 3e3) == N
+    assert (X, Y) == pytest.approx((2e3, 4e3)) and pytest.approx(
+        -14.02e3 - 2.0 * 2e3 + 14.48 * 3e3
+    ) == N
 
 
 def test_reversal_is_counted_from_beyond_the_dead_band_to_beyond_it():
@@ -82,9 +89,9 @@ def test_every_law_of_ours_goes_through_random_and_adversarial_requests(law):
     found = loops.replay(law, *drawn.requests(500, 5))
     assert np.isfinite(found.thrusts).all() and np.isfinite(found.azimuths).all()
     if law in table.KEEPING:
-        assert {kind: int(count[0]) for kind, count in measures.violations(found).items()} == dict.fromkeys(
-            ("force", "angle", "rate", "sector"), 0
-        )
+        assert {
+            kind: int(count[0]) for kind, count in measures.violations(found).items()
+        } == dict.fromkeys(("force", "angle", "rate", "sector"), 0)
 
 
 def test_loop_with_the_allocator_in_its_own_place_is_the_loop_as_it_is():

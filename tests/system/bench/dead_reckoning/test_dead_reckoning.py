@@ -17,9 +17,13 @@ def test_the_loop_is_the_co_simulation():
     wanted = worlds.recorded(given, 24.0, lambda done, total: None, losses)
     found = Loop(given, {"kinetic": measuring.laws()["kinetic"]}, "kinetic").run(0, 24, losses)
     for name in worlds.MEASURED:
-        np.testing.assert_allclose(found.measured[name], wanted.measured[name], rtol=1e-6, atol=1e-6, err_msg=name)
+        np.testing.assert_allclose(
+            found.measured[name], wanted.measured[name], rtol=1e-6, atol=1e-6, err_msg=name
+        )
     for name in ("x_hat", "y_hat", "lost_for"):
-        np.testing.assert_allclose(found.reckoned[name], wanted.reckoned[name], rtol=1e-6, atol=1e-6, err_msg=name)
+        np.testing.assert_allclose(
+            found.reckoned[name], wanted.reckoned[name], rtol=1e-6, atol=1e-6, err_msg=name
+        )
     np.testing.assert_allclose(found.x, wanted.x, rtol=1e-6, atol=1e-6)
     assert wanted.reckoned["lost_for"].max() >= 6.0
 
@@ -55,7 +59,15 @@ def test_the_kalman_filter_knows_the_load_that_it_was_told():
 def test_the_page_has_a_row_for_every_law():
     n = len(pages.NAMES)
     one = {name: [1.0, 2.0, 3.0, 4.0] for name in measuring.laws()}
-    found = {"seeds": [1, 2, 3, 4], "sea_state": [0, 1, 2, 3], "rides": one, "held": one, "biased": {}}
+    found = {
+        "seeds": [1, 2, 3, 4],
+        "sea_state": [0, 1, 2, 3],
+        "rides": one,
+        "held": one,
+        "biased": {},
+    }
     found["regions"] = {"motion-filter": {"10": [0.9, 1.0], "all": [0.9, 1.5]}}
     text = pages.page(found)
-    assert set(measuring.laws()) == set(pages.NAMES) and text.count("| 1.00 (1.00 to 1.00) |") == 2 * n
+    assert (
+        set(measuring.laws()) == set(pages.NAMES) and text.count("| 1.00 (1.00 to 1.00) |") == 2 * n
+    )

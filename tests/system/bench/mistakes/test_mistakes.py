@@ -26,13 +26,19 @@ def test_hardly_anything_wrong_is_named(drawn):
 
 def test_most_mistakes_are_named_or_left_open_between_readings(drawn):
     mistaken = [answer for answer in drawn if answer.mistakes]
-    assert sum(answer.outcome in ("silent", "part") for answer in mistaken) <= most([MISSED] * len(mistaken))
+    assert sum(answer.outcome in ("silent", "part") for answer in mistaken) <= most(
+        [MISSED] * len(mistaken)
+    )
 
 
 def test_right_logs_of_agile_craft_are_read_and_give_no_finding(drawn):
     right = [answer for answer in drawn if not answer.mistakes]
     assert len(right) == BOATS
-    assert not [answer for answer in right if answer.said or any("Say the unit" in text for text in answer.open)]
+    assert not [
+        answer
+        for answer in right
+        if answer.said or any("Say the unit" in text for text in answer.open)
+    ]
 
 
 def test_a_refusal_that_asks_for_the_right_unit_counts_as_left_open():
@@ -44,7 +50,9 @@ def test_a_mistake_that_the_question_does_not_ask_for_counts_by_itself():
     names = ("time in ms", "surge and sway swapped")
     answer = answered(log_of("boat", 202651), "boat", 202651, names, declared=False)
     assert answer.outcome == "among" and answer.mistakes == names
-    assert "time is in ms" in answer.open and ["surge,sway" in finding for finding, *_ in answer.said] == [True]
+    assert "time is in ms" in answer.open and [
+        "surge,sway" in finding for finding, *_ in answer.said
+    ] == [True]
 
 
 def test_a_refusal_that_asks_for_a_unit_of_a_right_log_counts_as_beside():

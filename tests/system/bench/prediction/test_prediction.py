@@ -15,7 +15,12 @@ def straight(seconds=90, lost_at=4.0, speed=(0.4, -0.3), psi=0.5):
     time = np.arange(float(seconds))
     north, east = to_ned(psi, *speed)
     known = np.zeros((seconds, len(KNOWN)))
-    known[:, 0], known[:, 1], known[:, 2], known[:, 3], known[:, 4] = north * time, east * time, psi, *speed
+    known[:, 0], known[:, 1], known[:, 2], known[:, 3], known[:, 4] = (
+        north * time,
+        east * time,
+        psi,
+        *speed,
+    )
     truth = known[:, :6].copy()
     return Record(1, lost_at, time, known, truth)
 
@@ -62,7 +67,9 @@ def test_means_are_of_sizes_and_in_degrees():
 def test_intervals_draw_whole_worlds_in_pairs():
     """Where every world is half as bad, so is every draw; and the interval of a mean is that of its worlds."""
     kinetic = np.array([1.0, 2.0, 9.0, 4.0])[:, None]
-    assert [float(one[0]) for one in pages.interval(0.5 * kinetic, kinetic)] == pytest.approx([0.5, 0.5, 0.5])
+    assert [float(one[0]) for one in pages.interval(0.5 * kinetic, kinetic)] == pytest.approx(
+        [0.5, 0.5, 0.5]
+    )
     mean, low, high = (float(one[0]) for one in pages.interval(kinetic))
     assert mean == 4.0 and 1.0 < low < 3.0 and 5.0 < high < 9.0
 
@@ -83,13 +90,18 @@ def test_measures_are_kept_and_not_redone(tmp_path, monkeypatch):
     monkeypatch.setattr(measuring, "sail", None)
     again = measuring.measured("kinetic", 300, 1.0, tmp_path)
     assert all((first[key] == again[key]).all() for key in first)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["kinetic-300-1.npz", "record-300-1.npz"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "kinetic-300-1.npz",
+        "record-300-1.npz",
+    ]
 
 
 def test_a_learned_force_is_what_its_coefficients_say(tmp_path):
     share = np.zeros(len(own_model.COEFFICIENTS))
     share[own_model.COEFFICIENTS.index("wind_Y")] = 0.4
-    run = learned.sailed(learned.plan(301, {}), learned.force_of({"coefficients": share}, tmp_path), until=5.0)
+    run = learned.sailed(
+        learned.plan(301, {}), learned.force_of({"coefficients": share}, tmp_path), until=5.0
+    )
     wind, force = run.table["vessel.tau_wind_Y"].values, run.table["learned.tau_Y"].values
     np.testing.assert_allclose(force[1:], 0.4 * wind[1:], rtol=0.05)
     assert np.abs(run.table["learned.tau_X"]).max() == 0.0

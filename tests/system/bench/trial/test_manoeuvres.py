@@ -9,7 +9,11 @@ import pytest
 from trial import manoeuvres, runs
 from truth.orders import Orders, leg_speeds
 
-AMBIGUOUS = {"verdict": "ambiguous", "findings": [], "prescription": {"manoeuvre": "turn by 90 deg and hold"}}
+AMBIGUOUS = {
+    "verdict": "ambiguous",
+    "findings": [],
+    "prescription": {"manoeuvre": "turn by 90 deg and hold"},
+}
 LENGTHS = []
 
 
@@ -44,10 +48,18 @@ def test_orders_last_as_long_as_the_manoeuvre_of_the_library_and_turn_as_far():
 def test_only_what_was_prescribed_and_not_yet_sailed_is_sailed():
     nothing = AMBIGUOUS | {"prescription": None}
     named = {"verdict": "named", "findings": [], "prescription": None}
-    found = [result(1), result(2, diagnosis=nothing), result(3, diagnosis=named), result(4, diagnosis=None)]
+    found = [
+        result(1),
+        result(2, diagnosis=nothing),
+        result(3, diagnosis=named),
+        result(4, diagnosis=None),
+    ]
     found += [result(5), result(5, manoeuvres.AFTER.format("one")), result(6, "two")]
     assert [r["seed"] for r in manoeuvres.unsailed(found, ["hold"], ["one"])] == [1]
-    assert [r["seed"] for r in manoeuvres.unsailed(found, ["hold", "work"], ["one", "two"])] == [1, 6]
+    assert [r["seed"] for r in manoeuvres.unsailed(found, ["hold", "work"], ["one", "two"])] == [
+        1,
+        6,
+    ]
     assert manoeuvres.unsailed(found, ["work"], ["one"]) == []
 
 
@@ -60,4 +72,6 @@ def test_a_manoeuvre_is_sailed_once_and_its_log_is_longer(tmp_path):
     _, sailed = runs.read_results(into)
     assert (sailed["set"], sailed["seed"], sailed["error"]) == ("one sailed", 7, None)
     assert sailed["answer"][0]["cause"] == "tow"
-    assert LENGTHS == [pytest.approx(sailed["span"][1], abs=10)] and sailed["span"][1] > 600.0 + 240.0
+    assert (
+        LENGTHS == [pytest.approx(sailed["span"][1], abs=10)] and sailed["span"][1] > 600.0 + 240.0
+    )

@@ -24,7 +24,9 @@ def hidden(cause, component=None, parameters=(), segments=(), channels=(), onset
 
 
 def found(cause, component=None, values=(), std=0.1, unit="1", **more):
-    values = {name: {"estimate": value, "std": std, "unit": unit} for name, value in dict(values).items()}
+    values = {
+        name: {"estimate": value, "std": std, "unit": unit} for name, value in dict(values).items()
+    }
     return {"cause": cause, "component": component, "parameters": values} | more
 
 
@@ -50,7 +52,11 @@ def test_two_causes_want_both_and_nothing_else():
 
 
 def test_the_set_of_an_ambiguous_answer_must_hold_what_is_hidden():
-    ambiguous = {"verdict": "ambiguous", "findings": [], "indistinguishable": [found("tow"), found("wave_drift")]}
+    ambiguous = {
+        "verdict": "ambiguous",
+        "findings": [],
+        "indistinguishable": [found("tow"), found("wave_drift")],
+    }
     assert score([hidden("tow")], ambiguous, SPAN).contained
     assert not score([hidden("tow")], ambiguous, SPAN).right
     assert not score([hidden("current")], ambiguous, SPAN).contained
@@ -68,18 +74,31 @@ def test_a_miss_is_excused_where_the_log_could_not_show_the_cause():
 
 
 def test_an_error_is_relative_to_the_distance_from_neutral_and_a_vector_is_one():
-    judged = score([hidden("mass", parameters={"scale": 1.2})], named(found("mass", None, {"scale": 1.1})), SPAN)
+    judged = score(
+        [hidden("mass", parameters={"scale": 1.2})],
+        named(found("mass", None, {"scale": 1.1})),
+        SPAN,
+    )
     assert judged.errors["mass"] == pytest.approx(0.5)
     current = hidden("current", parameters={"north": 0.3, "east": 0.4})
-    judged = score([current], named(found("current", None, {"north": 0.3, "east": 0.35}, std=0.02, unit="m/s")), SPAN)
+    judged = score(
+        [current],
+        named(found("current", None, {"north": 0.3, "east": 0.35}, std=0.02, unit="m/s")),
+        SPAN,
+    )
     assert judged.errors["current"] == pytest.approx(0.1)
     assert judged.within == {"current north": True, "current east": False}
 
 
 def test_an_estimate_in_another_unit_does_not_count():
     offset = hidden("azimuth_offset", "port", {"offset": 6.0})
-    judged = score([offset], named(found("azimuth_offset", "port", {"offset": 6.0}, unit="rad")), SPAN)
-    assert math.isnan(judged.errors["azimuth_offset port"]) and not judged.within["azimuth_offset port offset"]
+    judged = score(
+        [offset], named(found("azimuth_offset", "port", {"offset": 6.0}, unit="rad")), SPAN
+    )
+    assert (
+        math.isnan(judged.errors["azimuth_offset port"])
+        and not judged.within["azimuth_offset port offset"]
+    )
 
 
 @pytest.mark.parametrize(
@@ -128,7 +147,10 @@ def test_a_run_that_was_cut_off_is_taken_up_where_it_was(tmp_path, monkeypatch):
             yield {"kind": kind, "set": name, "seed": seed}
 
     monkeypatch.setattr(runs, "diagnosed", diagnosed)
-    into, quiet = tmp_path / "results.jsonl", {"progress": lambda result, total: totals.append(total)}
+    into, quiet = (
+        tmp_path / "results.jsonl",
+        {"progress": lambda result, total: totals.append(total)},
+    )
     runs.run(["hold"], ["healthy"], range(3), into, **quiet)
     into.write_text(into.read_text()[:-20])
     results = runs.run(["hold"], ["healthy"], range(4), into, **quiet)
@@ -143,7 +165,10 @@ def test_what_was_named_is_counted_by_how_sure_it_was():
     sure, unsure = {"kind": "physics", "probability": 0.99}, {"kind": "physics", "probability": 0.7}
     fault = {"kind": "data", "probability": 1.0}
     results = [answer(i, found("mass", **sure)) for i in range(3)]
-    results += [answer(3, found("tow", **sure), found("mass", **unsure)), answer(4, found("gap", **fault))]
+    results += [
+        answer(3, found("tow", **sure), found("mass", **unsure)),
+        answer(4, found("gap", **fault)),
+    ]
     _, _, *lines = tables.calibration([*results, answer(5, diagnosis=None)])
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
     assert [row[:3] for row in cells] == [
@@ -156,34 +181,78 @@ def test_what_was_named_is_counted_by_how_sure_it_was():
 
 def test_removed_beyond_the_observer_is_of_what_it_leaves_and_right_answers_only():
     def answer(observer, after, floor, cause="mass", alone=1.0):
-        gain = {"bias_observer_m": observer, "after_m": alone, "noise_floor_m": 0.5 * floor, "twin_m": 0.0}
-        gain |= {"after_observer_m": after, "twin_observer_m": floor, "before_m": 4.0, "network_m": 3.0}
+        gain = {
+            "bias_observer_m": observer,
+            "after_m": alone,
+            "noise_floor_m": 0.5 * floor,
+            "twin_m": 0.0,
+        }
+        gain |= {
+            "after_observer_m": after,
+            "twin_observer_m": floor,
+            "before_m": 4.0,
+            "network_m": 3.0,
+        }
         gain["chance_worse"] = 0.99 if after > 1.2 * observer else 0.6
         diagnosis = named(found(cause)) | {"gain": gain, "drift": None}
-        return {"kind": "work", "set": "drift", "answer": [hidden("mass")], "span": SPAN, "diagnosis": diagnosis}
+        return {
+            "kind": "work",
+            "set": "drift",
+            "answer": [hidden("mass")],
+            "span": SPAN,
+            "diagnosis": diagnosis,
+        }
 
-    results = [answer(2.0, 0.7, 0.7), answer(2.0, 0.96, 0.7), answer(2.0, 0.7, 0.7, "tow"), answer(0.7, 0.7, 0.69)]
+    results = [
+        answer(2.0, 0.7, 0.7),
+        answer(2.0, 0.96, 0.7),
+        answer(2.0, 0.7, 0.7, "tow"),
+        answer(0.7, 0.7, 0.69),
+    ]
     rows = [row for row in tables.ROWS if row.name == "drift"]
     beside, noise, alone, worse, surely, needlessly, worse_alone, *shares = rows[: len(rows) // 2]
     cells = [tables.content(row, results, "work") for row in (beside, noise, alone)]
     assert cells == ["90 % (2)", "63 % (3)", "50 % (3)"]
-    assert [tables.content(row, results, "work") for row in shares] == ["75 % (3)", "50 % (3)", "25 % (3)"]
-    assert not any(tables.content(row, results, "work") for row in rows[len(rows) // 2 :])  # no drift
+    assert [tables.content(row, results, "work") for row in shares] == [
+        "75 % (3)",
+        "50 % (3)",
+        "25 % (3)",
+    ]
+    assert not any(
+        tables.content(row, results, "work") for row in rows[len(rows) // 2 :]
+    )  # no drift
     assert tables.rates(results, "drift", "work", worse.hit) == (0, 4)
     assert tables.rates(results, "drift", "work", worse_alone.hit) == (1, 4)
     more = [answer(1.0, 1.1, 0.5), answer(1.0, 1.3, 0.5)]
     assert tables.rates(more, "drift", "work", worse.hit) == (2, 2)
     assert tables.rates(more, "drift", "work", surely.hit) == (1, 2)
     more += [answer(1.0, 1.3, 1.2)]
-    assert [tables.rates(more, "drift", "work", row.hit) for row in (surely, needlessly)] == [(2, 3), (1, 3)]
+    assert [tables.rates(more, "drift", "work", row.hit) for row in (surely, needlessly)] == [
+        (2, 3),
+        (1, 3),
+    ]
 
 
 def test_after_the_manoeuvre_the_truth_must_be_named_or_in_the_set():
-    set_of_two = {"verdict": "ambiguous", "findings": [], "indistinguishable": [found("mass"), found("tow")]}
-    (row,) = (row for row in tables.ROWS if row.label == "in the reported set after the one prescribed manoeuvre")
+    set_of_two = {
+        "verdict": "ambiguous",
+        "findings": [],
+        "indistinguishable": [found("mass"), found("tow")],
+    }
+    (row,) = (
+        row
+        for row in tables.ROWS
+        if row.label == "in the reported set after the one prescribed manoeuvre"
+    )
     answers = (named(found("mass")), set_of_two, named(found("drag")), HEALTHY)
     results = [
-        {"kind": "hold", "set": "one sailed", "answer": [hidden("mass")], "span": SPAN, "diagnosis": answer}
+        {
+            "kind": "hold",
+            "set": "one sailed",
+            "answer": [hidden("mass")],
+            "span": SPAN,
+            "diagnosis": answer,
+        }
         for answer in answers
     ]
     assert tables.rates(results, row.name, "hold", row.hit) == (2, 4)

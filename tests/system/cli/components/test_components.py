@@ -32,12 +32,16 @@ def in_kilonewtons(fmu, target):
                 assert 'unit="N"' in after and "</UnitDefinitions>" in before
                 unit = '<Unit name="kN"><BaseUnit kg="1" m="1" s="-2" factor="1000"/></Unit></UnitDefinitions>'
                 before = before.replace("</UnitDefinitions>", unit)
-                data = (before + 'name="tau_X"' + after.replace('unit="N"', 'unit="kN"', 1)).encode()
+                data = (
+                    before + 'name="tau_X"' + after.replace('unit="N"', 'unit="kN"', 1)
+                ).encode()
             new.writestr(entry, data)
 
 
 def test_check_for_a_tool_looks_at_the_fmu_that_a_scenario_swaps_in(swapped, call):
-    in_kilonewtons(swapped / "build" / "fmus" / "extended_allocator.fmu", swapped / "scenarios" / "other.fmu")
+    in_kilonewtons(
+        swapped / "build" / "fmus" / "extended_allocator.fmu", swapped / "scenarios" / "other.fmu"
+    )
     for tool in ("libcosim", "ecos"):
         result = call("check", "swapped", "--for", tool)
         assert result.code == 1 and "allocator.tau_X ->" not in result.out
@@ -45,7 +49,10 @@ def test_check_for_a_tool_looks_at_the_fmu_that_a_scenario_swaps_in(swapped, cal
     path.write_text(path.read_text().replace('"optimal_allocator"', '"other.fmu"'))
     for tool in ("libcosim", "ecos"):
         result = call("check", "swapped", "--for", tool)
-        assert "allocator.tau_X -> controller.tau_X_allocated" in result.out and "A conversion of units" in result.out
+        assert (
+            "allocator.tau_X -> controller.tau_X_allocated" in result.out
+            and "A conversion of units" in result.out
+        )
 
 
 def test_check_for_a_tool_says_once_that_there_is_no_such_fmu(swapped, call):
@@ -56,8 +63,12 @@ def test_check_for_a_tool_says_once_that_there_is_no_such_fmu(swapped, call):
     assert "swapped.toml, line " in result.out and "Did you mean 'optimal_allocator'?" in result.out
 
 
-@pytest.mark.parametrize("what", [("swapped",), ("ssp/gunnerus_dp", "--component", "allocator=optimal_allocator")])
-def test_a_tool_that_reads_the_file_itself_is_not_compared_with_an_fmu_in_anothers_place(what, swapped, call):
+@pytest.mark.parametrize(
+    "what", [("swapped",), ("ssp/gunnerus_dp", "--component", "allocator=optimal_allocator")]
+)
+def test_a_tool_that_reads_the_file_itself_is_not_compared_with_an_fmu_in_anothers_place(
+    what, swapped, call
+):
     result = call("compare", *what, "--as-read", "--stop-time", "1")
     assert result.code == 2 and "runs the FMU that it names for allocator" in result.err
     assert "without as_read (--as-read)" in result.err
@@ -79,9 +90,13 @@ def test_engines_are_compared_with_the_fmu_that_takes_the_place(swapped, call, n
 
 def test_exports_hold_the_fmu_that_takes_the_place(swapped, call):
     assert call("export", "osp", "swapped", "--out", "osp").code == 0
-    assert (swapped / "osp" / "optimal_allocator.fmu").is_file() and not (swapped / "osp" / "allocator.fmu").exists()
+    assert (swapped / "osp" / "optimal_allocator.fmu").is_file() and not (
+        swapped / "osp" / "allocator.fmu"
+    ).exists()
     option = ("--component", "allocator=extended_allocator")  # over the scenario's
-    assert call("export", "fmu", "swapped", *option, "--out", "block").code == 0  # run beside the system first
+    assert (
+        call("export", "fmu", "swapped", *option, "--out", "block").code == 0
+    )  # run beside the system first
     with zipfile.ZipFile(swapped / "block" / "gunnerus_dp.fmu") as block:
         held = {name.split("/")[1] for name in block.namelist() if name.startswith("resources/")}
     assert any(name.endswith("_extended_allocator") for name in held)
@@ -89,8 +104,30 @@ def test_exports_hold_the_fmu_that_takes_the_place(swapped, call):
 
 
 def test_a_simulator_of_an_osp_structure_runs_another_fmu_too(swapped, call):
-    assert call("export", "osp", "ssp/gunnerus_dp", "--stop-time", "1", "--step-size", "0.05", "--out", "osp").code == 0
-    result = call("simulate", "osp", "--component", "allocator=optimal_allocator", "--stop-time", "1", "--out", "out")
+    assert (
+        call(
+            "export",
+            "osp",
+            "ssp/gunnerus_dp",
+            "--stop-time",
+            "1",
+            "--step-size",
+            "0.05",
+            "--out",
+            "osp",
+        ).code
+        == 0
+    )
+    result = call(
+        "simulate",
+        "osp",
+        "--component",
+        "allocator=optimal_allocator",
+        "--stop-time",
+        "1",
+        "--out",
+        "out",
+    )
     assert result.code == 0, result.err
     table = shipcosim.read_table("out/result.nc")
     assert json.loads(table.attrs["fmus"])["allocator"]["file"] == "optimal_allocator.fmu"
@@ -99,7 +136,9 @@ def test_a_simulator_of_an_osp_structure_runs_another_fmu_too(swapped, call):
 def test_a_run_is_the_same_in_processes_of_its_own_and_repeated_from_its_table(swapped, call):
     assert call("run", "swapped", "--out", "here").code == 0
     assert call("run", "swapped", "--isolate", "--out", "apart").code == 0
-    assert (swapped / "here" / "result.csv").read_text() == (swapped / "apart" / "result.csv").read_text()
+    assert (swapped / "here" / "result.csv").read_text() == (
+        swapped / "apart" / "result.csv"
+    ).read_text()
     table, again = shipcosim.read_table("here/result.nc"), repeat("here/result.nc")
     assert all(bool((again[name] == table[name]).all()) for name in table.data_vars)
 
@@ -110,5 +149,17 @@ def test_a_run_goes_on_from_its_state_and_not_with_another_fmu(swapped, call):
     assert call("run", "swapped", "--out", "whole").code == 0
     second, whole = (shipcosim.read_table(f"{name}/result.nc") for name in ("second", "whole"))
     assert float(abs(second["vessel.x"][-1] - whole["vessel.x"][-1])) == 0.0
-    refused = call("run", "swapped", "--from", "state", "--component", "allocator=extended_allocator", "--out", "no")
-    assert refused.code == 2 and "extended_allocator.fmu is another FMU than the one that was stored" in refused.err
+    refused = call(
+        "run",
+        "swapped",
+        "--from",
+        "state",
+        "--component",
+        "allocator=extended_allocator",
+        "--out",
+        "no",
+    )
+    assert (
+        refused.code == 2
+        and "extended_allocator.fmu is another FMU than the one that was stored" in refused.err
+    )

@@ -19,7 +19,9 @@ def test_files_of_the_project_are_of_their_kind(pattern, root):
     assert files and {kind_of_toml(file) for file in files} == {KINDS[pattern]}
 
 
-@pytest.mark.parametrize("pattern", ["src/shipcosim/diagnose/hypotheses/causes/*.toml", "ssp/ships/osv/ship.toml"])
+@pytest.mark.parametrize(
+    "pattern", ["src/shipcosim/diagnose/hypotheses/causes/*.toml", "ssp/ships/osv/ship.toml"]
+)
 def test_a_file_that_is_no_toml_is_still_of_its_kind(pattern, root, tmp_path):
     for file in root.glob(pattern):
         broken = tmp_path / "broken.toml"

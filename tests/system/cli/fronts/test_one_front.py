@@ -56,11 +56,35 @@ CASES = {
         lambda: sc.run("fill", until="2 s", store="at2.state", out="out"),
     ),
     "simulate a system": (
-        ["simulate", "tank", "--stop-time", "2", "--step-size", "0.1", "--set", "lag.time_constant=2", "--out", "out"],
-        lambda: sc.simulate("tank", stop_time=2, step_size="100 ms", set={"lag.time_constant": 2}, out="out"),
+        [
+            "simulate",
+            "tank",
+            "--stop-time",
+            "2",
+            "--step-size",
+            "0.1",
+            "--set",
+            "lag.time_constant=2",
+            "--out",
+            "out",
+        ],
+        lambda: sc.simulate(
+            "tank", stop_time=2, step_size="100 ms", set={"lag.time_constant": 2}, out="out"
+        ),
     ),
     "simulate an FMU": (
-        ["simulate", "lag", "--stop-time", "1", "--step-size", "0.1", "--set", "time_constant=2", "--out", "out"],
+        [
+            "simulate",
+            "lag",
+            "--stop-time",
+            "1",
+            "--step-size",
+            "0.1",
+            "--set",
+            "time_constant=2",
+            "--out",
+            "out",
+        ],
         lambda: sc.simulate("lag", stop_time=1, step_size=0.1, set={"time_constant": 2}, out="out"),
     ),
     "simulate with a table": (
@@ -113,7 +137,11 @@ SET = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 def files_in(folder):
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
 
 
 def both(command, call_in_python, call, folder):
@@ -185,11 +213,18 @@ def test_command_and_call_on_ships_leave_the_same_files(name, tmp_path, monkeypa
 
 
 def test_what_a_run_was_is_in_its_file_on_its_page_and_in_its_card(tank):
-    found = sc.run("fill", set={"lag.time_constant": 0.4}, parameters=["fast.ssv"], until=4.2, out="out")
+    found = sc.run(
+        "fill", set={"lag.time_constant": 0.4}, parameters=["fast.ssv"], until=4.2, out="out"
+    )
     again = sc.read_table("out/result.nc")
     page, card = Path("out/report.html").read_text(encoding="utf-8"), found._repr_html_()
     assert len(found.not_judged) == 2 and found.expectations == ()
-    for text in ("None of its 2 expectations was reached", "lag.time_constant = 0.4", "until 4.2 s", "Left out"):
+    for text in (
+        "None of its 2 expectations was reached",
+        "lag.time_constant = 0.4",
+        "until 4.2 s",
+        "Left out",
+    ):
         assert text in page and text in card, text
     for key in ("changed", "not_reached", "remarks", "seeds"):
         assert again.attrs[key] == found.attrs[key], key
@@ -197,5 +232,7 @@ def test_what_a_run_was_is_in_its_file_on_its_page_and_in_its_card(tank):
 
 
 def test_no_path_of_the_user_is_in_the_list_of_changes(tank):
-    found = sc.run("fill", parameters=[tank / "fast.ssv"], fmus=[tank / "build" / "fmus"], until=1.0)
+    found = sc.run(
+        "fill", parameters=[tank / "fast.ssv"], fmus=[tank / "build" / "fmus"], until=1.0
+    )
     assert str(tank) not in found.attrs["changed"] and "fast.ssv" in found.attrs["changed"]

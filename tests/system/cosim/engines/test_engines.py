@@ -37,7 +37,9 @@ def assert_alike(ours, theirs, tolerance):
     for name, column in ours.data_vars.items():
         other = theirs[name]
         assert (column.attrs, column.dtype) == (other.attrs, other.dtype), name
-        np.testing.assert_allclose(other.values.astype(float), column.values.astype(float), 0, tolerance, err_msg=name)
+        np.testing.assert_allclose(
+            other.values.astype(float), column.values.astype(float), 0, tolerance, err_msg=name
+        )
 
 
 LOOP = {
@@ -74,7 +76,9 @@ def test_table_is_ours(loop, make_scenario, engine):
 
 def test_rows_at_the_output_interval(loop, make_scenario, engine):
     scenario = make_scenario(1.0, 0.05, output_interval=0.25)
-    assert_alike(simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine)), EXACT[engine])
+    assert_alike(
+        simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine)), EXACT[engine]
+    )
 
 
 EVENTS = [
@@ -100,10 +104,15 @@ def test_events_act_alike(loop, make_scenario, engine):
 
 
 def test_connected_values_of_other_types_change_in_libcosim_only(loop, make_scenario, engine):
-    events = [{"time": 0.2, "override": {"meter.number": 50, "clock.odd": True}}, {"time": 0.4, "reset": ["clock.odd"]}]
+    events = [
+        {"time": 0.2, "override": {"meter.number": 50, "clock.odd": True}},
+        {"time": 0.4, "reset": ["clock.odd"]},
+    ]
     scenario = make_scenario(1.0, 0.05, events=events)
     if engine == "libcosim":
-        assert_alike(simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine)), 0.0)
+        assert_alike(
+            simulate(loop, scenario), simulate(loop, scenario, RunOptions(engine=engine)), 0.0
+        )
     else:
         with pytest.raises(ShipcosimError, match=r"meter\.number:? .*not Real"):
             simulate(loop, scenario, RunOptions(engine=engine))
@@ -112,7 +121,11 @@ def test_connected_values_of_other_types_change_in_libcosim_only(loop, make_scen
 def test_inputs_of_the_system_from_start_value_table_and_events(make_system, make_scenario, engine):
     system = make_system(
         {"law": ("gain", {"factor": 3.0}), "lag": "lag", "meter": "meter"},
-        [".push -> law.u | <ssc:LinearTransformation factor='2' offset='1'/>", "law.y -> lag.u", ".on -> meter.flag"]
+        [
+            ".push -> law.u | <ssc:LinearTransformation factor='2' offset='1'/>",
+            "law.y -> lag.u",
+            ".on -> meter.flag",
+        ]
         + [".still -> meter.real", "lag.y -> .out"],
         {
             "push": ("input", "Real", ""),
@@ -123,21 +136,32 @@ def test_inputs_of_the_system_from_start_value_table_and_events(make_system, mak
     )
     times = np.array([0.0, 0.2, 0.5, 1.0])
     table = make_table(
-        times, [("push", np.array([0.5, 1.0, -1.0, 0.0]), "", ""), ("on", np.array([False, True, False, True]), "", "")]
+        times,
+        [
+            ("push", np.array([0.5, 1.0, -1.0, 0.0]), "", ""),
+            ("on", np.array([False, True, False, True]), "", ""),
+        ],
     )
     table["push"].attrs["interpolation"] = "linear"
     events = [{"time": 0.3, "bias": {"push": 10.0}}, {"time": 0.6, "reset": ["push"]}]
     scenario = make_scenario(1.0, 0.05, events=events, set={"still": 4.0})
-    tables = [simulate(system, scenario, RunOptions(engine=name, inputs=table)) for name in ("fmpy", engine)]
+    tables = [
+        simulate(system, scenario, RunOptions(engine=name, inputs=table))
+        for name in ("fmpy", engine)
+    ]
     assert_alike(*tables, EXACT[engine])
     assert tables[1]["push"].values[6] == pytest.approx(1.0 - 2.0 / 3.0 + 10.0)
 
 
 def test_step_of_its_own(make_system, make_scenario, engine):
-    system = make_system({"clock": "clock", "slow": ("lag", {"time_constant": 1.3}, 0.15)}, ["clock.time -> slow.u"])
+    system = make_system(
+        {"clock": "clock", "slow": ("lag", {"time_constant": 1.3}, 0.15)}, ["clock.time -> slow.u"]
+    )
     scenario = make_scenario(3.0, 0.05)
     if engine == "libcosim":
-        assert_alike(simulate(system, scenario), simulate(system, scenario, RunOptions(engine=engine)), 0.0)
+        assert_alike(
+            simulate(system, scenario), simulate(system, scenario, RunOptions(engine=engine)), 0.0
+        )
     else:
         with pytest.raises(ShipcosimError, match="steps 3 base steps at a time"):
             simulate(system, scenario, RunOptions(engine=engine))
@@ -157,7 +181,9 @@ def test_step_of_its_own(make_system, make_scenario, engine):
         ),
     ],
 )
-def test_what_an_engine_would_ignore_is_refused(make_system, make_scenario, engine, parts, connections, complaint):
+def test_what_an_engine_would_ignore_is_refused(
+    make_system, make_scenario, engine, parts, connections, complaint
+):
     system = make_system(parts, connections)
     with pytest.raises(ShipcosimError, match=f"{engine} cannot make this connection.*{complaint}"):
         simulate(system, make_scenario(), RunOptions(engine=engine))
@@ -194,7 +220,9 @@ def test_interrupt_gives_the_rows_before_it(loop, make_scenario, engine):
     assert table.attrs["complete"] == 0 and 100 <= table.sizes["time"] < 40001
 
 
-def test_engines_leave_nothing_behind_that_another_run_would_import(pythonfmu_system, make_scenario, engine):
+def test_engines_leave_nothing_behind_that_another_run_would_import(
+    pythonfmu_system, make_scenario, engine
+):
     system = pythonfmu_system("float(helper.VALUE)", "VALUE = 1", "VALUE = 1")
     before = list(sys.path), set(sys.modules)
     simulate(system, make_scenario(), RunOptions(engine=engine))
@@ -216,7 +244,9 @@ print({name: str(problem) for name, problem in engines_missing().items()})
 
 
 def test_missing_engines_say_what_to_install():
-    said = subprocess.run([sys.executable, "-c", HIDDEN], capture_output=True, text=True, check=True).stdout
+    said = subprocess.run(
+        [sys.executable, "-c", HIDDEN], capture_output=True, text=True, check=True
+    ).stdout
     assert "pip install libcosimpy" in said and "libtbb12" in said
 
 
@@ -226,10 +256,18 @@ def test_engines_agree_on_the_four_corners(root, engine):
 
 def agree_on_the_four_corners(root, engine, stop_time):
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
-    scenario = scenario.model_copy(update={"output_interval": None, "stop_time": stop_time, "expect": []})
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"])
-    ours, theirs = (simulate(system, scenario, RunOptions(engine=name)) for name in ("fmpy", engine))
-    assert list(ours.data_vars) == list(theirs.data_vars) and ours.sizes["time"] == 20 * stop_time + 1
+    scenario = scenario.model_copy(
+        update={"output_interval": None, "stop_time": stop_time, "expect": []}
+    )
+    system = read_system(
+        scenario.system_path, scenario.parameter_paths, fmus=[root / "build" / "fmus"]
+    )
+    ours, theirs = (
+        simulate(system, scenario, RunOptions(engine=name)) for name in ("fmpy", engine)
+    )
+    assert (
+        list(ours.data_vars) == list(theirs.data_vars) and ours.sizes["time"] == 20 * stop_time + 1
+    )
     for name, column in ours.data_vars.items():
         values = column.values.astype(float)
         assert np.abs(theirs[name].values - values).max() <= 1e-9 * np.ptp(values), name
@@ -251,9 +289,17 @@ def test_names_with_dots_and_folders_with_blanks(make_system, make_scenario, eng
         fmu = replace(component.fmu, path=Path(path))
         components[f"inner.{name}"] = replace(component, name=f"inner.{name}", fmu=fmu)
     inner = [
-        replace(c, source=(f"inner.{c.source[0]}", c.source[1]), target=(f"inner.{c.target[0]}", c.target[1]))
+        replace(
+            c,
+            source=(f"inner.{c.source[0]}", c.source[1]),
+            target=(f"inner.{c.target[0]}", c.target[1]),
+        )
         for c in system.connections
     ]
     system = replace(system, components=components, connections=tuple(inner))
     scenario = make_scenario(1.0, 0.1, events=[{"time": 0.5, "bias": {"inner.lag.u": 1.0}}])
-    assert_alike(simulate(system, scenario), simulate(system, scenario, RunOptions(engine=engine)), EXACT[engine])
+    assert_alike(
+        simulate(system, scenario),
+        simulate(system, scenario, RunOptions(engine=engine)),
+        EXACT[engine],
+    )

@@ -50,9 +50,14 @@ def check_as_read(name, host, tmp_path):
     respects, whole = taken_by(host, path)
     ours = simulate(whole, scenario).isel(time=slice(1, None))
     for signal in theirs.data_vars:
-        np.testing.assert_allclose(ours[signal].values.astype(float), theirs[signal].values, 0, 1e-12, err_msg=signal)
+        np.testing.assert_allclose(
+            ours[signal].values.astype(float), theirs[signal].values, 0, 1e-12, err_msg=signal
+        )
     plain = simulate(read_system(path), scenario).isel(time=slice(1, None))
-    differ = any(not np.array_equal(plain[s].values.astype(float), theirs[s].values) for s in theirs.data_vars)
+    differ = any(
+        not np.array_equal(plain[s].values.astype(float), theirs[s].values)
+        for s in theirs.data_vars
+    )
     assert differ == bool(respects)
 
 
@@ -77,7 +82,11 @@ def test_a_tool_that_refuses_or_dies_is_left_out_with_a_word(host, tmp_path):
     path = conformance.write(conformance.cases()["parameter_enumeration"], tmp_path, "ssp, 1.0")
     _, result = compared(path, "--stop-time", 1, "--step-size", 0.25)
     said = json.loads(result.stdout)["left_out"][host]
-    assert said == "libcosim: crashes." if host == "libcosim" else said.startswith("ecos: refuses the file.")
+    assert (
+        said == "libcosim: crashes."
+        if host == "libcosim"
+        else said.startswith("ecos: refuses the file.")
+    )
 
 
 def test_parameters_events_and_files_that_a_tool_does_not_know_are_refused(tmp_path):

@@ -14,14 +14,22 @@ def libcosim_rows(folder, system, step_size, n_steps, scenario_file=None):
     from libcosimpy.CosimManipulator import CosimManipulator
     from libcosimpy.CosimObserver import CosimObserver
 
-    execution = libcosim.CosimExecution.from_ssp_file(ssp_path=str(folder), step_size=round(step_size * 1e9))
+    execution = libcosim.CosimExecution.from_ssp_file(
+        ssp_path=str(folder), step_size=round(step_size * 1e9)
+    )
     observer = CosimObserver.create_last_value()
     assert execution.add_observer(observer)
     if scenario_file:
         manager = CosimManipulator.create_scenario_manager()
-        assert execution.add_manipulator(manager) and execution.load_scenario(manager, str(scenario_file))
+        assert execution.add_manipulator(manager) and execution.load_scenario(
+            manager, str(scenario_file)
+        )
     outputs = {
-        name: [v for v in component.fmu.variables.values() if v.causality == "output" and v.kind == "Real"]
+        name: [
+            v
+            for v in component.fmu.variables.values()
+            if v.causality == "output" and v.kind == "Real"
+        ]
         for name, component in system.components.items()
     }
     rows = {f"{name}.{v.name}": [] for name, variables in outputs.items() for v in variables}
@@ -89,8 +97,13 @@ def test_events_act_as_in_an_osp_scenario(packed, make_scenario):
         f'{{"model": "{m}", "variable": "{v}", "action": "{a}", "time": {t}{"" if x is None else f", #value#: {x}"}}}'
         for t, m, v, a, x in events
     )
-    file.write_text(f'{{"description": "test", "events": [{listed}], "end": 100.0}}'.replace("#", '"'))
-    ours = [{"time": t, a: [f"{m}.{v}"] if a == "reset" else {f"{m}.{v}": x}} for t, m, v, a, x in events]
+    file.write_text(
+        f'{{"description": "test", "events": [{listed}], "end": 100.0}}'.replace("#", '"')
+    )
+    ours = [
+        {"time": t, a: [f"{m}.{v}"] if a == "reset" else {f"{m}.{v}": x}}
+        for t, m, v, a, x in events
+    ]
     table = simulate(system, make_scenario(1.2, 0.05, events=ours))
     assert_equal(table, libcosim_rows(folder, system, 0.05, 24, file), but={"slow.y"})
     quiet = simulate(system, make_scenario(1.2, 0.05))

@@ -32,7 +32,11 @@ def compiler(needs):
 
 def by_python(table):
     """Components that Python stepped, by the table's remarks."""
-    remarks = [text for text in json.loads(table.attrs["remarks"]) if text.startswith("stepped by Python, ")]
+    remarks = [
+        text
+        for text in json.loads(table.attrs["remarks"])
+        if text.startswith("stepped by Python, ")
+    ]
     return {text.split(", ", 1)[1].partition(":")[0]: text for text in remarks}
 
 
@@ -69,8 +73,13 @@ def test_the_table_is_that_of_python_but_for_rounding(root, name):
 
 def test_a_stored_run_goes_on_bit_for_bit(root):
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
-    events = [Event(time=0.0, override={"reference.x_set": 20.0}), Event(time=12.0, override={"port.failed": True})]
-    scenario = scenario.model_copy(update={"stop_time": 20.0, "output_interval": None, "events": events, "expect": []})
+    events = [
+        Event(time=0.0, override={"reference.x_set": 20.0}),
+        Event(time=12.0, override={"port.failed": True}),
+    ]
+    scenario = scenario.model_copy(
+        update={"stop_time": 20.0, "output_interval": None, "events": events, "expect": []}
+    )
     system, stored = system_of(scenario), []
     whole = simulate(system, scenario, NATIVE)
     first = simulate(system, scenario, RunOptions(engine="native", until=8.35, store=stored.append))
@@ -80,11 +89,18 @@ def test_a_stored_run_goes_on_bit_for_bit(root):
         parts = np.concatenate([first[name].values[:n], rest[name].values])
         assert parts.tobytes() == whole[name].values.tobytes(), name
     in_python = simulate(system, scenario, RunOptions(resume=stored[0]))
-    assert not far_off(rest, in_python)  # a stored state is that of the FMUs: either engine goes on from it
+    assert not far_off(
+        rest, in_python
+    )  # a stored state is that of the FMUs: either engine goes on from it
 
 
 def test_values_of_all_types_are_exchanged_as_in_python(make_system, make_scenario):
-    parts = {"clock": "clock", "meter": "meter", "slow": ("meter", {}, 0.3), "lag": ("lag", {"y_start": 2.0})}
+    parts = {
+        "clock": "clock",
+        "meter": "meter",
+        "slow": ("meter", {}, 0.3),
+        "lag": ("lag", {"y_start": 2.0}),
+    }
     lines = [
         "clock.count -> meter.number",
         "clock.odd -> meter.flag",
@@ -117,7 +133,9 @@ def test_an_error_is_said_as_in_python_and_keeps_its_rows(make_system, make_scen
         with pytest.raises(RunError) as error:
             simulate(system, make_scenario(1.0, 0.1), options)
         text = str(error.value.problems[0])
-        said.append((text.splitlines()[0], "50%s of it is wrong" in text, error.value.table.sizes["time"]))
+        said.append(
+            (text.splitlines()[0], "50%s of it is wrong" in text, error.value.table.sizes["time"])
+        )
     assert said[0] == said[1] and said[0][1:] == (True, 6)
 
 
@@ -128,7 +146,9 @@ def test_ctrl_c_keeps_the_rows(make_system, make_scenario):
     assert interrupted.value.table["clock.count"].values.tolist() == list(range(7))
 
 
-def test_another_order_and_a_missing_compiler_are_said_and_run_in_python(make_system, make_scenario, monkeypatch):
+def test_another_order_and_a_missing_compiler_are_said_and_run_in_python(
+    make_system, make_scenario, monkeypatch
+):
     system, scenario = make_system({"lag": ("lag", {"u": 3.0})}), make_scenario()
     python = simulate(system, scenario)
     table = simulate(system, scenario, RunOptions(engine="native", order="gauss-seidel"))

@@ -36,7 +36,9 @@ def chain(make_system):
 
 def block_values(fmu, stop_time, step_size, engine="fmpy", **values):
     """Table of the FMU alone, its signals named as in the system."""
-    scenario = Scenario(stop_time=stop_time, step_size=step_size, set={f"block.{n}": v for n, v in values.items()})
+    scenario = Scenario(
+        stop_time=stop_time, step_size=step_size, set={f"block.{n}": v for n, v in values.items()}
+    )
     table = simulate(block_of(fmu), scenario, RunOptions(engine=engine))
     return table.rename({name: name.removeprefix("block.") for name in table.data_vars})
 
@@ -47,7 +49,9 @@ def test_a_chain_follows_its_closed_form_in_one_block(chain, tmp_path):
     k = np.arange(17)
     lag = 4.0 * -np.expm1(-k * 0.125 / 0.5)
     assert np.allclose(table["lag.y"], lag, rtol=1e-14)
-    assert np.allclose(table["y"], 3.0 + 0.125 * np.concatenate([[0.0], np.cumsum(lag[:-1])]), rtol=1e-14)
+    assert np.allclose(
+        table["y"], 3.0 + 0.125 * np.concatenate([[0.0], np.cumsum(lag[:-1])]), rtol=1e-14
+    )
 
 
 def test_one_large_step_outside_is_many_inside(chain, tmp_path):
@@ -56,14 +60,23 @@ def test_one_large_step_outside_is_many_inside(chain, tmp_path):
     assert np.array_equal(fine["y"][::4], coarse["y"])
 
 
-def test_the_block_shows_connectors_parameters_and_signals_as_the_system_has_them(make_system, tmp_path):
-    connectors = {"speed": ("input", "Real", 'unit="rad/s"'), "out": ("output", "Real", 'unit="rpm"')}
+def test_the_block_shows_connectors_parameters_and_signals_as_the_system_has_them(
+    make_system, tmp_path
+):
+    connectors = {
+        "speed": ("input", "Real", 'unit="rad/s"'),
+        "out": ("output", "Real", 'unit="rpm"'),
+    }
     connectors |= {"gear": ("parameter", "Real", "")}
     lines = ["speed -> shaft.speed", "shaft.rpm -> out", "gear -> gain.factor"]
     system = make_system({"shaft": "shaft", "gain": ("gain", {"offset": 2.5})}, lines, connectors)
     export_fmu(system, tmp_path / "shaft.fmu", 0.1, check=False)
     fmu = read_fmu(tmp_path / "shaft.fmu")
-    facts = {n: (v.causality, v.unit, v.start, v.description) for n, v in fmu.variables.items() if n != "time"}
+    facts = {
+        n: (v.causality, v.unit, v.start, v.description)
+        for n, v in fmu.variables.items()
+        if n != "time"
+    }
     assert facts == {
         "speed": ("input", "rad/s", 0.0, "speed"),
         "gear": ("parameter", "1", 1.0, "factor"),
@@ -75,13 +88,22 @@ def test_the_block_shows_connectors_parameters_and_signals_as_the_system_has_the
         "gain.y": ("output", "1", None, "factor times input plus offset"),
         "gain.offset": ("parameter", "1", 2.5, "offset"),
     }
-    assert fmu.units["deg"].factor == pytest.approx(np.pi / 180) and fmu.experiment["stepSize"] == 0.1
+    assert (
+        fmu.units["deg"].factor == pytest.approx(np.pi / 180) and fmu.experiment["stepSize"] == 0.1
+    )
     own = export_fmu(system, tmp_path / "own.fmu", 0.1, connectors_only=True, check=False)
-    assert own == [] and set(read_fmu(tmp_path / "own.fmu").variables) == {"time", "speed", "gear", "out"}
+    assert own == [] and set(read_fmu(tmp_path / "own.fmu").variables) == {
+        "time",
+        "speed",
+        "gear",
+        "out",
+    }
 
 
 def test_values_of_all_types_go_in_and_out(make_system, tmp_path):
-    system = make_system({"clock": "clock", "meter": ("meter", {"text": "abc", "real": 0.25})}, TYPED)
+    system = make_system(
+        {"clock": "clock", "meter": ("meter", {"text": "abc", "real": 0.25})}, TYPED
+    )
     export_fmu(system, tmp_path / "typed.fmu", 0.1, check=False)
     table = block_values(tmp_path / "typed.fmu", 1.0, 0.1)
     theirs = simulate(system, Scenario(stop_time=1.0, step_size=0.1))
@@ -91,7 +113,9 @@ def test_values_of_all_types_go_in_and_out(make_system, tmp_path):
 
 
 def test_a_chain_of_direct_feedthrough_starts_as_in_the_system(make_system, tmp_path):
-    parts = {name: ("gain", {"factor": 2.0}) for name in ("d", "c", "b", "a")} | {"source": ("lag", {"y_start": 1.0})}
+    parts = {name: ("gain", {"factor": 2.0}) for name in ("d", "c", "b", "a")} | {
+        "source": ("lag", {"y_start": 1.0})
+    }
     lines = ["source.y -> a.u", "a.y -> b.u", "b.y -> c.u", "c.y -> d.u"]
     system = make_system(parts, lines)
     export_fmu(system, tmp_path / "gains.fmu", 0.1, check=False)
@@ -105,7 +129,9 @@ def test_a_loop_whose_start_needs_passes_gets_them(make_system, tmp_path):
     system = make_system(parts, lines)
     export_fmu(system, tmp_path / "loop.fmu", 0.1)
     with zipfile.ZipFile(tmp_path / "loop.fmu") as archive:
-        assert len(json.loads(archive.read("resources/container.json"))["connections"]) == 2 * len(lines)
+        assert len(json.loads(archive.read("resources/container.json"))["connections"]) == 2 * len(
+            lines
+        )
     table, theirs = (
         block_values(tmp_path / "loop.fmu", 3.0, 0.1),
         simulate(system, Scenario(stop_time=3, step_size=0.1)),
@@ -117,7 +143,11 @@ def test_a_loop_whose_start_needs_passes_gets_them(make_system, tmp_path):
     ("parts", "lines", "said"),
     [
         ({"a": "lag", "b": "lag"}, [f"a.y -> b.u {CONVERSION}"], "multiplied by 2 and 0 added"),
-        ({"a": "shaft", "b": "shaft"}, ["a.rpm -> b.speed"], "multiplied by 0.10472 and 0 added .unit conversion"),
+        (
+            {"a": "shaft", "b": "shaft"},
+            ["a.rpm -> b.speed"],
+            "multiplied by 0.10472 and 0 added .unit conversion",
+        ),
         ({"a": "lag", "b": ("lag", {}, 0.2)}, ["a.y -> b.u"], "has a step of 0.2 s of its own"),
         ({"a": "clock", "b": "meter"}, ["a.count -> b.real"], "different types, Int32 and Float64"),
     ],
@@ -131,7 +161,10 @@ def test_what_the_container_cannot_express_is_refused(make_system, tmp_path, par
 
 @pytest.mark.parametrize(
     ("change", "said"),
-    [({"initial": True}, "goes into a parameter"), ({"mapping": {1: 2}}, "values are replaced by others")],
+    [
+        ({"initial": True}, "goes into a parameter"),
+        ({"mapping": {1: 2}}, "values are replaced by others"),
+    ],
     ids=["handover", "mapping"],
 )
 def test_connections_with_more_than_a_copy_are_refused(chain, tmp_path, change, said):
@@ -141,9 +174,13 @@ def test_connections_with_more_than_a_copy_are_refused(chain, tmp_path, change, 
 
 
 def test_a_block_that_computes_something_else_is_not_written(make_system, tmp_path, monkeypatch):
-    monkeypatch.setattr("shipcosim.cosim.export.container.sources_first", lambda system: list(system.components))
+    monkeypatch.setattr(
+        "shipcosim.cosim.export.container.sources_first", lambda system: list(system.components)
+    )
     monkeypatch.setattr("shipcosim.cosim.export.fmu.SWEEPS", (1,))
-    parts = {name: ("gain", {"factor": 2.0}) for name in ("c", "b", "a")} | {"source": ("lag", {"y_start": 1.0})}
+    parts = {name: ("gain", {"factor": 2.0}) for name in ("c", "b", "a")} | {
+        "source": ("lag", {"y_start": 1.0})
+    }
     system = make_system(parts, ["source.y -> a.u", "a.y -> b.u", "b.y -> c.u"])
     with pytest.raises(ShipcosimError, match=r"c.y is 8 at t = 0 s, in the FMU 0"):
         export_fmu(system, tmp_path / "no.fmu", 0.1)
@@ -154,7 +191,9 @@ def test_a_block_that_kills_its_process_is_an_error(chain, tmp_path, monkeypatch
     from shipcosim.cosim.export import container
 
     right = container._component
-    monkeypatch.setattr(container, "_component", lambda *a: right(*a) | {"modelIdentifier": "not_there"})
+    monkeypatch.setattr(
+        container, "_component", lambda *a: right(*a) | {"modelIdentifier": "not_there"}
+    )
     with pytest.raises(ShipcosimError, match="block: "):
         export_fmu(chain, tmp_path / "no.fmu", 0.125)
     assert not (tmp_path / "no.fmu").exists()
@@ -172,7 +211,10 @@ def test_the_block_is_a_valid_fmu_with_fmpys_libraries(chain, tmp_path):
     export_fmu(chain, tmp_path / "chain.fmu", 0.125, check=False)
     assert validate_fmu(str(tmp_path / "chain.fmu")) == []
     with zipfile.ZipFile(tmp_path / "chain.fmu") as archive:
-        names, configuration = archive.namelist(), json.loads(archive.read("resources/container.json"))
+        names, configuration = (
+            archive.namelist(),
+            json.loads(archive.read("resources/container.json")),
+        )
     assert {name.split("/")[1] for name in names if name.startswith("binaries/")} == set(PLATFORMS)
     assert [part["name"] for part in configuration["components"]] == ["integrator", "lag"]
 
@@ -182,7 +224,9 @@ def test_other_engines_run_the_block_to_the_same_values(chain, tmp_path, engine,
     if engine in engines_missing():
         needs(engine)
     export_fmu(chain, tmp_path / "chain.fmu", 0.125, check=False)
-    ours, theirs = (block_values(tmp_path / "chain.fmu", 50.0, 0.125, name, u=4.0) for name in ("fmpy", engine))
+    ours, theirs = (
+        block_values(tmp_path / "chain.fmu", 50.0, 0.125, name, u=4.0) for name in ("fmpy", engine)
+    )
     assert np.allclose(ours["y"], theirs["y"], rtol=1e-12)
 
 
@@ -192,7 +236,9 @@ def test_fmpy_itself_runs_the_block(chain, tmp_path):
     export_fmu(chain, tmp_path / "chain.fmu", 0.125, check=False)
     ours = block_values(tmp_path / "chain.fmu", 20.0, 0.125, u=4.0)
     inputs = {"start_values": {"u": 4.0}, "output": ["y"]}
-    theirs = simulate_fmu(tmp_path / "chain.fmu", stop_time=20.0, step_size=0.125, output_interval=0.125, **inputs)
+    theirs = simulate_fmu(
+        tmp_path / "chain.fmu", stop_time=20.0, step_size=0.125, output_interval=0.125, **inputs
+    )
     assert np.array_equal(ours["y"], theirs["y"])
 
 
@@ -207,16 +253,23 @@ def test_the_dp_ship_is_one_block(root, tmp_path):
     shown = [name for name in block.data_vars if name in ours and block[name].dtype.kind == "f"]
     assert {"vessel.x", "vessel.psi", "port.thrust", "predictor.x_10"} <= set(shown)
     for name in shown:  # times are rounded once more inside: 1e-13 of the range after 20 s
-        assert np.allclose(block[name], ours[name], rtol=0.0, atol=1e-10 * max(abs(ours[name]).max(), 1e-6)), name
+        assert np.allclose(
+            block[name], ours[name], rtol=0.0, atol=1e-10 * max(abs(ours[name]).max(), 1e-6)
+        ), name
     mass = read_fmu(tmp_path / "ship.fmu").variables["vessel.mass"]
-    assert (mass.causality, mass.unit, mass.start) == ("parameter", "kg", system.components["vessel"].start["mass"])
+    assert (mass.causality, mass.unit, mass.start) == (
+        "parameter",
+        "kg",
+        system.components["vessel"].start["mass"],
+    )
 
 
 def test_what_a_component_says_when_it_fails_comes_out_of_the_block(make_system, tmp_path):
     system = make_system({"one": ("failing", {"when": 0.5}), "two": "lag"}, ["one.y -> two.u"])
     export_fmu(system, tmp_path / "failing.fmu", 0.1, check=False)
     with pytest.raises(
-        RunError, match="block: failed in the step from t = 0.5 s.*\n(.*\n)*.*ValueError: 50%s of it is"
+        RunError,
+        match="block: failed in the step from t = 0.5 s.*\n(.*\n)*.*ValueError: 50%s of it is",
     ):
         block_values(tmp_path / "failing.fmu", 1.0, 0.1)
 
@@ -238,7 +291,11 @@ def decay(tmp_path, needs):
     """Function: FMU of a decay by Euler's method, in a version and form of FMI."""
     if c_fmus.compiler() is None:
         needs("a C compiler")
-    variables = [("x", 0, "output", "Real", None), ("der(x)", 1, "local", "Real", None), ("u", 2, "input", "Real", 0.0)]
+    variables = [
+        ("x", 0, "output", "Real", None),
+        ("der(x)", 1, "local", "Real", None),
+        ("u", 2, "input", "Real", 0.0),
+    ]
 
     def make(version, form="CoSimulation"):
         text = c_fmus.describe("decay", version, variables, (form,), 1)
@@ -255,7 +312,10 @@ def test_components_of_fmi_3_and_fmi_2_are_one_block(make_system, decay, tmp_pat
     export_fmu(system, tmp_path / "mixed.fmu", 0.1, check=False)
     theirs = simulate(system, Scenario(stop_time=2.0, step_size=0.1))
     table = block_values(tmp_path / "mixed.fmu", 2.0, 0.1)
-    assert np.allclose(table["decay.x"], theirs["decay.x"], rtol=1e-13) and table["decay.x"][1] == 0.9 + 0.1 * 2.0
+    assert (
+        np.allclose(table["decay.x"], theirs["decay.x"], rtol=1e-13)
+        and table["decay.x"][1] == 0.9 + 0.1 * 2.0
+    )
 
 
 @pytest.mark.parametrize(
@@ -272,7 +332,11 @@ def test_other_forms_are_refused(decay, tmp_path, version, form, said):
 
 
 def test_the_block_runs_in_a_program_that_is_not_python(chain, root, tmp_path, needs):
-    if not (sys.platform == "linux" and c_fmus.compiler() and sysconfig.get_config_var("Py_ENABLE_SHARED")):
+    if not (
+        sys.platform == "linux"
+        and c_fmus.compiler()
+        and sysconfig.get_config_var("Py_ENABLE_SHARED")
+    ):
         needs("Linux, a C compiler and a Python with a shared library")
     export_fmu(chain, tmp_path / "chain.fmu", 0.125, check=False)
     with zipfile.ZipFile(tmp_path / "chain.fmu") as archive:
@@ -280,30 +344,44 @@ def test_the_block_runs_in_a_program_that_is_not_python(chain, root, tmp_path, n
     fmu = read_fmu(tmp_path / "chain.fmu")
     program, library = tmp_path / "host", tmp_path / "chain/binaries/linux64/container_fmu.so"
     source = root / "tests" / "system" / "fmi" / "host.c"
-    subprocess.run([c_fmus.compiler(), "-std=gnu11", "-w", "-o", program, source, "-ldl", "-lpthread"], check=True)
+    subprocess.run(
+        [c_fmus.compiler(), "-std=gnu11", "-w", "-o", program, source, "-ldl", "-lpthread"],
+        check=True,
+    )
     lines = [["load", "b", library, fmu.token, (tmp_path / "chain/resources").as_uri()]]
     lines += [["set", "b", "Real", fmu.variables["u"].value_reference, 4.0], ["begin", "b"]]
     lines += [["step", "b", k * 0.125, 0.125] for k in range(8)]
     lines += [["get", "b", "Real", fmu.variables["y"].value_reference], ["quit"]]
     text = "".join("\t".join(map(str, line)) + "\n" for line in lines)
     path = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin"}
-    said = subprocess.run([program], input=text, env=path, capture_output=True, text=True, timeout=600).stdout
+    said = subprocess.run(
+        [program], input=text, env=path, capture_output=True, text=True, timeout=600
+    ).stdout
     answers = [line for line in said.splitlines() if not line.startswith("log ")]
-    assert float(answers[-1]) == float(block_values(tmp_path / "chain.fmu", 1.0, 0.125, u=4.0)["y"][-1])
+    assert float(answers[-1]) == float(
+        block_values(tmp_path / "chain.fmu", 1.0, 0.125, u=4.0)["y"][-1]
+    )
 
 
 def test_two_blocks_of_one_fmu_are_a_block_again(chain, tmp_path):
     export_fmu(chain, tmp_path / "chain.fmu", 0.125, check=False)
     fmu = read_fmu(tmp_path / "chain.fmu")
-    parts = {"a": Component("a", fmu, {"u": 4.0}), "b": Component("b", fmu, {"lag.time_constant": 2.0})}
+    parts = {
+        "a": Component("a", fmu, {"u": 4.0}),
+        "b": Component("b", fmu, {"lag.time_constant": 2.0}),
+    }
     both = System("both", "both.ssd", parts, (Connection(("a", "y"), ("b", "u")),))
     export_fmu(both, tmp_path / "both.fmu", 0.125, check=False)
     table, block = (
         simulate(both, Scenario(stop_time=2.0, step_size=0.125)),
         block_values(tmp_path / "both.fmu", 2.0, 0.125),
     )
-    assert np.array_equal(table["a.y"], block_values(tmp_path / "chain.fmu", 2.0, 0.125, u=4.0)["y"])
-    assert np.array_equal(table["b.y"], block["b.y"]) and not np.array_equal(table["b.y"], table["a.y"])
+    assert np.array_equal(
+        table["a.y"], block_values(tmp_path / "chain.fmu", 2.0, 0.125, u=4.0)["y"]
+    )
+    assert np.array_equal(table["b.y"], block["b.y"]) and not np.array_equal(
+        table["b.y"], table["a.y"]
+    )
 
 
 def test_names_with_blanks_dots_and_brackets_are_kept(make_system, fmus, tmp_path):
@@ -312,5 +390,7 @@ def test_names_with_blanks_dots_and_brackets_are_kept(make_system, fmus, tmp_pat
     parts = {name: Component(name, fmu, {"y_start": 1.0}) for name in ("the ship.no. 1", "b[2]")}
     lines = (Connection(("the ship.no. 1", "y"), ("b[2]", "u")),)
     export_fmu(System("odd", "odd.ssd", parts, lines), tmp_path / "odd.fmu", 0.1, check=False)
-    assert {"the ship.no. 1.y", "b[2].y", "the ship.no. 1.u"} <= set(read_fmu(tmp_path / "odd.fmu").variables)
+    assert {"the ship.no. 1.y", "b[2].y", "the ship.no. 1.u"} <= set(
+        read_fmu(tmp_path / "odd.fmu").variables
+    )
     assert block_values(tmp_path / "odd.fmu", 0.1, 0.1)["b[2].y"][1] == 1.0

@@ -18,7 +18,10 @@ PARTS = {
     "filter": ("lag", {"time_constant": 0.7, "y_start": -1e-17}),
     "law": ("gain", {"factor": -0.9, "offset": 1 / 3}),
     "clock": "clock",
-    "meter": ("meter", {"number": 3, "text": "two words, &lt;&amp;&gt; &quot;quoted&quot;&#10;&#9;tabbed"}),
+    "meter": (
+        "meter",
+        {"number": 3, "text": "two words, &lt;&amp;&gt; &quot;quoted&quot;&#10;&#9;tabbed"},
+    ),
     "slow": ("lag", {"time_constant": 1.3}, 0.15),
     "free": "gain",
     "lot": ("shaft", {"angle": 12.5}),
@@ -45,11 +48,16 @@ EVENTS = [
 ]
 
 
-def test_all_kinds_of_events_transformations_and_values_run_as_here(make_system, make_scenario, tmp_path):
+def test_all_kinds_of_events_transformations_and_values_run_as_here(
+    make_system, make_scenario, tmp_path
+):
     system = make_system(PARTS, CONNECTIONS, CONNECTORS)
     scenario = make_scenario(1.2, 0.05, events=EVENTS, set={"set": 0.4, "lot.speed": 3.0})
     remarks = write_osp(system, scenario, tmp_path / "out")
-    assert "inputs of the system: set" in remarks[0].found and "outputs of the system: shown" in remarks[1].found
+    assert (
+        "inputs of the system: set" in remarks[0].found
+        and "outputs of the system: shown" in remarks[1].found
+    )
     table = simulate(system, scenario)
     rows = rows_of(tmp_path / "out", system, 24, tmp_path / "out" / "scenario.json")
     slow = rows.pop("slow.y")
@@ -66,7 +74,10 @@ def test_what_is_exported_is_read_back_as_the_same_system(make_system, make_scen
     assert {name: part.start for name, part in again.components.items()} == {
         name: part.start for name, part in system.components.items()
     }
-    plain = [{(c.source, c.target, c.factor, c.offset) for c in one.connections} for one in (system, again)]
+    plain = [
+        {(c.source, c.target, c.factor, c.offset) for c in one.connections}
+        for one in (system, again)
+    ]
     assert plain[0] == plain[1]
     assert (again.experiment.stop_time, again.experiment.step_size) == (1.2, 0.05)
     assert not (tmp_path / "out" / "scenario.json").exists()
@@ -76,7 +87,11 @@ def test_what_is_exported_is_read_back_as_the_same_system(make_system, make_scen
     ("parts", "connections", "message"),
     [
         ({"a": "clock", "b": "meter"}, ["a.count -> b.real"], "it goes from Integer to Real"),
-        ({"a": "clock", "b": "meter"}, ["a.text -> b.text", "a.odd -> b.number"], "a.odd is Boolean"),
+        (
+            {"a": "clock", "b": "meter"},
+            ["a.text -> b.text", "a.odd -> b.number"],
+            "a.odd is Boolean",
+        ),
     ],
 )
 def test_what_osp_cannot_say_is_refused(make_system, make_scenario, parts, connections, message):

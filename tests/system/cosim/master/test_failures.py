@@ -21,7 +21,9 @@ def failing(make_system):
 
 
 def traces():
-    temporary = [name for name in os.listdir(tempfile.gettempdir()) if name.startswith("shipcosim-")]
+    temporary = [
+        name for name in os.listdir(tempfile.gettempdir()) if name.startswith("shipcosim-")
+    ]
     return temporary, [entry for entry in sys.path if "shipcosim-" in entry]
 
 
@@ -31,14 +33,23 @@ def test_exception_in_a_step_arrives_with_component_time_and_traceback(failing, 
     said = str(error.value)
     assert said.startswith("engine: failed in the step from t = 0.5 s.")
     assert (
-        "ValueError: 50%s of it is wrong" in said and "Traceback" in said and "failing.py" in said and "\\n" not in said
+        "ValueError: 50%s of it is wrong" in said
+        and "Traceback" in said
+        and "failing.py" in said
+        and "\\n" not in said
     )
     table = error.value.table
-    assert table.time.values[-1] == 0.5 and table["clock.count"].values[-1] == 5 and table.attrs["complete"] == 0
+    assert (
+        table.time.values[-1] == 0.5
+        and table["clock.count"].values[-1] == 5
+        and table.attrs["complete"] == 0
+    )
 
 
 def test_exception_at_the_start_arrives_too(failing, make_scenario):
-    with pytest.raises(RunError, match="(?s)engine: failed at the start.*50%s of the start is wrong") as error:
+    with pytest.raises(
+        RunError, match="(?s)engine: failed at the start.*50%s of the start is wrong"
+    ) as error:
         simulate(failing("start"), make_scenario(1.0, 0.1))
     assert error.value.table.sizes["time"] == 0
 
@@ -92,9 +103,14 @@ def test_binary_for_another_platform_is_said(make_system, make_scenario, tmp_pat
     system = make_system({"clock": "clock"})
     path = system.components["clock"].fmu.path
     (tmp_path / "resources").mkdir(exist_ok=True)
-    with zipfile.ZipFile(path) as old, zipfile.ZipFile(tmp_path / "resources" / "clock.fmu", "w") as new:
+    with (
+        zipfile.ZipFile(path) as old,
+        zipfile.ZipFile(tmp_path / "resources" / "clock.fmu", "w") as new,
+    ):
         for entry in old.infolist():
-            name = entry.filename.replace("binaries/linux64", "binaries/vax").replace("binaries/win64", "binaries/vms")
+            name = entry.filename.replace("binaries/linux64", "binaries/vax").replace(
+                "binaries/win64", "binaries/vms"
+            )
             new.writestr(name, old.read(entry))
     foreign = make_system({"clock": "clock"})
     with pytest.raises(RunError, match=r"clock.fmu cannot be started.*binaries for: vax, vms"):
@@ -124,9 +140,13 @@ def test_scenarios_that_do_not_fit_are_refused(failing, make_scenario, more, sai
 
 
 def test_step_of_a_component_has_to_fit(make_system, make_scenario):
-    with pytest.raises(ShipcosimError, match=r"slow: its step of 0.25 s is no multiple of the step size 0.1 s"):
+    with pytest.raises(
+        ShipcosimError, match=r"slow: its step of 0.25 s is no multiple of the step size 0.1 s"
+    ):
         simulate(make_system({"slow": ("clock", {}, 0.25)}), make_scenario(1.0, 0.1))
-    with pytest.raises(ShipcosimError, match=r"slow: its step of 0.3 s does not divide the run's 1 s"):
+    with pytest.raises(
+        ShipcosimError, match=r"slow: its step of 0.3 s does not divide the run's 1 s"
+    ):
         simulate(make_system({"slow": ("clock", {}, 0.3)}), make_scenario(1.0, 0.1))
 
 

@@ -31,7 +31,10 @@ def test_a_loop_that_does_not_settle_is_named(make_system, make_scenario, factor
 
 def test_types_other_than_real_reach_the_start_too(make_system, make_scenario):
     parts = {"a": ("meter", {"number": 4}), "b": "meter", "c": "meter"}
-    table = simulate(make_system(parts, ["a.number_seen -> b.number", "b.number_seen -> c.number"]), make_scenario())
+    table = simulate(
+        make_system(parts, ["a.number_seen -> b.number", "b.number_seen -> c.number"]),
+        make_scenario(),
+    )
     assert np.all(table["c.number_seen"] == 4)
 
 

@@ -19,11 +19,25 @@ from shipcosim.scenario import Event, read_scenario
 from shipcosim.ssp import Component, read_fmu, read_system, with_values
 
 ROOT = Path(__file__).parents[4]
-FMUS = sorted(path.parent.name for path in (ROOT / "fmus").glob("*/*.py") if path.stem == path.parent.name)
+FMUS = sorted(
+    path.parent.name for path in (ROOT / "fmus").glob("*/*.py") if path.stem == path.parent.name
+)
 THREE_UNITS = {
     **{"thrust_min_1": -5.0, "thrust_max_1": 5.0, "thrust_rate_1": 0.5, "yaw_lever": 10.0},
-    **{"x_2": 5.0, "azimuth_2": 1.5708, "thrust_min_2": -5.0, "thrust_max_2": 5.0, "thrust_rate_2": 0.5},
-    **{"x_3": -5.0, "azimuth_3": 1.5708, "thrust_min_3": -5.0, "thrust_max_3": 5.0, "thrust_rate_3": 0.5},
+    **{
+        "x_2": 5.0,
+        "azimuth_2": 1.5708,
+        "thrust_min_2": -5.0,
+        "thrust_max_2": 5.0,
+        "thrust_rate_2": 0.5,
+    },
+    **{
+        "x_3": -5.0,
+        "azimuth_3": 1.5708,
+        "thrust_min_3": -5.0,
+        "thrust_max_3": 5.0,
+        "thrust_rate_3": 0.5,
+    },
 }
 """One unit ahead and two to the side."""
 NOT_NEUTRAL = {
@@ -31,9 +45,19 @@ NOT_NEUTRAL = {
     "earth_force": {"x": -17.0, "north": 1000.0, "onset_time": 16.0, "ramp_time": 5.0},
     "fixed_angle_allocator": THREE_UNITS,
     "instruments": {"lag": 1.33},
-    "mapped_thruster": {"x": 1.0, "y": 0.5, "thrust_table": "-1 -5; 1 5", "time_constant": 2.0, "speed_loss": 0.1},
+    "mapped_thruster": {
+        "x": 1.0,
+        "y": 0.5,
+        "thrust_table": "-1 -5; 1 5",
+        "time_constant": 2.0,
+        "speed_loss": 0.1,
+    },
     "optimal_units_allocator": THREE_UNITS,
-    "rough_vessel": {"strip_factors": "-1 1.3; 1 0.8", "memory_sway": 0.2, "wind_factors": "0 1 1 1; 360 1.2 1 1"},
+    "rough_vessel": {
+        "strip_factors": "-1 1.3; 1 0.8",
+        "memory_sway": 0.2,
+        "wind_factors": "0 1 1 1; 360 1.2 1 1",
+    },
     "thruster_interaction": {"x_1": 5.0, "diameter_1": 1.0, "diameter_2": 1.0},
     "thruster_monitor": {"position_limit": 0.15, "alarm_delay": 0.2},
     "varying_current": {"north_end": 0.5},
@@ -51,13 +75,17 @@ class Driven:
     """An FMU alone, whose real inputs move; real outputs, or those that it has, after each step."""
 
     def __init__(self, fmu, instances, name="alone"):
-        self.inputs = [v for v in fmu.variables.values() if v.causality == "input" and v.kind == "Real"]
+        self.inputs = [
+            v for v in fmu.variables.values() if v.causality == "input" and v.kind == "Real"
+        ]
         outputs = [v for v in fmu.variables.values() if v.causality == "output"]
         kind = "Real" if any(v.kind == "Real" for v in outputs) else "Boolean"
         self.outputs = [v for v in outputs if v.kind == kind]
         self.slave = instances.instance_of(Component(name, fmu))
         changed = given_to(fmu.path.stem) | NOT_NEUTRAL.get(fmu.path.stem, {})
-        known = fmu.variables.keys() & changed.keys()  # a component that is like others takes from them what it has
+        known = (
+            fmu.variables.keys() & changed.keys()
+        )  # a component that is like others takes from them what it has
         set_start_values(self.slave, [(fmu.variables[key], changed[key]) for key in known])
         self.starts = np.array([variable.start for variable in self.inputs])
         self.given, self.seen = self.starts.copy(), np.zeros(len(self.outputs), BUFFER_TYPES[kind])
@@ -70,7 +98,9 @@ class Driven:
         """Outputs after the steps first..last - 1, (n, outputs)."""
         rows = []
         for k in range(first, last):
-            self.given[:] = self.starts + 0.1 * (1.0 + np.sin(0.3 * k + np.arange(len(self.starts))))
+            self.given[:] = self.starts + 0.1 * (
+                1.0 + np.sin(0.3 * k + np.arange(len(self.starts)))
+            )
             assert (self.set(), self.step(k * H, H), self.get()) == (0, 0, 0)
             rows.append(self.seen.copy())
         return np.array(rows)
@@ -155,7 +185,9 @@ def test_a_run_may_be_stored_more_than_once_and_between_two_rows(system, make_sc
 
 def test_what_a_file_holds_is_what_was_stored(system, make_scenario, tmp_path):
     stored, file = [], tmp_path / "half.state"
-    simulate(system, make_scenario(2.4, 0.1, events=EVENTS), RunOptions(until=0.8, store=stored.append))
+    simulate(
+        system, make_scenario(2.4, 0.1, events=EVENTS), RunOptions(until=0.8, store=stored.append)
+    )
     write_snapshot(stored[0], file)
     assert read_snapshot(file) == stored[0]
     assert (stored[0].time, stored[0].step) == (0.8, 8)
@@ -166,11 +198,19 @@ def test_what_a_file_holds_is_what_was_stored(system, make_scenario, tmp_path):
 
 def test_variations_fork_from_one_state(system, make_scenario):
     """The future may have other events; overrides in force stay; what lies before is not done again."""
-    stored, base = [], make_scenario(1.2, 0.1, events=[{"time": 0.2, "override": {"push": 2.0, "gain.u": 4.0}}])
+    stored, base = (
+        [],
+        make_scenario(1.2, 0.1, events=[{"time": 0.2, "override": {"push": 2.0, "gain.u": 4.0}}]),
+    )
     simulate(system, base, RunOptions(until=0.5, store=stored.append))
     for shift in (0.0, 1.0):
-        events = [{"time": 0.1, "override": {"push": 99.0}}, {"time": 0.8, "bias": {"plant.y": shift}}]
-        forked = simulate(system, make_scenario(1.8, 0.1, events=events), RunOptions(resume=stored[0]))
+        events = [
+            {"time": 0.1, "override": {"push": 99.0}},
+            {"time": 0.8, "bias": {"plant.y": shift}},
+        ]
+        forked = simulate(
+            system, make_scenario(1.8, 0.1, events=events), RunOptions(resume=stored[0])
+        )
         assert np.all(forked["push"] == 2.0) and np.all(forked["gain.u"] == 4.0)
         jump = np.diff(forked["plant.y"].sel(time=[0.8, 0.9], method="nearest"))[0]
         assert abs(jump - shift) < 0.2
@@ -180,17 +220,24 @@ def test_a_table_feeds_the_rest_of_a_stored_run(system, make_scenario):
     from shipcosim.series import make_table
 
     times = np.linspace(0.0, 2.4, 49)
-    table, scenario, stored = make_table(times, [("push", np.sin(times), "", "")]), make_scenario(2.4, 0.1), []
+    table, scenario, stored = (
+        make_table(times, [("push", np.sin(times), "", "")]),
+        make_scenario(2.4, 0.1),
+        [],
+    )
     whole = simulate(system, scenario, RunOptions(inputs=table))
     first = simulate(system, scenario, RunOptions(inputs=table, until=0.9, store=stored.append))
-    assert_same(whole, first, simulate(system, scenario, RunOptions(inputs=table, resume=stored[0])))
+    assert_same(
+        whole, first, simulate(system, scenario, RunOptions(inputs=table, resume=stored[0]))
+    )
 
 
 def test_components_that_cannot_be_stored_are_named_before_the_run(pythonfmu_system, make_scenario):
     with pytest.raises(ShipcosimError) as error:
         simulate(pythonfmu_system("1.0"), make_scenario(), RunOptions(store=[].append))
     found = [
-        (problem.where, "does not declare canGetAndSetFMUstate" in problem.found) for problem in error.value.problems
+        (problem.where, "does not declare canGetAndSetFMUstate" in problem.found)
+        for problem in error.value.problems
     ]
     assert found == [("stock", True), ("other", True)]
 
@@ -202,18 +249,28 @@ def stored(system, make_scenario) -> Snapshot:
     return taken[0]
 
 
-def test_a_state_goes_on_only_in_the_system_that_it_is_of(system, stored, make_system, make_scenario):
+def test_a_state_goes_on_only_in_the_system_that_it_is_of(
+    system, stored, make_system, make_scenario
+):
     def refused(other, scenario, said):
         with pytest.raises(ShipcosimError, match=said):
             simulate(other, scenario, RunOptions(resume=stored))
 
     scenario = make_scenario(2.4, 0.1)
-    refused(with_values(system, {"law.factor": 3.0}), scenario, "law.factor was -0.9 and would now be 3.0.*An event")
+    refused(
+        with_values(system, {"law.factor": 3.0}),
+        scenario,
+        "law.factor was -0.9 and would now be 3.0.*An event",
+    )
     refused(system, make_scenario(2.0, 0.05), "steps of 0.1 s, this one has 0.05 s")
     refused(system, make_scenario(0.5, 0.1), "would go from 0.5 s to 0.5 s")
-    swapped = make_system(PARTS | {"gain": ("lag", {"u": 1.0})}, LINKS, {"push": ("input", "Real", "")})
+    swapped = make_system(
+        PARTS | {"gain": ("lag", {"u": 1.0})}, LINKS, {"push": ("input", "Real", "")}
+    )
     refused(swapped, scenario, "gain: lag.fmu is another FMU than the one that was stored")
-    refused(make_system({"plant": "integrator"}), scenario, "holds plant, law, .*; the system has plant")
+    refused(
+        make_system({"plant": "integrator"}), scenario, "holds plant, law, .*; the system has plant"
+    )
 
 
 def test_what_is_no_snapshot_is_refused(stored, tmp_path):
@@ -225,7 +282,9 @@ def test_what_is_no_snapshot_is_refused(stored, tmp_path):
         with pytest.raises(ShipcosimError, match=r"half.state: is no snapshot of a run: .*--store"):
             read_snapshot(file)
     with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("snapshot.json", '{"schema": "shipcosim-snapshot/1", "components": [], "step": "x"}')
+        archive.writestr(
+            "snapshot.json", '{"schema": "shipcosim-snapshot/1", "components": [], "step": "x"}'
+        )
     with pytest.raises(ShipcosimError, match="lacks or adds changes"):
         read_snapshot(file)
     with pytest.raises(ShipcosimError, match="absent.state: cannot be read: No such file"):
@@ -257,9 +316,20 @@ def test_the_dp_ship_goes_on_in_another_process_bit_for_bit(root, built, tmp_pat
     from shipcosim.series import read_table
 
     scenario = read_scenario(root / "scenarios" / "four_corner.toml")
-    events = [Event(time=0.0, override={"reference.x_set": 20.0}), Event(time=20.05, bias={"vessel.tau_Y_4": 1e4})]
-    events += [Event(time=30.0, override={"port.failed": True, "reference.y_set": -20.0}, reset=["vessel.tau_Y_4"])]
-    scenario = scenario.model_copy(update={"stop_time": 45.0, "output_interval": None, "events": events, "expect": []})
+    events = [
+        Event(time=0.0, override={"reference.x_set": 20.0}),
+        Event(time=20.05, bias={"vessel.tau_Y_4": 1e4}),
+    ]
+    events += [
+        Event(
+            time=30.0,
+            override={"port.failed": True, "reference.y_set": -20.0},
+            reset=["vessel.tau_Y_4"],
+        )
+    ]
+    scenario = scenario.model_copy(
+        update={"stop_time": 45.0, "output_interval": None, "events": events, "expect": []}
+    )
     ssv = scenario.parameter_paths[0]
     system = read_system(scenario.system_path, [ssv], fmus=[built])
     whole = simulate(system, scenario)

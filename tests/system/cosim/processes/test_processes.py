@@ -20,7 +20,9 @@ from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
 from shipcosim.fmi.export.builder import build_fmu
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="the ways to end a process are those of POSIX")
+pytestmark = pytest.mark.skipif(
+    os.name != "posix", reason="the ways to end a process are those of POSIX"
+)
 
 DANGEROUS = '''
 import ctypes
@@ -146,7 +148,8 @@ def falling(fmus, needs):
 def system(make_system, dangerous):
     """Function: a system with one component that does something, fed by one that does not."""
     return lambda how, when=0.5: make_system(
-        {"clock": "clock", "engine": ("dangerous", {"how": how, "when": when})}, ["clock.time -> engine.u"]
+        {"clock": "clock", "engine": ("dangerous", {"how": how, "when": when})},
+        ["clock.time -> engine.u"],
     )
 
 
@@ -198,7 +201,9 @@ def test_a_stored_run_goes_on_from_processes_to_processes_and_back(make_system, 
     assert stored[0] == stored[1]
     for isolate in (False, True):
         rest = simulate(system, scenario, RunOptions(resume=stored[0], isolate=isolate))
-        assert all(rest[name].values.tobytes() == whole[name].values[8:].tobytes() for name in whole)
+        assert all(
+            rest[name].values.tobytes() == whole[name].values[8:].tobytes() for name in whole
+        )
 
 
 def test_the_dp_ship_gives_the_same_digits(root):
@@ -207,7 +212,9 @@ def test_the_dp_ship_gives_the_same_digits(root):
     from shipcosim.ssp import read_system
 
     scenario = read_scenario(root / "scenarios" / "gust.toml")
-    scenario = scenario.model_copy(update={"stop_time": 5.0, "events": [], "expect": [], "output_interval": None})
+    scenario = scenario.model_copy(
+        update={"stop_time": 5.0, "events": [], "expect": [], "output_interval": None}
+    )
     system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(root)])
     same(simulate(system, scenario), simulate(system, scenario, RunOptions(isolate=True)))
 
@@ -228,7 +235,9 @@ def test_the_dp_ship_gives_the_same_digits(root):
         ("spin", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
     ],
 )
-def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(system, make_scenario, how, said):
+def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(
+    system, make_scenario, how, said
+):
     with pytest.raises(RunError) as error:
         simulate(system(how), make_scenario(1.0, 0.1), RunOptions(isolate=True, timeout=LIMIT))
     assert str(error.value).startswith("engine: failed in the step from t = 0.5 s. ")
@@ -239,8 +248,12 @@ def test_a_component_that_goes_down_is_named_and_the_rows_before_are_there(syste
 
 
 def test_a_slow_component_failed_in_the_step_in_which_it_did(make_system, make_scenario, dangerous):
-    system = make_system({"engine": ("dangerous", {"how": "read", "when": 0.6}, 0.3), "after": "gain"})
-    with pytest.raises(RunError, match="engine: failed in the step from t = 0.6 s. Its process was ended"):
+    system = make_system(
+        {"engine": ("dangerous", {"how": "read", "when": 0.6}, 0.3), "after": "gain"}
+    )
+    with pytest.raises(
+        RunError, match="engine: failed in the step from t = 0.6 s. Its process was ended"
+    ):
         simulate(system, make_scenario(1.2, 0.1), RunOptions(isolate=True))
 
 
@@ -269,12 +282,18 @@ def test_the_same_holds_for_an_fmu_made_from_c(falling, make_system, make_scenar
     assert error.value.table["stone.x"].values[-1] == pytest.approx(0.4)
 
 
-def test_one_that_goes_down_when_its_text_is_read_is_named_by_the_connection(make_system, dangerous, make_scenario):
-    system = make_system({"engine": ("dangerous", {"how": "text"}), "meter": "meter"}, ["engine.text -> meter.text"])
+def test_one_that_goes_down_when_its_text_is_read_is_named_by_the_connection(
+    make_system, dangerous, make_scenario
+):
+    system = make_system(
+        {"engine": ("dangerous", {"how": "text"}), "meter": "meter"}, ["engine.text -> meter.text"]
+    )
     with pytest.raises(RunError) as error:
         simulate(system, make_scenario(1.0, 0.1), RunOptions(isolate=True))
     said = str(error.value)
-    assert said.startswith("engine.text -> meter.text: its value cannot be passed on. Its process ended itself")
+    assert said.startswith(
+        "engine.text -> meter.text: its value cannot be passed on. Its process ended itself"
+    )
     assert error.value.table["engine.count"].values.tolist() == [0, 1, 2]
 
 
@@ -283,7 +302,9 @@ def test_a_start_value_that_is_refused_is_said_where_it_was_set(make_system):
     component = system.components["slow"]
     with IsolatedInstances(system, LIMIT) as instances:
         slave = instances.instance_of(component)
-        with pytest.raises(SlaveError, match="slow at t = 0 s: parameter 'time_constant' was set to nan"):
+        with pytest.raises(
+            SlaveError, match="slow at t = 0 s: parameter 'time_constant' was set to nan"
+        ):
             set_start_values(slave, [(component.fmu.variables["time_constant"], float("nan"))])
 
 
@@ -317,7 +338,10 @@ def test_what_components_print_is_shown_with_their_names(system, make_scenario, 
 def test_a_flood_of_prints_is_cut(system, make_scenario, capfd):
     simulate(system("flood"), make_scenario(1.0, 0.1), RunOptions(isolate=True))
     lines = capfd.readouterr().err.splitlines()
-    assert lines[999:] == ["[engine] line 999", "[engine] prints more than 1000 lines; no more are shown"]
+    assert lines[999:] == [
+        "[engine] line 999",
+        "[engine] prints more than 1000 lines; no more are shown",
+    ]
 
 
 # around it
@@ -336,7 +360,10 @@ def processes(parent):
 def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
-    part, descriptors = system(how), len(os.listdir("/proc/self/fd")) if sys.platform == "linux" else 0
+    part, descriptors = (
+        system(how),
+        len(os.listdir("/proc/self/fd")) if sys.platform == "linux" else 0,
+    )
     try:
         simulate(part, make_scenario(1.0, 0.1), RunOptions(isolate=True))
     except RunError:
@@ -366,7 +393,10 @@ def hanging(system, tmp_path):
     """A run in another process whose component hangs."""
     files = tmp_path / "SystemStructure.ssd", system("hang").components["engine"].fmu.path.parent
     run = subprocess.Popen(
-        [sys.executable, "-c", RUN, *files], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-c", RUN, *files],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     assert run.stderr.readline() == "[engine] hanging\n"
     yield run
@@ -398,12 +428,16 @@ def test_a_component_that_hangs_does_not_outlive_a_run_that_is_killed(hanging):
 
 def is_running(pid):
     """Whether a process is there and not only waits for its parent to ask how it ended."""
-    found = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True).stdout.strip()
+    found = subprocess.run(
+        ["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True
+    ).stdout.strip()
     return bool(found) and not found.startswith("Z")
 
 
 def test_other_engines_refuse_it(system, make_scenario):
-    with pytest.raises(ShipcosimError, match="does not know isolate. The engines 'fmpy' and 'native' do."):
+    with pytest.raises(
+        ShipcosimError, match="does not know isolate. The engines 'fmpy' and 'native' do."
+    ):
         simulate(system(""), make_scenario(1.0, 0.1), RunOptions(engine="libcosim", isolate=True))
 
 

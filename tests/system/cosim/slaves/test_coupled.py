@@ -49,8 +49,13 @@ def oscillator(tmp_path, needs):
 def errors(table):
     """Largest error of both states, of their largest value."""
     t = table["time"].values
-    exact = np.exp(-K * t) * (np.cos(W * t) - np.sin(W * t)), np.exp(-K * t) * (np.sin(W * t) + np.cos(W * t))
-    return max(np.abs(table[f"{name}.x"].values - one).max() for name, one in zip("ab", exact, strict=True))
+    exact = (
+        np.exp(-K * t) * (np.cos(W * t) - np.sin(W * t)),
+        np.exp(-K * t) * (np.sin(W * t) + np.cos(W * t)),
+    )
+    return max(
+        np.abs(table[f"{name}.x"].values - one).max() for name, one in zip("ab", exact, strict=True)
+    )
 
 
 @pytest.mark.parametrize("versions", ["22", "11", "33", "12", "23"])
@@ -62,7 +67,10 @@ def test_wired_models_follow_the_analytic_solution_at_any_step(oscillator, versi
 
 def test_exchange_at_steps_needs_thousands_of_them_for_one_per_cent_and_less(oscillator):
     system = oscillator()
-    stepped = {h: errors(sc.simulate(system, stop_time=1.0, step_size=h, order="gauss-seidel")) for h in (0.01, 0.001)}
+    stepped = {
+        h: errors(sc.simulate(system, stop_time=1.0, step_size=h, order="gauss-seidel"))
+        for h in (0.01, 0.001)
+    }
     together = errors(sc.simulate(system, stop_time=1.0, step_size=0.01))
     assert stepped[0.01] > 1e-2 and stepped[0.001] > 1e-3  # of first order
     assert together < 1e-5 * stepped[0.01] / 1e-2
@@ -77,18 +85,28 @@ def test_an_input_that_an_event_holds_is_held(oscillator):
 
 
 def test_one_by_one_in_co_simulation_or_where_the_order_is_another(oscillator):
-    assert "integrated_together" not in sc.simulate(oscillator("cs"), stop_time=1.0, step_size=0.125).attrs
+    assert (
+        "integrated_together"
+        not in sc.simulate(oscillator("cs"), stop_time=1.0, step_size=0.125).attrs
+    )
     for options in ({"order": "gauss-seidel"}, {"isolate": True}):
         table = sc.simulate(oscillator(), stop_time=1.0, step_size=0.125, **options)
         assert "integrated_together" not in table.attrs
         (remark,) = json.loads(table.attrs["remarks"])
-        assert remark.startswith("a and b run in model exchange, wired together, but not as one system: ")
+        assert remark.startswith(
+            "a and b run in model exchange, wired together, but not as one system: "
+        )
         assert "held for 0.125 s" in remark
 
 
 def test_what_is_integrated_together_earns_no_remark(oscillator):
-    assert json.loads(sc.simulate(oscillator(), stop_time=1.0, step_size=0.125).attrs["remarks"]) == []
-    assert json.loads(sc.simulate(oscillator("cs"), stop_time=1.0, step_size=0.125).attrs["remarks"]) == []
+    assert (
+        json.loads(sc.simulate(oscillator(), stop_time=1.0, step_size=0.125).attrs["remarks"]) == []
+    )
+    assert (
+        json.loads(sc.simulate(oscillator("cs"), stop_time=1.0, step_size=0.125).attrs["remarks"])
+        == []
+    )
 
 
 def test_components_with_event_indicators_are_integrated_by_themselves_and_that_is_said(oscillator):

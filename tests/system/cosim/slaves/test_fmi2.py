@@ -140,6 +140,7 @@ def test_an_fmu_that_cannot_be_reset_is_made_anew(tanks):
 
 def test_fmi3_error_arrives_with_its_message(tanks, make_scenario):
     with pytest.raises(
-        RunError, match="a: failed in the step from t = 0.875 s.*returned 'error'. the tank is 100% full"
+        RunError,
+        match="a: failed in the step from t = 0.875 s.*returned 'error'. the tank is 100% full",
     ):
         simulate(tanks, make_scenario(2.0, 0.125, set={"a.u": 100.0}))

@@ -56,7 +56,10 @@ def in_libcosim(path):
     from libcosimpy.CosimExecution import CosimExecution
     from libcosimpy.CosimObserver import CosimObserver
 
-    execution, observer = CosimExecution.from_ssp_file(str(path), round(STEP * 1e9)), CosimObserver.create_last_value()
+    execution, observer = (
+        CosimExecution.from_ssp_file(str(path), round(STEP * 1e9)),
+        CosimObserver.create_last_value(),
+    )
     execution.add_observer(observer)
     for _ in range(STEPS):
         if not execution.step():

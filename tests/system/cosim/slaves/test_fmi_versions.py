@@ -10,7 +10,18 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, Connection, System, check_system, read_fmu, read_system
 
-NUMBERS = ["Float32", "Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64", "Boolean"]
+NUMBERS = [
+    "Float32",
+    "Int8",
+    "UInt8",
+    "Int16",
+    "UInt16",
+    "Int32",
+    "UInt32",
+    "Int64",
+    "UInt64",
+    "Boolean",
+]
 ZEROS = {"Boolean": "false"}
 MADE = "//" + "".join(f" fmi3Set{t}( fmi3Get{t}(" for t in NUMBERS if t != "UInt64")  # by a macro
 ECHO = """
@@ -108,7 +119,9 @@ def _echo_description():
         '<Start value="left"/><Start value="right"/></String>'
         '<String name="shown" valueReference="301" causality="output"><Dimension start="2"/></String>'
         "</ModelVariables><ModelStructure>"
-        + "".join(f'<Output valueReference="{r}"/>' for r in [*(10 * k + 11 for k in range(12)), 202, 301])
+        + "".join(
+            f'<Output valueReference="{r}"/>' for r in [*(10 * k + 11 for k in range(12)), 202, 301]
+        )
         + "</ModelStructure></fmiModelDescription>"
     )
 
@@ -118,7 +131,14 @@ def echo(tmp_path_factory, needs):
     """FMU of FMI 3.0 that gives back what it gets, and multiplies a vector with a matrix."""
     if c_fmus.compiler() is None:
         needs("a C compiler")
-    return c_fmus.build(tmp_path_factory.mktemp("echo"), "echo", "3.0", "", _echo_description(), code=f"{ECHO}{MADE}\n")
+    return c_fmus.build(
+        tmp_path_factory.mktemp("echo"),
+        "echo",
+        "3.0",
+        "",
+        _echo_description(),
+        code=f"{ECHO}{MADE}\n",
+    )
 
 
 @pytest.fixture
@@ -193,12 +213,19 @@ def scalars(echo):
 
 @pytest.mark.parametrize(
     ("kind", "to", "value"),
-    [("Int16", "Int8", 300), ("Int64", "Int32", 2**40), ("Int32", "UInt64", -1), ("UInt32", "Int32", 2**31)],
+    [
+        ("Int16", "Int8", 300),
+        ("Int64", "Int32", 2**40),
+        ("Int32", "UInt64", -1),
+        ("UInt32", "Int32", 2**31),
+    ],
 )
 def test_a_value_that_a_type_cannot_hold_ends_the_run_instead_of_wrapping(echo, kind, to, value):
     parts = {n: Component(n, scalars(echo), {f"u{kind}": value} if n == "a" else {}) for n in "ab"}
     lines = (Connection(("a", f"y{kind}"), ("b", f"u{to}")),)
-    with pytest.raises(RunError, match=f"b: failed at the end of the initialisation.*u{to} cannot be {value}"):
+    with pytest.raises(
+        RunError, match=f"b: failed at the end of the initialisation.*u{to} cannot be {value}"
+    ):
         simulate(System("two", "two.ssd", parts, lines), SCENARIO)
 
 
@@ -217,7 +244,10 @@ def test_an_unsigned_value_beyond_63_bits_is_refused(echo):
 def test_integers_of_fmi_2_and_64_bits_travel_together(make_system, echo):
     counting = make_system({"clock": "clock", "meter": "meter"}).components
     parts = {**counting, "echo": Component("echo", scalars(echo))}
-    lines = (Connection(("clock", "count"), ("echo", "uInt64")), Connection(("echo", "yInt64"), ("meter", "number")))
+    lines = (
+        Connection(("clock", "count"), ("echo", "uInt64")),
+        Connection(("echo", "yInt64"), ("meter", "number")),
+    )
     table = simulate(System("mixed", "mixed.ssd", parts, lines), SCENARIO)
     assert table["clock.count"].values.tolist() == [0, 1, 2, 3, 4]
     assert table["echo.yInt64"].values.tolist() == [0, 0, 1, 2, 3]
@@ -253,9 +283,15 @@ def test_a_matrix_multiplies_a_vector_connected_as_a_whole(read_ssd):
         "</ssd:Connectors>",
         connections=link("v", "a.u") + link("a.y", "w"),
     )
-    assert list(system.inputs) == ["v[1]", "v[2]", "v[3]"] and list(system.outputs) == ["w[1]", "w[2]"]
+    assert list(system.inputs) == ["v[1]", "v[2]", "v[3]"] and list(system.outputs) == [
+        "w[1]",
+        "w[2]",
+    ]
     events = [{"time": 0.2, "override": {"v[2]": 10.0}}]
-    table = simulate(system, Scenario(stop_time=0.4, step_size=0.1, set={"v[1]": 1.0, "v[3]": -1.0}, events=events))
+    table = simulate(
+        system,
+        Scenario(stop_time=0.4, step_size=0.1, set={"v[1]": 1.0, "v[3]": -1.0}, events=events),
+    )
     before, after = (np.array([[1, 2, 3], [4, 5, 6]]) @ [1.0, v, -1.0] for v in (2.0, 10.0))
     assert np.array_equal(np.array([table["w[1]"], table["w[2]"]]).T, [before] * 3 + [after] * 2)
     assert table["b.y[1]"].values.tolist() == [1.0] * 5
@@ -269,7 +305,9 @@ def test_single_elements_are_connected_by_their_indices_and_the_others_keep_thei
     table = simulate(system, SCENARIO)
     y = np.array([[1, 2, 3], [4, 5, 6]]) @ [1.0, 2.0, 3.0]
     assert [table["a.y[1]"][-1], table["a.y[2]"][-1]] == y.tolist()
-    assert [table[f"b.y[{k}]"][-1] for k in (1, 2)] == (np.array([[1, 2, 3], [4, 5, 6]]) @ [y[0], 2.0, y[1]]).tolist()
+    assert [table[f"b.y[{k}]"][-1] for k in (1, 2)] == (
+        np.array([[1, 2, 3], [4, 5, 6]]) @ [y[0], 2.0, y[1]]
+    ).tolist()
 
 
 def test_a_scalar_is_connected_to_an_element(read_ssd):
@@ -287,22 +325,55 @@ def test_an_array_of_texts_is_connected_as_a_whole(read_ssd):
 @pytest.mark.parametrize(
     ("elements", "connections", "said"),
     [
-        (part("a") + part("b"), link("a.y", "b.u"), "an array of 2 cannot be connected to an array of 3"),
-        (part("a") + part("b"), link("a.yFloat32", "b.u"), "a scalar cannot be connected to an array of 3"),
-        (part("a") + part("b"), link("a.y", "b.u", 'startIndices="0" endIndices="1"'), r"y\[0\] does not exist"),
-        (part("a") + part("b"), link("a.y", "b.u", 'startIndices="1 1" endIndices="1"'), r"y\[1,1\] does not exist"),
         (
-            part("a", '<ssd:Connector name="u" kind="input"><ssc:Float64/><ssc:Dimension size="4"/></ssd:Connector>'),
+            part("a") + part("b"),
+            link("a.y", "b.u"),
+            "an array of 2 cannot be connected to an array of 3",
+        ),
+        (
+            part("a") + part("b"),
+            link("a.yFloat32", "b.u"),
+            "a scalar cannot be connected to an array of 3",
+        ),
+        (
+            part("a") + part("b"),
+            link("a.y", "b.u", 'startIndices="0" endIndices="1"'),
+            r"y\[0\] does not exist",
+        ),
+        (
+            part("a") + part("b"),
+            link("a.y", "b.u", 'startIndices="1 1" endIndices="1"'),
+            r"y\[1,1\] does not exist",
+        ),
+        (
+            part(
+                "a",
+                '<ssd:Connector name="u" kind="input"><ssc:Float64/><ssc:Dimension size="4"/></ssd:Connector>',
+            ),
             "",
             "The connector is an array of 4. Write an array of 3",
         ),
-        (part("a", values=MATRIX.replace(" 6", "")), "", "A is an array of 2x3, but has 5 values. Give 6"),
-        (part("a", values=MATRIX.replace('"3"', '"3000000000"')), "", "but has 6 values. Give 6000000000"),
-        (part("a", values=MATRIX.replace('"3"', '"-3"').replace('"2"', '"-2"')), "", "but has 6 values"),
+        (
+            part("a", values=MATRIX.replace(" 6", "")),
+            "",
+            "A is an array of 2x3, but has 5 values. Give 6",
+        ),
+        (
+            part("a", values=MATRIX.replace('"3"', '"3000000000"')),
+            "",
+            "but has 6 values. Give 6000000000",
+        ),
+        (
+            part("a", values=MATRIX.replace('"3"', '"-3"').replace('"2"', '"-2"')),
+            "",
+            "but has 6 values",
+        ),
     ],
     ids=["shapes", "scalar", "index", "indices", "connector", "values", "huge", "negative"],
 )
-def test_arrays_that_do_not_fit_are_refused_when_they_are_read(read_ssd, elements, connections, said):
+def test_arrays_that_do_not_fit_are_refused_when_they_are_read(
+    read_ssd, elements, connections, said
+):
     with pytest.raises(ShipcosimError, match=said):
         read_ssd(elements, connections)
 
@@ -319,12 +390,25 @@ def test_a_structural_parameter_sets_the_size_of_arrays(read_ssd):
     matrix = MATRIX.replace("1 2 3 4 5 6", "1 2 3 4").replace('size="3"', 'size="2"')
     vector = '<ssd:Connector name="v" kind="input"><ssc:Float64/><ssc:Dimension size="2"/></ssd:Connector>'
     lines = link("v", "a.u") + link("b.y", "b.u", 'startIndices="1" endIndices="3"')
-    system = read_ssd(part("a", values=size + matrix) + part("b"), lines, f"<ssd:Connectors>{vector}</ssd:Connectors>")
-    assert [n for n in system.components["a"].fmu.variables if n[0] == "A"] == ["A[1,1]", "A[1,2]", "A[2,1]", "A[2,2]"]
+    system = read_ssd(
+        part("a", values=size + matrix) + part("b"),
+        lines,
+        f"<ssd:Connectors>{vector}</ssd:Connectors>",
+    )
+    assert [n for n in system.components["a"].fmu.variables if n[0] == "A"] == [
+        "A[1,1]",
+        "A[1,2]",
+        "A[2,1]",
+        "A[2,2]",
+    ]
     assert "A[2,3]" in system.components["b"].fmu.variables
-    table = simulate(system, Scenario(stop_time=0.2, step_size=0.1, set={"v[1]": 1.0, "v[2]": 10.0}))
+    table = simulate(
+        system, Scenario(stop_time=0.2, step_size=0.1, set={"v[1]": 1.0, "v[2]": 10.0})
+    )
     assert [float(table[f"a.y[{k}]"][-1]) for k in (1, 2)] == [21.0, 43.0]
-    with pytest.raises(ShipcosimError, match="a: n is 3, but u has been laid out for 2. Set it in the SSD"):
+    with pytest.raises(
+        ShipcosimError, match="a: n is 3, but u has been laid out for 2. Set it in the SSD"
+    ):
         simulate(system, Scenario(stop_time=0.2, step_size=0.1, set={"a.n": 3}))
 
 
@@ -355,7 +439,11 @@ static void indicators(M* m, double* z) {}
 static void event(M* m) {}
 static int completed(M* m) { return 0; }
 """
-VARIABLES = [("x", 0, "output", "Real", None), ("u", 2, "input", "Real", 0.0), ("k", 3, "parameter", "Real", 2.0)]
+VARIABLES = [
+    ("x", 0, "output", "Real", None),
+    ("u", 2, "input", "Real", 0.0),
+    ("k", 3, "parameter", "Real", 2.0),
+]
 VARIABLES += [("flag", 1, "input", "Boolean", "false"), ("sum", 2, "output", "Integer", None)]
 VARIABLES += [("square", 5, "output", "Real", None)]
 
@@ -368,7 +456,9 @@ def first(tmp_path_factory, needs):
     text = c_fmus.describe("first", "1.0", VARIABLES, ("CoSimulation",))
     minus = '<ScalarVariable name="minus" valueReference="5" causality="output" alias="negatedAlias"><Real/>'
     text = text.replace("</ModelVariables>", f"{minus}</ScalarVariable></ModelVariables>")
-    return c_fmus.build(tmp_path_factory.mktemp("first"), "first", "1.0", DECAY, text, "CoSimulation")
+    return c_fmus.build(
+        tmp_path_factory.mktemp("first"), "first", "1.0", DECAY, text, "CoSimulation"
+    )
 
 
 def test_a_slave_of_fmi_1_steps_and_exchanges_values_of_all_its_types(first):
@@ -380,13 +470,17 @@ def test_a_slave_of_fmi_1_steps_and_exchanges_values_of_all_its_types(first):
     x += [x[-1] + 0.1 * (3.0 - x[-1])]
     assert np.allclose(table["m.x"], x, rtol=1e-14)
     assert table["m.sum"].values.tolist() == [1, 1, 1, 2, 2]
-    assert np.array_equal(table["m.minus"], -table["m.square"]) and np.allclose(table["m.square"], np.square(x))
+    assert np.array_equal(table["m.minus"], -table["m.square"]) and np.allclose(
+        table["m.square"], np.square(x)
+    )
 
 
 def test_an_error_of_a_slave_of_fmi_1_ends_the_run_with_its_name(first):
     system = System("one", "one.ssd", {"m": Component("m", read_fmu(first))})
     events = [{"time": 0.2, "override": {"m.u": 1e9}}]
-    with pytest.raises(RunError, match="m: failed in the step from t = 0.3 s.*fmi1DoStep returned 'error'"):
+    with pytest.raises(
+        RunError, match="m: failed in the step from t = 0.3 s.*fmi1DoStep returned 'error'"
+    ):
         simulate(system, Scenario(stop_time=0.5, step_size=0.1, events=events))
 
 
@@ -399,18 +493,26 @@ def test_a_run_of_a_slave_of_fmi_1_can_be_repeated_and_not_stored(first, tmp_pat
 
 
 @pytest.mark.parametrize("version, state", [("2.0", "FMUstate"), ("3.0", "FMUState")])
-def test_a_function_that_an_fmu_lacks_matters_only_where_it_is_called(version, state, tmp_path, needs):
+def test_a_function_that_an_fmu_lacks_matters_only_where_it_is_called(
+    version, state, tmp_path, needs
+):
     """It has no texts and cannot get its state, though it says so. FMPy 0.3.29 and later want all functions at once."""
     if c_fmus.compiler() is None:
         needs("a C compiler")
     own = f"fmi{version[0]}"
-    lacks = "//" + "".join(f" {own}{name}(" for name in ("GetString", "SetString", f"Get{state}")) + "\n"
+    lacks = (
+        "//"
+        + "".join(f" {own}{name}(" for name in ("GetString", "SetString", f"Get{state}"))
+        + "\n"
+    )
     can = {f"canGetAndSet{state}": "true", f"canSerialize{state}": "true"}
     real = [variable for variable in VARIABLES if variable[3] == "Real"]
     text = c_fmus.describe("bare", version, real, ("CoSimulation",), **can)
     path = c_fmus.build(tmp_path, "bare", version, DECAY, text, "CoSimulation", code=lacks)
     system = System("one", "one.ssd", {"m": Component("m", read_fmu(path))})
     if not hasattr(fmpy.fmi1._FMU, "_loadFunctions"):
-        assert np.allclose(simulate(system, SCENARIO)["m.x"][:2], [1.0, 1.0 - 2.0 * SCENARIO.step_size])
+        assert np.allclose(
+            simulate(system, SCENARIO)["m.x"][:2], [1.0, 1.0 - 2.0 * SCENARIO.step_size]
+        )
     with pytest.raises(RunError, match=f"{own}Get(String|{state})"):
         simulate(system, SCENARIO, RunOptions(store=tmp_path / "x.state"))

@@ -82,4 +82,7 @@ def test_components_of_one_fmu_have_an_object_each(make_system):
 def test_other_python_fmus_go_through_their_binary(pythonfmu_system):
     system = pythonfmu_system("1.0")
     with Instances() as instances:
-        assert all(instances.instance_of(component)._direct is None for component in system.components.values())
+        assert all(
+            instances.instance_of(component)._direct is None
+            for component in system.components.values()
+        )

@@ -120,7 +120,14 @@ VARIABLES = {
     + [("u", 2, "input", "Real", 0.0), ("on", 0, "output", "Integer", None)],
     "restless": [("y", 0, "output", "Real", None), ("how", 0, "input", "Integer", 0)],
 }
-SIZES = {"decay": (1, 0), "pol": (2, 0), "ball": (2, 1), "stair": (0, 0), "saw": (1, 0), "relay": (1, 1)}
+SIZES = {
+    "decay": (1, 0),
+    "pol": (2, 0),
+    "ball": (2, 1),
+    "stair": (0, 0),
+    "saw": (1, 0),
+    "relay": (1, 1),
+}
 
 
 @pytest.fixture(scope="session")
@@ -135,7 +142,9 @@ def model(tmp_path_factory, needs):
         if key not in made:
             if version == "3.0" and forms != ("CoSimulation",):
                 more = {"needsCompletedIntegratorStep": "true"} | more
-            text = c_fmus.describe(key, version, VARIABLES[name], forms, *SIZES.get(name, (0, 0)), **more)
+            text = c_fmus.describe(
+                key, version, VARIABLES[name], forms, *SIZES.get(name, (0, 0)), **more
+            )
             made[key] = c_fmus.build(folder, key, version, MODELS[name], text, forms[0])
         return made[key]
 
@@ -146,7 +155,16 @@ def model(tmp_path_factory, needs):
 def run_model(model, make_scenario):
     """Function: table of a run of one model, called ``m``."""
 
-    def run(name, version, stop_time, step_size, forms=("ModelExchange",), wanted="any", more=(), **scenario):
+    def run(
+        name,
+        version,
+        stop_time,
+        step_size,
+        forms=("ModelExchange",),
+        wanted="any",
+        more=(),
+        **scenario,
+    ):
         component = Component("m", read_fmu(model(name, version, forms)), implementation=wanted)
         system = System("one", "one.ssd", {"m": component}, **dict(more))
         return simulate(system, make_scenario(stop_time, step_size, **scenario))
@@ -175,7 +193,13 @@ def test_van_der_pol_is_that_of_scipy(run_model, version):
     table = run_model("pol", version, 20.0, 0.1)
     t = table["time"].values
     x = solve_ivp(
-        lambda t, s: [s[1], 5 * (1 - s[0] ** 2) * s[1] - s[0]], (0, 20), [2, 0], "LSODA", t, rtol=1e-10, atol=1e-12
+        lambda t, s: [s[1], 5 * (1 - s[0] ** 2) * s[1] - s[0]],
+        (0, 20),
+        [2, 0],
+        "LSODA",
+        t,
+        rtol=1e-10,
+        atol=1e-12,
     )
     assert np.allclose(table["m.x"], x.y[0], atol=2e-4)
 
@@ -200,7 +224,9 @@ def test_a_ball_bounces_when_it_has_to(run_model, version):
 def test_time_events_come_at_their_times(run_model, version):
     table = run_model("stair", version, 3.0, 0.05)
     t = table["time"].values
-    assert np.array_equal(table["m.n"], np.floor(t / 0.3 + 1e-9)) and np.allclose(table["m.y"], t, rtol=1e-14)
+    assert np.array_equal(table["m.n"], np.floor(t / 0.3 + 1e-9)) and np.allclose(
+        table["m.y"], t, rtol=1e-14
+    )
 
 
 @pytest.mark.parametrize("step_size", [0.05, 2.5])
@@ -224,22 +250,31 @@ def test_the_form_that_is_asked_for_runs(run_model, version):
     forms = ("ModelExchange", "CoSimulation")
     exact, euler = np.exp(-2.0), 0.8**10
     values = {
-        w: run_model("decay", version, 1.0, 0.1, forms, w)["m.x"][-1] for w in ("ModelExchange", "CoSimulation", "any")
+        w: run_model("decay", version, 1.0, 0.1, forms, w)["m.x"][-1]
+        for w in ("ModelExchange", "CoSimulation", "any")
     }
     assert values["ModelExchange"] == pytest.approx(exact, rel=1e-5)
-    assert values["CoSimulation"] == pytest.approx(euler) and values["any"] == values["CoSimulation"]
+    assert (
+        values["CoSimulation"] == pytest.approx(euler) and values["any"] == values["CoSimulation"]
+    )
 
 
 def test_a_form_that_is_not_there_is_refused(run_model):
-    with pytest.raises(ShipcosimError, match="m: decay_2_Mo.fmu offers no CoSimulation. It offers ModelExchange."):
+    with pytest.raises(
+        ShipcosimError, match="m: decay_2_Mo.fmu offers no CoSimulation. It offers ModelExchange."
+    ):
         run_model("decay", "2.0", 1.0, 0.1, wanted="CoSimulation")
 
 
 def test_models_and_slaves_of_all_versions_run_together(model, make_scenario):
-    fmus = [model("decay", version) for version in VERSIONS] + [model("decay", "1.0", ("CoSimulation",))]
+    fmus = [model("decay", version) for version in VERSIONS] + [
+        model("decay", "1.0", ("CoSimulation",))
+    ]
     parts = {f"m{k}": Component(f"m{k}", read_fmu(fmu), {"k": 1.0}) for k, fmu in enumerate(fmus)}
     lines = tuple(Connection((f"m{k}", "x"), (f"m{k + 1}", "u")) for k in range(3))
-    assert [interface_type_of(part) for part in parts.values()] == ["ModelExchange"] * 3 + ["CoSimulation"]
+    assert [interface_type_of(part) for part in parts.values()] == ["ModelExchange"] * 3 + [
+        "CoSimulation"
+    ]
     table = simulate(System("chain", "chain.ssd", parts, lines), make_scenario(2.0, 0.002))
     t = table["time"].values
 
@@ -262,13 +297,20 @@ def test_models_and_slaves_of_all_versions_run_together(model, make_scenario):
 @pytest.mark.parametrize("version", VERSIONS)
 def test_events_without_end_end_the_run_with_their_component(run_model, version, how, said):
     with pytest.raises(RunError, match=f"m: failed in the step from t = 0.5 s. {said}") as caught:
-        run_model("restless", version, 1.0, 0.25, events=[{"time": 0.5, "override": {"m.how": how}}])
+        run_model(
+            "restless", version, 1.0, 0.25, events=[{"time": 0.5, "override": {"m.how": how}}]
+        )
     assert caught.value.table.sizes["time"] == 3
 
 
-def test_a_state_that_cannot_be_stored_is_said_before_the_run(run_model, model, make_scenario, tmp_path):
+def test_a_state_that_cannot_be_stored_is_said_before_the_run(
+    run_model, model, make_scenario, tmp_path
+):
     system = System("one", "one.ssd", {"m": Component("m", read_fmu(model("decay", "2.0")))})
-    with pytest.raises(ShipcosimError, match="m: it runs as model exchange, and the solver's state cannot be stored"):
+    with pytest.raises(
+        ShipcosimError,
+        match="m: it runs as model exchange, and the solver's state cannot be stored",
+    ):
         simulate(system, make_scenario(), RunOptions(store=tmp_path / "x.state"))
 
 
@@ -298,7 +340,9 @@ def test_a_run_in_one_form_is_not_repeated_in_the_other(model):
 def test_a_parameter_of_fmi_1_cannot_be_connected(model, make_scenario):
     parts = {name: Component(name, read_fmu(model("decay", "1.0"))) for name in ("a", "b")}
     handover = Connection(("a", "k"), ("b", "k"), initial=True)
-    with pytest.raises(ShipcosimError, match="b.k: its value comes from a connection, but FMI 1.0 has no"):
+    with pytest.raises(
+        ShipcosimError, match="b.k: its value comes from a connection, but FMI 1.0 has no"
+    ):
         simulate(System("two", "two.ssd", parts, (handover,)), make_scenario())
 
 
@@ -306,12 +350,20 @@ def test_the_tolerance_of_the_default_experiment_is_that_of_the_solver(model, ru
     errors = []
     for tolerance in (1e-4, 1e-7, 1e-10):
         fmu = replace(read_fmu(model("decay", "2.0")), experiment={"tolerance": tolerance})
-        table = simulate(System("one", "one.ssd", {"m": Component("m", fmu)}), Scenario(stop_time=1.0, step_size=1.0))
+        table = simulate(
+            System("one", "one.ssd", {"m": Component("m", fmu)}),
+            Scenario(stop_time=1.0, step_size=1.0),
+        )
         errors.append(abs(float(table["m.x"][-1]) / np.exp(-2.0) - 1))
     assert errors[0] > 30 * errors[1] > 900 * errors[2] and errors[2] < 1e-8
 
 
 def test_an_absurd_number_of_states_is_refused_before_any_memory_is_taken(model):
     fmu = replace(read_fmu(model("decay", "2.0")), n_states=4_000_000_000)
-    with pytest.raises(RunError, match="m: .*4000000000 continuous states; at most 5000 are integrated"):
-        simulate(System("one", "one.ssd", {"m": Component("m", fmu)}), Scenario(stop_time=1.0, step_size=1.0))
+    with pytest.raises(
+        RunError, match="m: .*4000000000 continuous states; at most 5000 are integrated"
+    ):
+        simulate(
+            System("one", "one.ssd", {"m": Component("m", fmu)}),
+            Scenario(stop_time=1.0, step_size=1.0),
+        )

@@ -16,7 +16,9 @@ def cache(tmp_path, monkeypatch):
     return tmp_path / "cache"
 
 
-def test_an_fmu_of_ours_is_unpacked_and_imported_once(make_system, make_scenario, cache, monkeypatch):
+def test_an_fmu_of_ours_is_unpacked_and_imported_once(
+    make_system, make_scenario, cache, monkeypatch
+):
     system = make_system({"lag": ("lag", {"u": 1.0}), "other": ("lag", {"u": 2.0})})
     first = simulate(system, make_scenario())
     (folder,) = (cache / "unpacked").iterdir()
@@ -35,7 +37,9 @@ def test_others_fmus_do_not_stay_in_the_cache(pythonfmu_system, make_scenario, c
 
 def test_a_cache_that_cannot_be_written_is_done_without(make_system, make_scenario, cache):
     cache.write_text("a file where a folder should be")
-    assert simulate(make_system({"lag": ("lag", {"u": 1.0})}), make_scenario()).attrs["complete"] == 1
+    assert (
+        simulate(make_system({"lag": ("lag", {"u": 1.0})}), make_scenario()).attrs["complete"] == 1
+    )
 
 
 def test_what_nobody_has_used_for_a_month_leaves_the_cache(make_system, make_scenario, cache):

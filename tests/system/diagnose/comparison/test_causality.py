@@ -21,7 +21,9 @@ def closed_loop(seed, sense=1.0, n=3000, h=0.4):
         psi[k + 1] = psi[k] + h * r[k + 1]
     still = np.zeros(n)
     felt = SimpleNamespace(
-        motion=Motion(still, still, psi, still, still, r), usable=np.ones(n, bool), kernel=SimpleNamespace(step=h)
+        motion=Motion(still, still, psi, still, still, r),
+        usable=np.ones(n, bool),
+        kernel=SimpleNamespace(step=h),
     )
     load = np.stack([still, still, sense * moment])
     return felt, SimpleNamespace(thrusters={"one": load}, hull=0.0 * load)
@@ -39,6 +41,8 @@ def test_commands_that_do_nothing_tell_nothing():
     felt, _ = closed_loop(4)
     noise = np.random.default_rng(5).standard_normal((3, felt.usable.size))
     gains = causal_support(
-        felt, [SimpleNamespace(thrusters={"one": s * noise}, hull=0.0 * noise) for s in (1, -1)], 1.0
+        felt,
+        [SimpleNamespace(thrusters={"one": s * noise}, hull=0.0 * noise) for s in (1, -1)],
+        1.0,
     )
     assert np.abs(gains).max() < 5.0

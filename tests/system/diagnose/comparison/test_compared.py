@@ -28,7 +28,9 @@ def ship():
 
 @cache
 def sailed(seed, left=0.0, right=0.0):
-    return usv.log(8.0, seed, usv.structure("weak", **{"left.thrust_loss": left, "right.thrust_loss": right}))
+    return usv.log(
+        8.0, seed, usv.structure("weak", **{"left.thrust_loss": left, "right.thrust_loss": right})
+    )
 
 
 def held(log, labels=None):
@@ -81,8 +83,14 @@ def test_one_weak_thruster_is_no_common_ratio_but_named_by_itself():
 def test_thrust_astern_that_is_weaker_than_ahead_is_said_and_no_common_ratio():
     weak = usv.structure("weak", **{"left.reverse_loss": 0.6, "right.reverse_loss": 0.6})
     comparison = held(usv.log(8.0, 13, weak)).comparison
-    (said,) = [one for one in comparison.discrepancies if "astern" in one.what and one.axis == "surge"]
-    assert abs(said.estimate - 0.4) < 0.05 and said.what.endswith("ahead 0.98") and comparison.ratio is None
+    (said,) = [
+        one for one in comparison.discrepancies if "astern" in one.what and one.axis == "surge"
+    ]
+    assert (
+        abs(said.estimate - 0.4) < 0.05
+        and said.what.endswith("ahead 0.98")
+        and comparison.ratio is None
+    )
     healthy = held(sailed(13)).comparison
     assert not any(gain.differs_by_way for gain in healthy.gains) and not healthy.discrepancies
 
@@ -93,13 +101,17 @@ def test_unequal_thrust_ahead_and_astern_is_no_wrong_sign_of_their_sum():
     (surge,) = [one for one in comparison.gains if one.axis.name == "surge"]
     reversed_sum = replace(surge.fit, gains=-surge.fit.gains)
     assert replace(surge, fit=reversed_sum).is_balanced
-    assert not replace(surge, fit=reversed_sum, support_of_ways=surge.fit.support - 10.0).is_balanced
+    assert not replace(
+        surge, fit=reversed_sum, support_of_ways=surge.fit.support - 10.0
+    ).is_balanced
 
 
 @pytest.mark.parametrize("seed", [11, 13])
 def test_there_are_always_figures_of_the_error(seed):
     errors = held(sailed(seed)).comparison.errors
-    assert sorted(errors["horizon_s"]) == errors["horizon_s"] and len(errors["position_error_m"]) == 3
+    assert (
+        sorted(errors["horizon_s"]) == errors["horizon_s"] and len(errors["position_error_m"]) == 3
+    )
     assert all(np.isfinite(value) and value > 0.0 for values in errors.values() for value in values)
 
 
@@ -128,10 +140,15 @@ def test_without_what_drives_a_thruster_nothing_is_said_of_sides_signs_and_sizes
     }
     assert "yaw" in {one.axis for one in found.comparison.discrepancies}
     assert found.comparison.errors["position_error_m"][-1] > 0.0
-    assert held(sailed(13).assign(left_rpm=lambda log: 0.0 * log["right_rpm"])).comparison.obstacles == ()
+    assert (
+        held(sailed(13).assign(left_rpm=lambda log: 0.0 * log["right_rpm"])).comparison.obstacles
+        == ()
+    )
 
 
-def test_thrusters_that_answer_weather_which_nobody_knows_are_not_said_to_run_the_wrong_way(tmp_path):
+def test_thrusters_that_answer_weather_which_nobody_knows_are_not_said_to_run_the_wrong_way(
+    tmp_path,
+):
     check_unknown_weather(704, tmp_path)
 
 
@@ -149,7 +166,9 @@ def test_a_large_error_is_said_with_axis_size_and_sense_whatever_its_cause():
     """A steady moment that nobody logged: no thruster, no damping and no label explains it."""
     log = sailed(11)
     time = log["time"].values
-    drawn = np.asarray(log["yaw_rate"]) + 0.4 * time % 20.0  # deg/s: she is driven round, step by step
+    drawn = (
+        np.asarray(log["yaw_rate"]) + 0.4 * time % 20.0
+    )  # deg/s: she is driven round, step by step
     found = held(log.assign(yaw_rate=("time", drawn, log["yaw_rate"].attrs)))
     assert any(one.axis == "yaw" for one in found.comparison.discrepancies)
 

@@ -26,7 +26,9 @@ def told():
 
     def likelihood(units):
         commanded = commanded_by(*driven(units, record, smoothed(felt), ship))
-        return likelihood_of(blocks, commanded, {name: speed >= 0.0 for name, (speed, _) in units.items()})
+        return likelihood_of(
+            blocks, commanded, {name: speed >= 0.0 for name, (speed, _) in units.items()}
+        )
 
     return likelihood, record.units
 
@@ -40,5 +42,7 @@ def test_right_labels_are_likelier_than_wrong_ones(told, change):
 def test_commands_that_do_nothing_make_nothing_likelier(told):
     likelihood, units = told
     rng = np.random.default_rng(6)
-    noise = {name: (rng.permutation(speed), direction) for name, (speed, direction) in units.items()}
+    noise = {
+        name: (rng.permutation(speed), direction) for name, (speed, direction) in units.items()
+    }
     assert likelihood(noise) < 3.0

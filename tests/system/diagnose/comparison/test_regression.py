@@ -18,7 +18,10 @@ def drawn(seed, keep=0.95):
 
 
 def test_errors_count_for_autocorrelation():
-    found = [regressed(series, columns, np.zeros(2, bool), BLOCK) for columns, series in map(drawn, range(60))]
+    found = [
+        regressed(series, columns, np.zeros(2, bool), BLOCK)
+        for columns, series in map(drawn, range(60))
+    ]
     spread = np.std([one.coefficients[0] for one in found])
     assert 0.6 < np.mean([one.std[0] for one in found]) / spread < 1.4
     assert 20.0 < np.mean([one.apart for one in found]) < 60.0  # (1 + 0.95) / (1 - 0.95) = 39 rows

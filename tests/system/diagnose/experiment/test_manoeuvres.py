@@ -40,9 +40,15 @@ def problem(wind=0.0):
     model = replace(ship_model_of(twin.system()), span=(0.0, 300.0), wind_is_true=True)
     time = np.arange(300.0)
     units = {name: (np.zeros(300), np.full(300, 0.7)) for name in model.thrusters}
-    record = Record(time, np.zeros((300, 6)), units, (np.full(300, wind), np.full(300, 0.5)), np.ones(300, bool))
+    record = Record(
+        time, np.zeros((300, 6)), units, (np.full(300, wind), np.full(300, 0.5)), np.ones(300, bool)
+    )
     return IdentificationProblem(
-        record, model, tuple(hypotheses_of(read_catalogue(), model)), NOISE, Motion(*np.zeros((6, 300)))
+        record,
+        model,
+        tuple(hypotheses_of(read_catalogue(), model)),
+        NOISE,
+        Motion(*np.zeros((6, 300))),
     )
 
 
@@ -96,7 +102,9 @@ def test_reversal_separates_what_only_differs_in_reversing_and_a_circle_of_headi
 
 def alike_on_the_beam():
     """A current from the west, and waves that push a ship with her bow to the north as hard."""
-    drag = 0.5 * 1025.0 * 1.5 * 33.9 * 2.786 * 0.2**2  # cross flow of a slab, as the nominal model states it
+    drag = (
+        0.5 * 1025.0 * 1.5 * 33.9 * 2.786 * 0.2**2
+    )  # cross flow of a slab, as the nominal model states it
     return believed({"current": [0.0, 0.2]}), believed({"wave_drift": [0.0, drag]})
 
 
@@ -105,13 +113,21 @@ def test_current_and_wave_drift_are_separated_by_turning():
     keep, turn, circle = apart(current, drift, KEEP, pick("turn by 90"), pick("full circle"))
     assert keep < CLEAR < min(turn, circle)
     assert turn > 3.0 * keep
-    told = design_experiment(problem(), current, [drift], [KEEP, pick("turn by 90"), pick("full circle")])
-    assert (told.manoeuvre, told.minutes) == ("turn by 90 deg and hold", 4.0)  # the circle takes seven minutes
+    told = design_experiment(
+        problem(), current, [drift], [KEEP, pick("turn by 90"), pick("full circle")]
+    )
+    assert (told.manoeuvre, told.minutes) == (
+        "turn by 90 deg and hold",
+        4.0,
+    )  # the circle takes seven minutes
     assert told.separates == (("current", "wave_drift"),)
 
 
 def test_twin_thrusters_are_separated_by_pulses():
-    port, starboard = believed({"thrust_loss of port": [0.25]}), believed({"thrust_loss of starboard": [0.25]})
+    port, starboard = (
+        believed({"thrust_loss of port": [0.25]}),
+        believed({"thrust_loss of starboard": [0.25]}),
+    )
     idle = Manoeuvre("idle", ((180.0, 0.0, 0.0, 0.0),), free=((0.0, 200.0),))
     pulses, nothing = apart(port, starboard, pick("pulses"), idle)
     assert pulses > CLEAR
@@ -127,7 +143,10 @@ def test_loss_by_the_neighbours_slipstream_shows_in_the_sweep_only():
 
 def test_nothing_separates_a_cause_from_itself():
     one, same = (believed({"current": [0.1, 0.2]}) for _ in range(2))
-    assert np.abs(apart(one, same, pick("turn by 90"), pick("reversal"), pick("free drift"))).max() < 1e-6
+    assert (
+        np.abs(apart(one, same, pick("turn by 90"), pick("reversal"), pick("free drift"))).max()
+        < 1e-6
+    )
     assert design_experiment(problem(), one, [same], [pick("turn by 90")]) is None
 
 
@@ -141,7 +160,10 @@ def test_what_one_manoeuvre_cannot_separate_is_not_said_to_be():
 
 def test_noisy_logs_show_the_expected_difference_or_somewhat_more():
     """Noisy sailings of the truth, filtered by both beliefs. Not less: noise moves the thrusters more than the plan."""
-    truth, rival = believed({"thrust_loss of port": [0.1]}), believed({"thrust_loss of starboard": [0.1]})
+    truth, rival = (
+        believed({"thrust_loss of port": [0.1]}),
+        believed({"thrust_loss of starboard": [0.1]}),
+    )
     one, count, random = pick("pulses"), 12, np.random.default_rng(3)
     of = replace(problem(), noise=replace(NOISE, walk=NOISE.walk * 1e-3))
     expected = apart(truth, rival, one, of=of)[0]
@@ -154,7 +176,9 @@ def test_noisy_logs_show_the_expected_difference_or_somewhat_more():
     measured = np.stack(motion, axis=-1) + white * random.standard_normal((count, rows, 6))
     still = tuple(np.broadcast_to(series, (count, rows)) for series in record.wind)
     record = replace(record, units=units, measured=measured, wind=still)
-    scores = [_log_evidence(fit, motion, record, replace(of.noise, white=white)) for fit in (truth, rival)]
+    scores = [
+        _log_evidence(fit, motion, record, replace(of.noise, white=white)) for fit in (truth, rival)
+    ]
     differences = scores[0] - scores[1]
     doubt = 3.0 * differences.std() / np.sqrt(count)
     assert expected - doubt < differences.mean() < 2.0 * expected
@@ -178,7 +202,11 @@ def sailing(one, wind=(6.0, 0.5), model=None):
     dp = DpController(model, step_for(model))
     track, record, held = planned([one], dp, (0.0, 0.0, 0.0, 0.0), wind)
     motion, units = kept_on_track(model, 1, track, record, dp, held=held)
-    return record.time, Motion(*(v[0] for v in motion)), {n: tuple(s[0] for s in pair) for n, pair in units.items()}
+    return (
+        record.time,
+        Motion(*(v[0] for v in motion)),
+        {n: tuple(s[0] for s in pair) for n, pair in units.items()},
+    )
 
 
 def test_reversal_reverses_each_azimuth_thruster_in_turn_for_most_of_a_minute():
@@ -215,7 +243,9 @@ def test_manoeuvres_keep_to_time_and_area_on_ships_of_all_sizes(times):
     ship = replace(model, parts=model.parts | {"hull": replace(hull, length=times * hull.length)})
     found = library(ship)
     assert all(0.0 < one.minutes <= LONGEST for one in found)
-    assert all(np.hypot(x, y) < 3.0 * ship.parts["hull"].length for one in found for _, x, y, _ in one.legs)
+    assert all(
+        np.hypot(x, y) < 3.0 * ship.parts["hull"].length for one in found for _, x, y, _ in one.legs
+    )
     assert len(found) == len(library(model)) or times > 4.0
 
 
@@ -227,7 +257,9 @@ def test_a_ship_that_cannot_hold_her_place_is_not_sent():
 
 def test_a_ship_that_her_dp_cannot_steer_gets_lost_and_not_infinite():
     model = problem().model
-    light = model.with_values({"vessel.mass": 2e3, "vessel.A11": 1e3, "vessel.A22": 1e3, "vessel.inertia_yaw": 1e4})
+    light = model.with_values(
+        {"vessel.mass": 2e3, "vessel.A11": 1e3, "vessel.A22": 1e3, "vessel.inertia_yaw": 1e4}
+    )
     light = light.with_values({"vessel.A66": 1e4, "vessel.A26": 0.0, "vessel.A62": 0.0})
     _, motion, _ = sailing(pick("pulses"), (20.0, 0.5), light)
     assert np.isfinite(np.stack(motion)).all()
@@ -275,7 +307,9 @@ def test_before_sailing_a_cause_shows_where_it_acts():
 
 
 def test_before_sailing_nothing_is_said_of_weather_that_the_ship_cannot_hold_against():
-    hypothesis = [hypothesis for hypothesis in problem().hypotheses if hypothesis.label == "wind_scale"]
+    hypothesis = [
+        hypothesis for hypothesis in problem().hypotheses if hypothesis.label == "wind_scale"
+    ]
     gale = nats_of(problem().model, hypothesis, NOISE, [pick("turn by 90")], (45.0, 1.5))
     assert np.isnan(gale["wind_scale"]).all()
 

@@ -8,7 +8,9 @@ from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogu
 from shipcosim.diagnose.inference.fitting import Regressor
 from shipcosim.diagnose.inference.thresholds import TESTABLE
 
-EVERYONE = {hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())}
+EVERYONE = {
+    hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())
+}
 
 
 def test_a_cause_is_testable_if_its_typical_size_would_have_gained_enough():

@@ -26,7 +26,10 @@ LOG = {"source": "/somewhere/log.csv", "sha256": "5e1f", "span": (0.0, 20.0)}
 
 def found(cause, component=None, onset=None, **parameters):
     """A finding with a tenth of each value as its standard deviation."""
-    estimates = {name: ParameterEstimate(value, abs(0.1 * value), unit) for name, (value, unit) in parameters.items()}
+    estimates = {
+        name: ParameterEstimate(value, abs(0.1 * value), unit)
+        for name, (value, unit) in parameters.items()
+    }
     return Finding(cause, component, parameters=estimates, probability=0.97, onset=onset)
 
 
@@ -55,7 +58,12 @@ ABOARD = [
     found("crossflow", scale=(1.4, "1")),
 ]
 ASTERN = [found("reverse_loss", loss=(0.4, "1")), found("thruster_interaction", loss=(0.3, "1"))]
-TURNED = {"north_start": 0.3, "east_start": 0.0, "north_end": 0.3 * cos(0.06), "east_end": 0.3 * sin(0.06)}
+TURNED = {
+    "north_start": 0.3,
+    "east_start": 0.0,
+    "north_end": 0.3 * cos(0.06),
+    "east_end": 0.3 * sin(0.06),
+}
 TURNING = [found("current_varying", **{name: (value, "m/s") for name, value in TURNED.items()})]
 GROUPS = {"around": AROUND, "aboard": ABOARD, "astern": ASTERN, "turning": TURNING}
 INPUTS = {
@@ -86,7 +94,9 @@ def extended(system, tmp_path_factory):
 
     def make(group):
         if group not in made:
-            made[group] = extend(system, GROUPS[group], tmp_path_factory.mktemp(group), log_attributes=LOG)
+            made[group] = extend(
+                system, GROUPS[group], tmp_path_factory.mktemp(group), log_attributes=LOG
+            )
         return made[group]
 
     return make
@@ -95,10 +105,16 @@ def extended(system, tmp_path_factory):
 def run(ssp, fmus, *, stop=10.0, engine="fmpy", values=(), inputs=INPUTS, gusts=0.0):
     """Table of a run with steady inputs, from the state `START`."""
     time = np.array([0.0, stop])
-    table = make_table(time, [(name, np.full(2, value), unit, "") for name, (value, unit) in inputs.items()])
-    start = {f"vessel.{name}": value for name, value in START.items()} | {"environment.gust_scale": gusts}
+    table = make_table(
+        time, [(name, np.full(2, value), unit, "") for name, (value, unit) in inputs.items()]
+    )
+    start = {f"vessel.{name}": value for name, value in START.items()} | {
+        "environment.gust_scale": gusts
+    }
     ready = with_values(read_system(ssp, fmus=[fmus]), start | dict(values))
-    return simulate(ready, Scenario(stop_time=stop, step_size=0.05), RunOptions(inputs=table, engine=engine))
+    return simulate(
+        ready, Scenario(stop_time=stop, step_size=0.05), RunOptions(inputs=table, engine=engine)
+    )
 
 
 @pytest.fixture(scope="module")
@@ -123,7 +139,10 @@ def runs(extended, fmus):
 def test_extended_system_is_sound_and_the_same_in_libcosim(group, extended, runs, needs):
     pytest.importorskip("libcosimpy")
     errors = [
-        p for file in (extended(group).ssp, extended(group).ssv) for p in check_file(file) if p.severity == "error"
+        p
+        for file in (extended(group).ssp, extended(group).ssv)
+        for p in check_file(file)
+        if p.severity == "error"
     ]
     assert errors == []
     ours, theirs = runs(group), runs(group, engine="libcosim")
@@ -135,7 +154,12 @@ def test_extended_system_is_sound_and_the_same_in_libcosim(group, extended, runs
 def test_set_holds_what_was_named_with_its_spread_and_origin_and_nothing_else(extended, system):
     text = extended("aboard").ssv.read_text(encoding="utf-8")
     assert sorted(extended("aboard").values) == sorted(
-        ["vessel.wind_load_scale", "vessel.apparent_wind_offset", "vessel.mass_scale", "vessel.drag_scale"]
+        [
+            "vessel.wind_load_scale",
+            "vessel.apparent_wind_offset",
+            "vessel.mass_scale",
+            "vessel.drag_scale",
+        ]
         + ["vessel.cross_flow_scale", "port.thrust_loss", "starboard.azimuth_offset"]
         + ["tunnel.rpm_offset", "tunnel.thrust_loss"]
     )
@@ -150,11 +174,16 @@ def test_a_ship_that_moves_with_the_named_current_goes_where_it_goes(extended, f
     """No thrust, no wind, at the current's velocity from the start: 20 s of a straight line over the ground."""
     ssp = extended("around").ssp
     quiet = {name: (0.0, unit) for name, (_, unit) in INPUTS.items()}
-    nothing = {f"{name}.{axis}": 0.0 for name in ("tow", "wave_drift") for axis in ("north", "east")}
+    nothing = {
+        f"{name}.{axis}": 0.0 for name in ("tow", "wave_drift") for axis in ("north", "east")
+    }
     u, v = to_body(0.7, 0.3, -0.2)
     start = {"vessel.u_start": u, "vessel.v_start": v, "vessel.r_start": 0.0} | nothing
     # the air moves with the water, or its drag would show
-    wind = {"true_wind_speed": (hypot(0.3, 0.2), "m/s"), "true_wind_from": (degrees(atan2(0.2, -0.3)), "deg")}
+    wind = {
+        "true_wind_speed": (hypot(0.3, 0.2), "m/s"),
+        "true_wind_from": (degrees(atan2(0.2, -0.3)), "deg"),
+    }
     drift = run(ssp, fmus, stop=20.0, values=start, inputs=quiet | wind)
     np.testing.assert_allclose(drift["vessel.x"], 0.3 * drift["time"], atol=1e-6)
     np.testing.assert_allclose(drift["vessel.y"], -0.2 * drift["time"], atol=1e-6)
@@ -165,14 +194,26 @@ def test_drift_and_line_load_the_ship_by_their_laws(runs):
     table = runs("around")
     psi, t = table["vessel.psi"].values[:-1], table["time"].values[1:]
     A, gamma = hypot(2000.0, 1000.0), atan2(1000.0, 2000.0) - psi
-    drift = A * np.cos(gamma) / 3.0, A * np.sin(gamma) * np.abs(np.sin(gamma)), -1.5 * A * np.sin(2.0 * gamma)
+    drift = (
+        A * np.cos(gamma) / 3.0,
+        A * np.sin(gamma) * np.abs(np.sin(gamma)),
+        -1.5 * A * np.sin(2.0 * gamma),
+    )
     share = np.clip((t - 5.0) / 30.0, 0.0, 1.0)
-    X, Y = share * (-1500.0 * np.cos(psi) + 2500.0 * np.sin(psi)), share * (2500.0 * np.cos(psi) + 1500.0 * np.sin(psi))
+    X, Y = (
+        share * (-1500.0 * np.cos(psi) + 2500.0 * np.sin(psi)),
+        share * (2500.0 * np.cos(psi) + 1500.0 * np.sin(psi)),
+    )
     for axis, wave, line in zip("XYN", drift, (X, Y, -17.0 * Y), strict=True):
         found = table[f"wave_drift.tau_{axis}"].values[1:] + table[f"tow.tau_{axis}"].values[1:]
         np.testing.assert_allclose(found, wave + line, atol=0.02)
-    thrusters = sum(table[f"{name}.tau_Y"].values for name in ("port", "starboard", "tunnel", "wave_drift", "tow"))
-    np.testing.assert_allclose(table["vessel.tau_thrusters_Y"].values[2:], thrusters[1:-1], atol=1e-6)
+    thrusters = sum(
+        table[f"{name}.tau_Y"].values
+        for name in ("port", "starboard", "tunnel", "wave_drift", "tow")
+    )
+    np.testing.assert_allclose(
+        table["vessel.tau_thrusters_Y"].values[2:], thrusters[1:-1], atol=1e-6
+    )
 
 
 def test_log_of_the_extended_system_is_that_of_wrong_instruments(extended, runs):
@@ -203,7 +244,9 @@ def test_thrusters_of_the_extended_system_give_what_was_named(healthy, runs):
 
 def test_named_azimuth_offset_turns_thrust_and_side_force(runs):
     table = runs("aboard")
-    X, Y, T, F = (float(table[f"starboard.{name}"][0]) for name in ("tau_X", "tau_Y", "thrust", "side_force"))
+    X, Y, T, F = (
+        float(table[f"starboard.{name}"][0]) for name in ("tau_X", "tau_Y", "thrust", "side_force")
+    )
     turned = atan2(Y, X) - atan2(F, T)
     assert degrees(turned) == pytest.approx(-20.0 + 7.0)
     assert degrees(float(table["starboard.azimuth"][0])) == pytest.approx(-20.0)
@@ -215,14 +258,20 @@ def test_named_wind_and_hull_of_the_extended_system(healthy, runs):
     expected = np.array(wind_loads(speed, angle - radians(12.0), wind=parameters(WindParameters)))
     loads = [float(table[f"vessel.tau_wind_{axis}"][0]) for axis in "XYN"]
     np.testing.assert_allclose(loads, 1.3 * expected)
-    hull = {name: float(run[f"vessel.tau_hull_{axis}"][0]) for name, run, axis in _hull(healthy, table)}
+    hull = {
+        name: float(run[f"vessel.tau_hull_{axis}"][0]) for name, run, axis in _hull(healthy, table)
+    }
     drag = -1645.0 * 1.5**2
     assert hull["X"] - hull["X healthy"] == pytest.approx(drag)
     assert hull["Y"] - hull["Y healthy"] == pytest.approx(0.4 * _strips(-0.2, 0.02), rel=1e-6)
 
 
 def _hull(healthy, table):
-    return [(f"{axis}{label}", run, axis) for label, run in (("", table), (" healthy", healthy)) for axis in "XY"]
+    return [
+        (f"{axis}{label}", run, axis)
+        for label, run in (("", table), (" healthy", healthy))
+        for axis in "XY"
+    ]
 
 
 def _strips(v, r):
@@ -233,22 +282,33 @@ def _strips(v, r):
 def test_named_mass_is_that_of_the_accelerations(runs):
     """Surge at the start: (1.15 m + A11) u_dot = loads + 1.15 m v r, with the added mass in tau_hull."""
     table = runs("aboard")
-    X = sum(float(table[f"vessel.tau_{name}_X"][0]) for name in ("thrusters", "wind", "drift", "hull"))
+    X = sum(
+        float(table[f"vessel.tau_{name}_X"][0]) for name in ("thrusters", "wind", "drift", "hull")
+    )
     expected = (X + 1.15 * 531e3 * 0.02 * -0.2) / (1.15 * 531e3 + 26_550.0)
     assert float(table["vessel.u_dot"][0]) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize(("starboard", "kept"), [(90.0, 0.7), (-90.0, 1.0), (110.0, 1.0 - 0.3 / np.e)])
+@pytest.mark.parametrize(
+    ("starboard", "kept"), [(90.0, 0.7), (-90.0, 1.0), (110.0, 1.0 - 0.3 / np.e)]
+)
 def test_slipstream_of_starboard_takes_thrust_from_port(starboard, kept, extended, system, fmus):
     inputs = INPUTS | {"starboard_azimuth": (starboard, "deg")}
-    whole, hit = (run(ssp, fmus, stop=0.1, inputs=inputs) for ssp in (system, extended("astern").ssp))
+    whole, hit = (
+        run(ssp, fmus, stop=0.1, inputs=inputs) for ssp in (system, extended("astern").ssp)
+    )
     assert float(hit["port.thrust"][0] / whole["port.thrust"][0]) == pytest.approx(kept)
 
 
 def test_astern_both_units_lose_what_was_named(extended, system, fmus):
-    ahead = {"port_azimuth": (0.0, "deg"), "starboard_azimuth": (0.0, "deg")}  # off each other's slipstream
+    ahead = {
+        "port_azimuth": (0.0, "deg"),
+        "starboard_azimuth": (0.0, "deg"),
+    }  # off each other's slipstream
     inputs = INPUTS | ahead | {"port_rpm": (-60.0, "rpm"), "starboard_rpm": (-70.0, "rpm")}
-    whole, less = (run(ssp, fmus, stop=0.1, inputs=inputs) for ssp in (system, extended("astern").ssp))
+    whole, less = (
+        run(ssp, fmus, stop=0.1, inputs=inputs) for ssp in (system, extended("astern").ssp)
+    )
     for name in ("port", "starboard"):
         assert float(less[f"{name}.thrust"][0] / whole[f"{name}.thrust"][0]) == pytest.approx(0.6)
 
@@ -257,7 +317,9 @@ def test_varying_current_turns_through_the_span_of_the_log(runs):
     """From north, 3.4 deg in 20 s at 0.3 m/s, so within the environment's rate; a step later it is there."""
     table = runs("turning", stop=20.0)
     to = np.arctan2(table["environment.current_east"], table["environment.current_north"])
-    np.testing.assert_allclose(np.hypot(table["environment.current_north"], table["environment.current_east"]), 0.3)
+    np.testing.assert_allclose(
+        np.hypot(table["environment.current_north"], table["environment.current_east"]), 0.3
+    )
     np.testing.assert_allclose(to[1:], 0.06 * table["time"].values[:-1] / 20.0, atol=1e-9)
 
 
@@ -281,14 +343,25 @@ def test_what_cannot_be_carried_is_said(system, tmp_path):
     extension = extend(system, findings, tmp_path)
     assert list(extension.components) == ["tow", "tow_2", "tow_3"]
     said = "\n".join(extension.remarks)
-    assert "onset at 100 s" in said and "no component 'bow'" in said and "shift the channels" in said
-    assert "no free load input" in said and "moves already" in said and extension.values["current_speed"] == 0.1
+    assert (
+        "onset at 100 s" in said and "no component 'bow'" in said and "shift the channels" in said
+    )
+    assert (
+        "no free load input" in said
+        and "moves already" in said
+        and extension.values["current_speed"] == 0.1
+    )
 
 
 def test_a_system_whose_parts_have_other_names_and_no_neighbours_yet(system, fmus, tmp_path):
     """Renamed, without connections between the azimuths, in no current: what is missing is put there."""
     other = read(system)
-    for old, name in (("vessel", "hull"), ("port", "left"), ("starboard", "right"), ("environment", "weather")):
+    for old, name in (
+        ("vessel", "hull"),
+        ("port", "left"),
+        ("starboard", "right"),
+        ("environment", "weather"),
+    ):
         other.rename(old, name)
     for unit in ("left", "right"):
         for name in ("azimuth", "rpm"):
@@ -298,9 +371,15 @@ def test_a_system_whose_parts_have_other_names_and_no_neighbours_yet(system, fmu
     findings = [ASTERN[1], found("mass", scale=(1.2, "1")), vector("current", 0.1, 0.2, "m/s")]
     extension = extend(other, findings, tmp_path / "steady")
     again = read(extension.ssp)
-    assert {("right.rpm", "left.neighbour_rpm"), ("left.azimuth", "right.neighbour_azimuth")} <= set(again.connections)
+    assert {
+        ("right.rpm", "left.neighbour_rpm"),
+        ("left.azimuth", "right.neighbour_azimuth"),
+    } <= set(again.connections)
     assert again.parameters["hull.mass_scale"] == 1.2
-    assert (again.parameters["hull.current_north"], again.parameters["hull.current_east"]) == (0.1, 0.2)
+    assert (again.parameters["hull.current_north"], again.parameters["hull.current_east"]) == (
+        0.1,
+        0.2,
+    )
     turning = extend(other, TURNING, tmp_path / "turning", log_attributes=LOG)
     assert turning.components == ("water", "varying_current")
     assert ("water.current_north", "hull.current_north") in read(turning.ssp).connections
@@ -328,9 +407,14 @@ def test_a_cause_of_the_users_own_is_carried_by_what_its_file_turns(system, tmp_
         "motor": "{thruster}.power_max",
         "keel": "keel.x",
     }
-    parameters = {name: CauseParameter(of=[path], typical=1.0, bounds=(0.0, 1.0)) for name, path in numbers.items()}
+    parameters = {
+        name: CauseParameter(of=[path], typical=1.0, bounds=(0.0, 1.0))
+        for name, path in numbers.items()
+    }
     own = Cause(cause="own", sentence="", reference="", parameters=parameters)
-    finding = found("own", "port", east=(3.0, "kN"), arm=(-2.0, "m"), motor=(250.0, "kW"), keel=(1.0, "m"))
+    finding = found(
+        "own", "port", east=(3.0, "kN"), arm=(-2.0, "m"), motor=(250.0, "kW"), keel=(1.0, "m")
+    )
     extension = extend(system, [finding], tmp_path, catalogue={"own": own})
     assert extension.values == {
         "own.north": 0.0, "own.east": 3000.0, "own.yaw_arm": -2.0, "port.power_max": 250e3
@@ -341,7 +425,11 @@ def test_a_cause_of_the_users_own_is_carried_by_what_its_file_turns(system, tmp_
 def test_a_factor_on_the_damping_multiplies_what_the_ship_has(root, tmp_path):
     """The model of this boat has linear damping alone: what it has not stays nothing."""
     causes = ("surge_damping_to_inertia", "yaw_damping_to_inertia")
-    extension = extend(root / "ssp" / "blueboat_open", [found(cause, ratio=(0.2, "1")) for cause in causes], tmp_path)
+    extension = extend(
+        root / "ssp" / "blueboat_open",
+        [found(cause, ratio=(0.2, "1")) for cause in causes],
+        tmp_path,
+    )
     assert extension.values == pytest.approx({"vessel.drag_scale": 0.2, "vessel.N_r": 0.2 * -6.0})
     assert not extension.remarks
 
@@ -350,7 +438,10 @@ def test_an_extended_system_can_be_extended(extended, tmp_path):
     again = extend(extended("around").ssp, [*ABOARD, vector("tow", 1.0, 2.0, "N")], tmp_path)
     values = read_system(again.ssp).components
     assert values["tow"].start["north"] == -1500.0 and values["tow_2"].start["north"] == 1.0
-    assert values["instruments"].start["lever_x"] == 5.0 and values["vessel"].start["mass_scale"] == 1.15
+    assert (
+        values["instruments"].start["lever_x"] == 5.0
+        and values["vessel"].start["mass_scale"] == 1.15
+    )
 
 
 def test_a_system_without_a_ship_is_refused(tmp_path):

@@ -38,11 +38,15 @@ def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("own")
     (folder / "causes").mkdir()
     (folder / "causes" / "sway_damping.toml").write_text(FILE, encoding="utf-8")
-    write_table(twin.sailed({"own": {"vessel.Y_v": DAMPING}}, minutes=10.0)["own"], folder / "log.csv")
+    write_table(
+        twin.sailed({"own": {"vessel.Y_v": DAMPING}}, minutes=10.0)["own"], folder / "log.csv"
+    )
     command = ["diagnose", "log.csv", "--effects", "causes", "--out", "results"]
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
-        ran = CliRunner().invoke(app, [*command, "--system", str(twin.ROOT / "ssp" / "gunnerus_open")])
+        ran = CliRunner().invoke(
+            app, [*command, "--system", str(twin.ROOT / "ssp" / "gunnerus_open")]
+        )
     assert ran.exit_code == 1, ran.output  # something is wrong with the model
     return folder / "results"
 
@@ -53,7 +57,11 @@ def found(folder):
 
 def test_planted_cause_of_a_new_file_is_named_with_its_size(folder):
     (finding,) = found(folder)["findings"]
-    assert (found(folder)["verdict"], finding["cause"], finding["component"]) == ("named", "sway_damping", None)
+    assert (found(folder)["verdict"], finding["cause"], finding["component"]) == (
+        "named",
+        "sway_damping",
+        None,
+    )
     damping = finding["parameters"]["damping"]
     assert abs(damping["estimate"] - DAMPING) < 3.0 * damping["std"] and damping["unit"] == "N.s/m"
 
@@ -67,7 +75,9 @@ def test_page_explains_the_cause_of_a_new_file(folder):
 def test_system_is_extended_by_the_cause_of_a_new_file_and_its_gain_is_measured(folder):
     (finding,), gain = found(folder)["findings"], found(folder)["gain"]
     extended = read_system(str(folder / "extended.ssp"))
-    assert extended.components["vessel"].start["Y_v"] == pytest.approx(finding["parameters"]["damping"]["estimate"])
+    assert extended.components["vessel"].start["Y_v"] == pytest.approx(
+        finding["parameters"]["damping"]["estimate"]
+    )
     assert gain["after_m"] < gain["before_m"] and gain["share_of_explainable"] > 0.5
 
 
@@ -83,7 +93,9 @@ def texts_and_names(file):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in told:
             texts.append((node.value, node.lineno))
         elif isinstance(node, (ast.Name, ast.arg, ast.FunctionDef, ast.ClassDef)):
-            names.append((getattr(node, "id", None) or getattr(node, "arg", None) or node.name, node.lineno))
+            names.append(
+                (getattr(node, "id", None) or getattr(node, "arg", None) or node.name, node.lineno)
+            )
     return texts, names
 
 
@@ -97,10 +109,14 @@ def test_no_cause_is_known_to_the_code_by_its_name(root):
             for text, line in texts + names:
                 known = {word for word in re.findall(r"\w+", text) if "_" in word} & set(causes)
                 assert not known, f"{place}, line {line}: {text!r}"
-        if place.startswith(("diagnose/", "report/diagnosis/")) and not place.startswith(DEFINE_NUMBERS):
+        if place.startswith(("diagnose/", "report/diagnosis/")) and not place.startswith(
+            DEFINE_NUMBERS
+        ):
             assert not [(text, line) for text, line in texts if text in causes], place
 
 
 def test_pages_know_no_fault_of_the_log_by_its_name(root):
     for file in sorted((root / "src" / "shipcosim" / "report" / "diagnosis").rglob("*.py")):
-        assert not [(text, line) for text, line in texts_and_names(file)[0] if text in read_faults()], file.name
+        assert not [
+            (text, line) for text, line in texts_and_names(file)[0] if text in read_faults()
+        ], file.name

@@ -87,13 +87,18 @@ def at_sea_trials():
 
 
 def test_every_physical_cause_of_the_contract_is_there_with_its_parameters_and_units():
-    found = {c: {n: p.unit for n, p in effect.parameters.items()} for c, effect in read_catalogue().items()}
+    found = {
+        c: {n: p.unit for n, p in effect.parameters.items()}
+        for c, effect in read_catalogue().items()
+    }
     assert found == CONTRACT | SEA_TRIALS
 
 
 def test_causes_of_sea_trials_are_only_sought_there(everyone, at_sea_trials):
     assert not {hypothesis.cause for hypothesis in everyone} & set(SEA_TRIALS)
-    assert {hypothesis.cause for hypothesis in at_sea_trials} == (set(CONTRACT) | set(SEA_TRIALS)) - BY_COMPARISON
+    assert {hypothesis.cause for hypothesis in at_sea_trials} == (
+        set(CONTRACT) | set(SEA_TRIALS)
+    ) - BY_COMPARISON
 
 
 def test_each_cause_sits_where_the_contract_says(everyone):
@@ -105,18 +110,28 @@ def test_each_cause_sits_where_the_contract_says(everyone):
 
 def test_every_file_says_what_it_is_and_where_it_is_from():
     for effect in read_catalogue().values():
-        assert effect.sentence[0].isupper() and len(effect.sentence) > 20 and len(effect.reference) > 10
+        assert (
+            effect.sentence[0].isupper()
+            and len(effect.sentence) > 20
+            and len(effect.reference) > 10
+        )
 
 
-def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_what_is_tolerated(at_sea_trials):
+def test_bounds_hold_the_model_and_what_is_typical_is_above_what_matters_above_what_is_tolerated(
+    at_sea_trials,
+):
     for hypothesis in at_sea_trials:
         for parameter in hypothesis.parameters:
             low, high = sorted(parameter.bounds)
             assert low <= parameter.neutral <= high, hypothesis.label
-            assert max(high - parameter.neutral, parameter.neutral - low) >= parameter.typical, hypothesis.label
-            assert parameter.typical > hypothesis.definition.least * parameter.typical >= 1.5 * parameter.tolerance, (
+            assert max(high - parameter.neutral, parameter.neutral - low) >= parameter.typical, (
                 hypothesis.label
             )
+            assert (
+                parameter.typical
+                > hypothesis.definition.least * parameter.typical
+                >= 1.5 * parameter.tolerance
+            ), hypothesis.label
 
 
 def test_companions_are_numbers_of_the_ship_that_are_only_known_within_a_tolerance(everyone):
@@ -128,7 +143,9 @@ def test_companions_are_numbers_of_the_ship_that_are_only_known_within_a_toleran
 def test_units_of_a_file_are_those_of_the_report_and_the_ships_numbers_are_in_hers(everyone):
     parameters = {hypothesis.label: hypothesis.parameters[0] for hypothesis in everyone}
     offset = parameters["heading_bias"]
-    assert offset.typical == pytest.approx(np.radians(3.0)) and offset.factor == pytest.approx(180.0 / np.pi)
+    assert offset.typical == pytest.approx(np.radians(3.0)) and offset.factor == pytest.approx(
+        180.0 / np.pi
+    )
     assert parameters["rpm_offset of tunnel"].typical == pytest.approx(0.06 * 1780.0)
     assert parameters["rpm_offset of tunnel"].bounds == pytest.approx((-0.3 * 1780.0, 0.3 * 1780.0))
     assert parameters["tow"].typical == pytest.approx(0.004 * 531e3)
@@ -142,7 +159,9 @@ def test_tolerances_are_those_of_the_parameter_sets_where_they_say(everyone):
 
 
 def test_reverse_loss_turns_both_units_at_once(everyone):
-    (parameter,) = next(hypothesis for hypothesis in everyone if hypothesis.cause == "reverse_loss").parameters
+    (parameter,) = next(
+        hypothesis for hypothesis in everyone if hypothesis.cause == "reverse_loss"
+    ).parameters
     assert parameter.paths == ("port.reverse_loss", "starboard.reverse_loss")
 
 
@@ -150,8 +169,17 @@ def test_a_ship_without_a_thruster_has_no_causes_of_one(root):
     hull = new("barge")
     hull.add_component("ship", twin.build_stale(root) / "vessel.fmu", kinds=())
     lend(hull, "ship", HullParameters, WindParameters)
-    found = {hypothesis.cause for hypothesis in hypotheses_of(read_catalogue(), ship_model_of(hull.checked()))}
-    assert not found & {"thrust_loss", "azimuth_offset", "rpm_offset", "reverse_loss", "thruster_interaction"}
+    found = {
+        hypothesis.cause
+        for hypothesis in hypotheses_of(read_catalogue(), ship_model_of(hull.checked()))
+    }
+    assert not found & {
+        "thrust_loss",
+        "azimuth_offset",
+        "rpm_offset",
+        "reverse_loss",
+        "thruster_interaction",
+    }
     assert {"current", "mass", "heading_bias"} <= found
 
 
@@ -160,8 +188,15 @@ def test_a_cause_of_ones_own_takes_one_file(tmp_path):
     (tmp_path / "notes.txt").write_text("not a cause", encoding="utf-8")
     catalogue = read_catalogue(tmp_path)
     assert set(catalogue) == {*CONTRACT, *SEA_TRIALS, "side_force"}
-    mine = [hypothesis for hypothesis in hypotheses_of(catalogue, twin.model()) if hypothesis.cause == "side_force"]
-    assert [hypothesis.label for hypothesis in mine] == ["side_force of port", "side_force of starboard"]
+    mine = [
+        hypothesis
+        for hypothesis in hypotheses_of(catalogue, twin.model())
+        if hypothesis.cause == "side_force"
+    ]
+    assert [hypothesis.label for hypothesis in mine] == [
+        "side_force of port",
+        "side_force of starboard",
+    ]
     (parameter,) = mine[0].parameters
     assert (parameter.neutral, parameter.typical) == pytest.approx((0.8, 0.4))
 
@@ -171,7 +206,9 @@ def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):
     mine = mine.replace("{thruster}.side_force_coefficient", "vessel.mass_scale")
     (tmp_path / "mass.toml").write_text(mine, encoding="utf-8")
     catalogue = read_catalogue(tmp_path)
-    assert set(catalogue) == {*CONTRACT, *SEA_TRIALS} and list(catalogue["mass"].parameters) == ["coefficient"]
+    assert set(catalogue) == {*CONTRACT, *SEA_TRIALS} and list(catalogue["mass"].parameters) == [
+        "coefficient"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -185,7 +222,9 @@ def test_a_file_with_the_name_of_a_known_cause_replaces_it(tmp_path):
     ],
 )
 def test_text_or_law_that_lacks_something_is_refused_with_what_it_lacks(tmp_path, line, said):
-    (tmp_path / "one.toml").write_text(MINE.replace('reference = "-"', f'reference = "-"\n{line}'), encoding="utf-8")
+    (tmp_path / "one.toml").write_text(
+        MINE.replace('reference = "-"', f'reference = "-"\n{line}'), encoding="utf-8"
+    )
     with pytest.raises(ShipcosimError, match=said):
         read_catalogue(tmp_path)
 
@@ -202,7 +241,9 @@ def test_facts_of_a_log_are_those_that_texts_can_have():
 
 
 def test_everything_wrong_in_a_folder_is_said_with_file_and_field(tmp_path):
-    (tmp_path / "one.toml").write_text(MINE.replace("typical = 0.5", 'typical = "much"'), encoding="utf-8")
+    (tmp_path / "one.toml").write_text(
+        MINE.replace("typical = 0.5", 'typical = "much"'), encoding="utf-8"
+    )
     (tmp_path / "two.toml").write_text(MINE.replace("for_each", "foreach"), encoding="utf-8")
     (tmp_path / "three.toml").write_text("cause =", encoding="utf-8")
     with pytest.raises(ShipcosimError) as caught:

@@ -43,11 +43,15 @@ def test_it_is_the_integral_by_brute_force():
     one, other = np.linspace(-4, 4, 801) * prior[0], np.linspace(-4, 4, 801) * prior[1]
     theta = np.stack(np.meshgrid(one, other, indexing="ij"), axis=-1)
     left = y - theta @ G.T
-    density = np.exp(-0.5 * (left**2).sum(-1) - 0.5 * ((theta / prior) ** 2).sum(-1)) / (2 * np.pi * prior.prod())
+    density = np.exp(-0.5 * (left**2).sum(-1) - 0.5 * ((theta / prior) ** 2).sum(-1)) / (
+        2 * np.pi * prior.prod()
+    )
     volume = (one[1] - one[0]) * (other[1] - other[0])
     score, mean, _ = evidence(products(y, G), prior)
     assert score == pytest.approx(np.log(density.sum() * volume) + 0.5 * y @ y, abs=1e-3)
-    np.testing.assert_allclose(mean, (theta * density[..., None]).sum((0, 1)) / density.sum(), atol=1e-3)
+    np.testing.assert_allclose(
+        mean, (theta * density[..., None]).sum((0, 1)) / density.sum(), atol=1e-3
+    )
 
 
 @pytest.mark.parametrize("centre", [(0.5, -1.0), (3.0, 0.0)])
@@ -82,7 +86,9 @@ def test_a_cause_that_the_log_does_not_show_gains_nothing():
 
 def test_a_cause_that_is_not_there_costs_what_its_freedom_is_worth():
     """Occam: at the size of a thousand rows a parameter costs half the logarithm of one plus their information."""
-    costs = [evidence(products(*problem(1000, (0.0,), seed=s)), np.array([1.0]))[0] for s in range(200)]
+    costs = [
+        evidence(products(*problem(1000, (0.0,), seed=s)), np.array([1.0]))[0] for s in range(200)
+    ]
     assert np.mean(costs) == pytest.approx(0.5 - 0.5 * np.log(1001.0), abs=0.15)
 
 
@@ -100,7 +106,9 @@ def test_products_are_those_of_all_channels_and_rows_and_add_up_by_parts():
     for i in range(2):
         rows = white[:, i].reshape(-1, 4)
         np.testing.assert_allclose(found.products[i], rows.T @ rows)
-        assert found.free[i] == pytest.approx(-0.5 * ((rows[:, 0] ** 2).sum() + determinants[:, i].sum()))
+        assert found.free[i] == pytest.approx(
+            -0.5 * ((rows[:, 0] ** 2).sum() + determinants[:, i].sum())
+        )
     np.testing.assert_allclose(found.blocks.sum(0), found.products)
     first = white[:6, 0].reshape(-1, 4)
     np.testing.assert_allclose(found.blocks[0, 0], first.T @ first)

@@ -24,7 +24,11 @@ NAMES = {
 
 
 def score(name, labels=frozenset()):
-    return next(fit.score for fit in fits(name) if {hypothesis.label for hypothesis in fit.hypotheses} == set(labels))
+    return next(
+        fit.score
+        for fit in fits(name)
+        if {hypothesis.label for hypothesis in fit.hypotheses} == set(labels)
+    )
 
 
 IN_CI = ("current", "azimuth_offset", "two")
@@ -67,7 +71,9 @@ def test_the_same_fit_is_made_once_and_another_problem_makes_its_own():
     cause = next(one for one in here.hypotheses if one.label == "mass")
     alone, beside = fitted(here), fitted(here, (cause,))
     assert fitted(here) is alone and fitted(here, (cause,)) is beside is not alone
-    assert fitted(here, (cause,), {"vessel.mass": 1.1 * here.model.get("vessel.mass")}) is not beside
+    assert (
+        fitted(here, (cause,), {"vessel.mass": 1.1 * here.model.get("vessel.mass")}) is not beside
+    )
     noisy = replace(here, noise=replace(here.noise, white=2.0 * here.noise.white))
     assert fitted(noisy) is not alone and fitted(noisy).score != alone.score
 
@@ -96,7 +102,9 @@ def test_known_numbers_leave_out_what_a_cause_turns_or_speaks_for():
         return {path for column in problem("healthy").known(hypotheses) for path in column.changes}
 
     assert "port.thrust_loss" in turned(()) and "port.thrust_loss" not in turned((loss,))
-    assert "instruments.thruster_lag" in turned(()) and "instruments.thruster_lag" not in turned((lag,))
+    assert "instruments.thruster_lag" in turned(()) and "instruments.thruster_lag" not in turned(
+        (lag,)
+    )
     assert "water.drift_yaw_arm" not in turned(())
 
 
@@ -141,7 +149,10 @@ def test_a_current_of_next_to_nothing_at_one_end_does_not_turn_about(forwards):
 def test_late_commands_are_found_beside_a_lost_thrust_though_their_lag_gains_nothing_at_first_sight():
     log = twin.logs()["thrust_loss"]
     late = {role: log[role] for role in log.data_vars if role.endswith(("_rpm", "_azimuth"))}
-    late = {role: series.copy(data=np.r_[[series.values[0]] * 2, series.values[:-2]]) for role, series in late.items()}
+    late = {
+        role: series.copy(data=np.r_[[series.values[0]] * 2, series.values[:-2]])
+        for role, series in late.items()
+    }
     best = twin.explained(log.assign(late))[1][0]
     assert names(best.hypotheses) == {"thrust_loss of port", "thruster_lag"}
     assert best.values["instruments.thruster_lag"] == pytest.approx(2.0, abs=0.5)
@@ -162,5 +173,7 @@ def test_a_fit_starts_within_the_bounds_of_its_numbers():
 def test_a_number_that_is_none_does_not_end_the_search():
     """The smoothed motion of a craft that no ship of the model follows can run away, and every estimate with it."""
     (hypothesis,) = (one for one in problem("healthy").hypotheses if one.cause == "reverse_loss")
-    lost = fitted(problem("healthy"), (hypothesis,), dict.fromkeys(hypothesis.parameters[0].paths, np.nan))
+    lost = fitted(
+        problem("healthy"), (hypothesis,), dict.fromkeys(hypothesis.parameters[0].paths, np.nan)
+    )
     assert np.isfinite(lost.score) and all(np.isfinite(value) for value in lost.values.values())

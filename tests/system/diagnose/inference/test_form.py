@@ -44,7 +44,10 @@ def test_a_ship_of_another_form_is_healthy_once_her_form_may_differ(problems):
         formed = learnt(problem)
         assert formed.model.form_scale > 0.0
         fits = explain(formed)
-        assert not fits[0].hypotheses or fits[0].score < next(f.score for f in fits if not f.hypotheses) + 5.0
+        assert (
+            not fits[0].hypotheses
+            or fits[0].score < next(f.score for f in fits if not f.hypotheses) + 5.0
+        )
 
 
 @pytest.fixture(scope="module")
@@ -70,12 +73,20 @@ def test_how_far_the_form_differs_is_said_and_what_it_hides(explained):
     best = explained.fits[0]
     log = JudgedLog(explained, Judgement("named", best, (), (), ()), {}, {})
     form = load_form(log)
-    planted = np.sqrt(FORM["hull_form.cross_flow_1"] ** 2 / 3.0 + FORM["hull_form.cross_flow_2"] ** 2 / 5.0)
-    assert form.differs["drag across the hull, along her length"] == pytest.approx(planted, rel=0.35)
+    planted = np.sqrt(
+        FORM["hull_form.cross_flow_1"] ** 2 / 3.0 + FORM["hull_form.cross_flow_2"] ** 2 / 5.0
+    )
+    assert form.differs["drag across the hull, along her length"] == pytest.approx(
+        planted, rel=0.35
+    )
     moved = {one.number: one for one in form.numbers}
     assert moved and set(moved) <= set(log.problem.model.uncertainties)
     assert all(abs(one.estimate - one.model) >= 2.0 * one.std for one in moved.values())
-    assert all(abs(moved[path].estimate - size) < 4.0 * moved[path].std for path, size in FORM.items() if path in moved)
+    assert all(
+        abs(moved[path].estimate - size) < 4.0 * moved[path].std
+        for path, size in FORM.items()
+        if path in moved
+    )
     assert set(hidden_by_form(log)) <= set(untestable_causes(log))
 
 
@@ -84,8 +95,14 @@ def test_a_form_that_the_causes_found_do_without_is_given_up_again(explained):
     with threadpool_limits(1):
         plain = of_scale(twin.problem("thrust_loss"), 1.0)
         plain = ExplainedLog(identification_of(plain), tuple(explain(plain)), False)
-        for log, expected in ((plain, 0.0), (explained, explained.identification.problem.model.form_scale)):
+        for log, expected in (
+            (plain, 0.0),
+            (explained, explained.identification.problem.model.form_scale),
+        ):
             settled = with_settled_form(log)
             assert settled.identification.problem.model.form_scale == expected
-            assert settled.identification.ship.form_scale == settled.identification.problem.model.form_scale
+            assert (
+                settled.identification.ship.form_scale
+                == settled.identification.problem.model.form_scale
+            )
             assert settled.fits[0].label == "thrust_loss of port"

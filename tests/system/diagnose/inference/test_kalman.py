@@ -12,18 +12,26 @@ MEASURED = np.array([[1.0, 0.0]])
 
 def by_all_outputs_at_once(z, R, Q, P, is_last=WHOLE):
     """Log-likelihood, up to what is the same for both."""
-    A, H = np.broadcast_to(GROWING, (ROWS - 1, 1, 2, 2)).copy(), np.broadcast_to(MEASURED, (ROWS, 1, 1, 2)).copy()
+    A, H = (
+        np.broadcast_to(GROWING, (ROWS - 1, 1, 2, 2)).copy(),
+        np.broadcast_to(MEASURED, (ROWS, 1, 1, 2)).copy(),
+    )
     still, nothing = np.zeros((1, 2, 2)), np.zeros((ROWS - 1, 1, 2, 1))
     variance = np.full((ROWS, 1, 1), R)
     start = P[None].copy(), KNOWN, LOST, is_last, P[None], False
     gain, root, logdet, _ = kalman.weights(A, still, H, variance, Q[None], *start)
     state = np.zeros((1, 2, 1))
-    white, _ = kalman.whitened(A, still, nothing, H, z[:, None, :, None], gain, root, is_last, state)
+    white, _ = kalman.whitened(
+        A, still, nothing, H, z[:, None, :, None], gain, root, is_last, state
+    )
     return -0.5 * ((white**2).sum() + logdet.sum())
 
 
 def output_by_output(z, R, Q, P, is_last=WHOLE):
-    A, H = np.broadcast_to(GROWING, (ROWS - 1, 2, 2)).copy(), np.broadcast_to(MEASURED, (ROWS, 1, 2)).copy()
+    A, H = (
+        np.broadcast_to(GROWING, (ROWS - 1, 2, 2)).copy(),
+        np.broadcast_to(MEASURED, (ROWS, 1, 2)).copy(),
+    )
     W, b, whole = np.zeros((2, 2, 1)), np.zeros((ROWS - 1, 2)), np.ones((ROWS, 1), bool)
     one = np.full((1, 1), R), Q[..., None].copy(), P[..., None].copy()
     return kalman.log_likelihoods(A, W, b, H, z, whole, *one, KNOWN, LOST, is_last)[0]

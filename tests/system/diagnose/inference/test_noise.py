@@ -13,7 +13,13 @@ from shipcosim.diagnose.inference.noise import first_noise, tuned
 from shipcosim.diagnose.inference.parts import explained
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 
-TRUTH = Noise(2.0 * twin.WHITE, np.array([0.02, 0.02, 2e-3]), np.array([1e-3, 1e-3, 5e-5]), 4.0 * twin.WHITE[3:], 1.2)
+TRUTH = Noise(
+    2.0 * twin.WHITE,
+    np.array([0.02, 0.02, 2e-3]),
+    np.array([1e-3, 1e-3, 5e-5]),
+    4.0 * twin.WHITE[3:],
+    1.2,
+)
 NO_LIMIT = np.full(3, 1.0)
 
 
@@ -52,7 +58,9 @@ def test_levels_that_were_planted_are_found_from_either_side(problem, off):
     start = Noise(off * TRUTH.white, off * TRUTH.jolt, off * TRUTH.walk, off * TRUTH.wave)
     found = tuned(start, linear, record, np.zeros(0), most_walk=NO_LIMIT, rounds=8)
     np.testing.assert_allclose(found.white[:3], TRUTH.white[:3], rtol=0.12)
-    whole = [np.hypot(noise.white[3:], noise.wave) for noise in (found, TRUTH)]  # at 1 Hz waves hide what is white
+    whole = [
+        np.hypot(noise.white[3:], noise.wave) for noise in (found, TRUTH)
+    ]  # at 1 Hz waves hide what is white
     np.testing.assert_allclose(*whole, rtol=0.12)
     np.testing.assert_allclose(found.jolt, TRUTH.jolt, rtol=0.25)
     np.testing.assert_allclose(found.wave, TRUTH.wave, rtol=0.25)
@@ -73,7 +81,9 @@ def test_what_is_explained_is_taken_out():
     record = record_of(twin.logs()["healthy"], twin.model())
     motion = first_motion(record, twin.model())
     linear = linearise(motion, record, twin.model(), [Regressor({"vessel.mass_scale": 0.1})])
-    doubled = linear._replace(driven=linear.driven[..., [1, 1]] * [2.0, 1.0], seen=linear.seen[..., [1, 1]])
+    doubled = linear._replace(
+        driven=linear.driven[..., [1, 1]] * [2.0, 1.0], seen=linear.seen[..., [1, 1]]
+    )
     left = explained(doubled, np.array([2.0])).whole()
     assert left.driven.shape[-1] == left.seen.shape[-1] == 1
     assert np.abs(left.driven).max() == 0.0

@@ -40,14 +40,19 @@ def test_healthy_ships_are_noisy_as_the_log(records):
 
 def test_thrusters_of_healthy_ships_stay_near_the_logged_ones_and_within_limits(records):
     for name, (n, _) in records.units.items():
-        most, logged = problem("mass").model.get(f"{name}.rpm_max") / 60.0, problem("mass").record.units[name][0]
+        most, logged = (
+            problem("mass").model.get(f"{name}.rpm_max") / 60.0,
+            problem("mass").record.units[name][0],
+        )
         assert np.abs(n).max() <= most * (1.0 + 1e-9)
         assert spread(n - logged) < 0.3 * most
         assert np.std(n, axis=0).max() > 0.0  # feedback is at work, and differs from ship to ship
 
 
 def test_the_same_seed_gives_the_same_ships(records):
-    again = healthy_records(problem("mass"), fits("mass")[0].motion, COUNT, np.random.default_rng(0))
+    again = healthy_records(
+        problem("mass"), fits("mass")[0].motion, COUNT, np.random.default_rng(0)
+    )
     np.testing.assert_array_equal(again.measured, records.measured)
 
 
@@ -57,11 +62,15 @@ def test_gaps_of_the_log_are_in_the_healthy_logs():
     measured[100:120, 2] = np.nan
     holed = replace(here, record=replace(here.record, measured=measured))
     found = healthy_records(holed, fits("mass")[0].motion, 2, np.random.default_rng(0))
-    assert np.isnan(found.measured[:, 100:120, 2]).all() and np.isfinite(found.measured[..., :2]).all()
+    assert (
+        np.isnan(found.measured[:, 100:120, 2]).all() and np.isfinite(found.measured[..., :2]).all()
+    )
 
 
 def test_no_cause_gains_by_chance_on_a_log_that_moves():
-    gains = null_gains(problem("mass"), fits("mass")[0].motion, problem("mass").hypotheses, count=COUNT, batch=3)
+    gains = null_gains(
+        problem("mass"), fits("mass")[0].motion, problem("mass").hypotheses, count=COUNT, batch=3
+    )
     assert set(gains) == {hypothesis.label for hypothesis in problem("mass").hypotheses}
     assert all(values.shape == (COUNT,) for values in gains.values())
     assert max(values.max() for values in gains.values()) < 5.0
@@ -76,7 +85,9 @@ def test_stationkeeping_does_not_blame_the_damping():
     wind = tuple(np.full(n, value) for value in (8.0, 0.5))
     calm = replace(here, record=replace(here.record, units=still, wind=wind))
     track = Motion(*np.zeros((6, n)))
-    damping = [hypothesis for hypothesis in here.hypotheses if hypothesis.cause in ("crossflow", "drag")]
+    damping = [
+        hypothesis for hypothesis in here.hypotheses if hypothesis.cause in ("crossflow", "drag")
+    ]
     gains = null_gains(calm, track, damping, count=10)
     assert max(values.max() for values in gains.values()) < 3.0
 
@@ -86,7 +97,9 @@ def test_a_tolerance_that_is_wider_makes_healthy_ships_differ_more():
     tolerances = here.model.tolerances
     off = []
     for factor in (0.0, 3.0):
-        model = replace(here.model, tolerances={path: factor * value for path, value in tolerances.items()})
+        model = replace(
+            here.model, tolerances={path: factor * value for path, value in tolerances.items()}
+        )
         found = healthy_records(
             replace(here, model=model), fits("mass")[0].motion, COUNT, np.random.default_rng(0)
         ).units["port"][0]

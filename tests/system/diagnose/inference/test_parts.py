@@ -9,7 +9,14 @@ from diagnose import twin
 from shipcosim.diagnose.inference import parts
 from shipcosim.diagnose.inference.innovations import Noise, inner_products, innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, Regressor, linearise
-from shipcosim.diagnose.inference.parts import InParts, beside, explained, in_parts, linearised_by_parts, with_columns
+from shipcosim.diagnose.inference.parts import (
+    InParts,
+    beside,
+    explained,
+    in_parts,
+    linearised_by_parts,
+    with_columns,
+)
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 
 NOISE = Noise(twin.WHITE, twin.JOLT, np.array([1e-5, 1e-5, 1e-6]), 2.0 * twin.WHITE[3:], 1.1)
@@ -46,18 +53,25 @@ def test_parts_have_the_rows_of_the_whole_and_the_steps_between_them(part):
     joined = by_parts().whole()
     assert len(list(by_parts().slices())) == -(-361 // part)
     for mine, expected in zip(joined, whole(), strict=True):
-        np.testing.assert_allclose(mine, expected, rtol=1e-9, atol=1e-9)  # slopes are differences over 1e-5
+        np.testing.assert_allclose(
+            mine, expected, rtol=1e-9, atol=1e-9
+        )  # slopes are differences over 1e-5
 
 
 def test_innovations_are_the_same(part):
     record, _ = log()
-    for mine, expected in zip(innovations(by_parts(), NOISE, record), innovations(whole(), NOISE, record), strict=True):
+    for mine, expected in zip(
+        innovations(by_parts(), NOISE, record), innovations(whole(), NOISE, record), strict=True
+    ):
         np.testing.assert_allclose(mine, expected, rtol=1e-9, atol=1e-9)
 
 
 def test_inner_products_are_those_of_the_innovations(part):
     record, _ = log()
-    found, white = inner_products(by_parts(), NOISE, record), innovations(whole(), NOISE, record).white
+    found, white = (
+        inner_products(by_parts(), NOISE, record),
+        innovations(whole(), NOISE, record).white,
+    )
     flat = white.reshape(-1, white.shape[-1])
     np.testing.assert_allclose(found.products, flat.T @ flat, rtol=1e-9, atol=1e-9)
     assert len(found.blocks) == 8
@@ -65,7 +79,9 @@ def test_inner_products_are_those_of_the_innovations(part):
 
 def test_smoothed_motion_is_the_same(part):
     record, motion = log()
-    found, expected = (smoothed(linear, NOISE, record, motion) for linear in (by_parts(), in_parts(whole())))
+    found, expected = (
+        smoothed(linear, NOISE, record, motion) for linear in (by_parts(), in_parts(whole()))
+    )
     np.testing.assert_allclose(np.stack(found[0]), np.stack(expected[0]), rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(found[1], expected[1], rtol=1e-9, atol=1e-9)
 

@@ -34,13 +34,17 @@ def test_healthy_logs_stay_below_the_threshold(seed):
 
 
 def test_a_force_that_swings_is_found_as_periodic():
-    log = twin.sailed({"": {}}, push=lambda t: (0.0, 3000.0 * np.sin(2.0 * np.pi * t / 70.0), 0.0))[""]
+    log = twin.sailed({"": {}}, push=lambda t: (0.0, 3000.0 * np.sin(2.0 * np.pi * t / 70.0), 0.0))[
+        ""
+    ]
     found = beside_the_best(log)
     assert max(found, key=found.get) == "periodic" and found["periodic"] > 2.0 * UNMODELLED
 
 
 def test_a_force_that_comes_and_goes_slowly_is_found_as_slow():
-    log = twin.sailed({"": {}}, push=lambda t: (0.0, 0.0, 120e3 * np.exp(-(((t - 200.0) / 60.0) ** 2))))[""]
+    log = twin.sailed(
+        {"": {}}, push=lambda t: (0.0, 0.0, 120e3 * np.exp(-(((t - 200.0) / 60.0) ** 2)))
+    )[""]
     found = beside_the_best(log)
     assert found["slow"] > UNMODELLED
 
@@ -83,14 +87,19 @@ def test_a_cause_that_comes_and_goes_from_part_to_part_is_not():
 
 def test_what_a_p_value_can_say_at_most_is_bounded():
     """Chi-squared of 8 parts at 31.8, p = 1e-4: -log(-e p log p) = 5.99."""
-    sizes = 0.5 + np.sqrt(chi2.isf(1e-4, 8) / 8.0 * (1.0 / 400.0 + 0.05**2)) * np.array([1.0, -1.0] * 4)
+    sizes = 0.5 + np.sqrt(chi2.isf(1e-4, 8) / 8.0 * (1.0 / 400.0 + 0.05**2)) * np.array(
+        [1.0, -1.0] * 4
+    )
     assert unmodelled._differs_by_part(fit_of_parts(sizes)) == pytest.approx(5.99, abs=0.01)
 
 
 def fit_of_numbers(theta, covariance):
     """A fit without a cause whose known numbers are off by `theta` tolerances."""
     return SimpleNamespace(
-        hypotheses=(), columns=[SimpleNamespace(prior=1.0)] * len(theta), theta=np.array(theta), covariance=covariance
+        hypotheses=(),
+        columns=[SimpleNamespace(prior=1.0)] * len(theta),
+        theta=np.array(theta),
+        covariance=covariance,
     )
 
 
@@ -102,15 +111,30 @@ def test_numbers_off_as_their_tolerances_say_are_no_surprise():
     covariance = np.linalg.inv(np.eye(20) + precision)
     beyond = 0
     for _ in range(2000):
-        pull = precision @ random.standard_normal(20) + np.linalg.cholesky(precision) @ random.standard_normal(20)
-        beyond += unmodelled._beyond_tolerances(fit_of_numbers(covariance @ pull, covariance)) > UNMODELLED
+        pull = precision @ random.standard_normal(20) + np.linalg.cholesky(
+            precision
+        ) @ random.standard_normal(20)
+        beyond += (
+            unmodelled._beyond_tolerances(fit_of_numbers(covariance @ pull, covariance))
+            > UNMODELLED
+        )
     assert beyond <= 2
 
 
 def test_numbers_far_beyond_their_tolerances_are_strange():
-    assert unmodelled._beyond_tolerances(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20))) > UNMODELLED
-    assert unmodelled._beyond_tolerances(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20))) < 1.0
+    assert (
+        unmodelled._beyond_tolerances(fit_of_numbers([4.6, -4.5, *[0.9] * 18], 0.1 * np.eye(20)))
+        > UNMODELLED
+    )
+    assert (
+        unmodelled._beyond_tolerances(fit_of_numbers([2.0, -2.0, *[0.5] * 18], 0.1 * np.eye(20)))
+        < 1.0
+    )
 
 
 def test_what_is_beyond_all_chance_counts_with_a_finite_number():
-    assert UNMODELLED < unmodelled._beyond_tolerances(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20))) < 700.0
+    assert (
+        UNMODELLED
+        < unmodelled._beyond_tolerances(fit_of_numbers([300.0] * 20, 0.1 * np.eye(20)))
+        < 700.0
+    )

@@ -12,7 +12,9 @@ from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogu
 from shipcosim.diagnose.inference.fitting import Regressor
 from shipcosim.diagnose.inference.thresholds import APART, ENOUGH, UNMODELLED
 
-EVERYONE = {hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())}
+EVERYONE = {
+    hypothesis.label: hypothesis for hypothesis in hypotheses_of(read_catalogue(), twin.model())
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,12 @@ def fit(score, *labels, size=1.0, std=0.05, **values):
         )
         for parameter in parameters
     }
-    return Fitted(named, score, found, {parameter.paths[0]: std * parameter.typical for parameter in parameters})
+    return Fitted(
+        named,
+        score,
+        found,
+        {parameter.paths[0]: std * parameter.typical for parameter in parameters},
+    )
 
 
 def quiet(_):
@@ -59,7 +66,9 @@ def test_a_cause_far_above_the_rest_is_named():
     assert found.findings[0].parameters["loss"].estimate == pytest.approx(0.25)
 
 
-@pytest.mark.parametrize(("off", "says"), [((1.0, -1.5, 0.5), "named"), ((-2.6, -1.2, 2.6), "consistent")])
+@pytest.mark.parametrize(
+    ("off", "says"), [((1.0, -1.5, 0.5), "named"), ((-2.6, -1.2, 2.6), "consistent")]
+)
 def test_a_cause_of_another_shape_is_another_cause(off, says):
     """In units of the tolerances; the second would be exceeded by one right drift in six hundred."""
     drift = fit(40.0, "wave_drift")
@@ -126,7 +135,9 @@ def test_what_healthy_logs_gain_too_is_not_named():
 
 
 def test_an_error_without_a_name_makes_it_unknown_and_the_causes_candidates():
-    found = verdict(fit(40.0, "mass"), unmodelled=lambda _: {"slow": -3.0, "periodic": UNMODELLED + 0.5})
+    found = verdict(
+        fit(40.0, "mass"), unmodelled=lambda _: {"slow": -3.0, "periodic": UNMODELLED + 0.5}
+    )
     assert found.verdict == "unknown" and found.findings == ()
     assert [c.cause for c in found.candidates] == ["mass"]
     assert verdict(unmodelled=lambda _: {"slow": UNMODELLED + 0.5}).verdict == "unknown"
@@ -151,7 +162,10 @@ def test_three_causes_at_once_are_rather_one_that_nobody_knows():
 
 def test_gain_of_a_cause_is_over_the_best_set_without_it():
     fits = [fit(0.0), fit(40.0, "mass"), fit(25.0, "drag"), fit(52.0, "mass", "drag")]
-    assert gained(EVERYONE["drag"], fits[3], fits) == 12.0 and gained(EVERYONE["mass"], fits[3], fits) == 27.0
+    assert (
+        gained(EVERYONE["drag"], fits[3], fits) == 12.0
+        and gained(EVERYONE["mass"], fits[3], fits) == 27.0
+    )
     assert admissible(fits[3], fits, {}) and not admissible(fits[3], fits, {"drag": 8.0})
 
 

@@ -17,7 +17,9 @@ def four_cores(monkeypatch):
 
 
 def test_results_come_in_the_order_of_the_arguments(four_cores):
-    assert each(lambda a, b: (a, b), range(20), range(20, 40)) == list(zip(range(20), range(20, 40), strict=True))
+    assert each(lambda a, b: (a, b), range(20), range(20, 40)) == list(
+        zip(range(20), range(20, 40), strict=True)
+    )
 
 
 def test_an_error_is_raised_where_it_was_asked_for(four_cores):
@@ -27,7 +29,9 @@ def test_an_error_is_raised_where_it_was_asked_for(four_cores):
 
 def test_inside_there_are_no_further_threads(four_cores):
     names = each(lambda _: set(each(lambda _: threading.current_thread().name, range(4))), range(4))
-    assert all(len(one) == 1 for one in names) and threading.main_thread().name not in set().union(*names)
+    assert all(len(one) == 1 for one in names) and threading.main_thread().name not in set().union(
+        *names
+    )
 
 
 def test_fits_side_by_side_are_those_one_after_the_other(four_cores):

@@ -15,8 +15,21 @@ ROOT = Path(__file__).resolve().parents[4]
 TRIALS = ROOT.parent / "shared" / "measured" / "gunnerus_trials_2022" / "trials.csv"
 EXAMPLE = ROOT / "docs" / "examples" / "gunnerus_log.csv.gz"
 THRUSTERS = {"port": ("rpm", "azimuth"), "starboard": ("rpm", "azimuth"), "tunnel": ("rpm",)}
-UNITS = {"time": "s", "north": "m", "east": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
-UNITS |= {"port_rpm": "rpm", "starboard_rpm": "rpm", "port_azimuth": "deg", "starboard_azimuth": "deg"}
+UNITS = {
+    "time": "s",
+    "north": "m",
+    "east": "m",
+    "heading": "deg",
+    "surge": "m/s",
+    "sway": "m/s",
+    "yaw_rate": "deg/s",
+}
+UNITS |= {
+    "port_rpm": "rpm",
+    "starboard_rpm": "rpm",
+    "port_azimuth": "deg",
+    "starboard_azimuth": "deg",
+}
 START = datetime(2022, 10, 27, 23, 57, 30)
 KNOT = 1852.0 / 3600.0
 CASES = {}
@@ -26,11 +39,21 @@ def truth():
     """The motion, by roles: full-scale trials where they are beside the project, else the example log."""
     if TRIALS.is_file():
         rows = pandas.read_csv(TRIALS).iloc[3000:3600]
-        names = {"north": "N", "east": "E", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
+        names = {
+            "north": "N",
+            "east": "E",
+            "heading": "psi",
+            "surge": "u",
+            "sway": "v",
+            "yaw_rate": "r",
+        }
         table = {role: rows[name].to_numpy() for role, name in names.items()}
         table = {"time": rows["tvec"].to_numpy() - rows["tvec"].iloc[0]} | table
         for side in ("port", "starboard"):
-            table |= {f"{side}_rpm": rows["RPM"].to_numpy(), f"{side}_azimuth": rows["Azi"].to_numpy()}
+            table |= {
+                f"{side}_rpm": rows["RPM"].to_numpy(),
+                f"{side}_azimuth": rows["Azi"].to_numpy(),
+            }
         table["heading"] = np.mod(table["heading"], 360.0)
         table["starboard_rpm"] = table["starboard_rpm"] + 2.0
         return table
@@ -67,7 +90,9 @@ def save(folder, text, name="log.csv", encoding="utf-8"):
 
 def renamed(table, names, drop=()):
     """Columns under other headers, as texts; those of `drop` are not there."""
-    return {names.get(r, r): [number(v) for v in values] for r, values in table.items() if r not in drop}
+    return {
+        names.get(r, r): [number(v) for v in values] for r, values in table.items() if r not in drop
+    }
 
 
 def stamps(table, form, cut=0):
@@ -84,7 +109,9 @@ def on_earth(table):
     """Latitude and longitude of the motion, south and west of zero. [deg]"""
     origin = (table["north"][0], table["east"][0])
     meridian, parallel = metres_per_degree(-33.9)
-    return -33.9 + (table["north"] - origin[0]) / meridian, -18.4 + (table["east"] - origin[1]) / parallel
+    return -33.9 + (table["north"] - origin[0]) / meridian, -18.4 + (
+        table["east"] - origin[1]
+    ) / parallel
 
 
 @case
@@ -102,7 +129,11 @@ def several_blanks(table, folder):
     columns = {name.replace(" ", ""): values for name, values in cells(table).items()}
     width = [max(len(name), *map(len, values)) + 2 for name, values in columns.items()]
     rows = [columns, *zip(*columns.values(), strict=True)]
-    return save(folder, ["".join(c.rjust(w) for c, w in zip(r, width, strict=True)) for r in rows], "log.dat")
+    return save(
+        folder,
+        ["".join(c.rjust(w) for c, w in zip(r, width, strict=True)) for r in rows],
+        "log.dat",
+    )
 
 
 @case
@@ -118,7 +149,9 @@ def decimal_comma_between_tabs(table, folder):
 
 @case
 def decimal_comma_in_quotes(table, folder):
-    columns = {name: [f'"{v.replace(".", ",")}"' for v in values] for name, values in cells(table).items()}
+    columns = {
+        name: [f'"{v.replace(".", ",")}"' for v in values] for name, values in cells(table).items()
+    }
     return save(folder, lines(columns, ","))
 
 
@@ -159,7 +192,12 @@ def units_after_an_underscore(table, folder):
 
 @case
 def units_in_other_spellings(table, folder):
-    names = {"time": "Time [sec]", "heading": "Heading [°]", "surge": "Surge [kts]", "sway": "Sway [m s-1]"}
+    names = {
+        "time": "Time [sec]",
+        "heading": "Heading [°]",
+        "surge": "Surge [kts]",
+        "sway": "Sway [m s-1]",
+    }
     names |= {"yaw_rate": "ROT [°/min]", "north": "North [metres]", "port_rpm": "Port RPM [1/min]"}
     told = table | {"surge": table["surge"] / KNOT, "yaw_rate": 60.0 * table["yaw_rate"]}
     return save(folder, lines(renamed(told, names)))
@@ -174,14 +212,22 @@ def header_in_a_comment(table, folder):
 
 @case
 def lines_before_the_header(table, folder):
-    before = ["Vessel: Gunnerus", "Date: 27.10.2022, 23:57", "Rate, 2 Hz", "", "Operator: A. B., C. D."]
+    before = [
+        "Vessel: Gunnerus",
+        "Date: 27.10.2022, 23:57",
+        "Rate, 2 Hz",
+        "",
+        "Operator: A. B., C. D.",
+    ]
     return save(folder, [*before, *lines(cells(table))])
 
 
 @case
 def comments_between_rows(table, folder):
     rows = lines(cells(table))
-    return save(folder, [*rows[:100], "# turn begins", *rows[100:200], "", "# turn ends", *rows[200:]])
+    return save(
+        folder, [*rows[:100], "# turn begins", *rows[100:200], "", "# turn ends", *rows[200:]]
+    )
 
 
 @case
@@ -194,12 +240,19 @@ def words_for_nothing(table, folder):
 
 @case
 def upper_case(table, folder):
-    return save(folder, [line.upper() if i == 0 else line for i, line in enumerate(lines(renamed(table, {})))])
+    return save(
+        folder,
+        [line.upper() if i == 0 else line for i, line in enumerate(lines(renamed(table, {})))],
+    )
 
 
 @case
 def latin_1(table, folder):
-    names = {"heading": "Heading (°)", "port_azimuth": "Azimuth Port (°)", "starboard_azimuth": "Azimuth Stbd (°)"}
+    names = {
+        "heading": "Heading (°)",
+        "port_azimuth": "Azimuth Port (°)",
+        "starboard_azimuth": "Azimuth Stbd (°)",
+    }
     return save(folder, lines(renamed(table, names)), encoding="latin-1")
 
 
@@ -225,31 +278,43 @@ def excel_with_dates_on_the_second_sheet(table, folder):
     frame = pandas.DataFrame({n: v for n, v in table.items() if n != "time"})
     frame.insert(0, "Date/Time", [START + timedelta(seconds=float(t)) for t in table["time"]])
     with pandas.ExcelWriter(folder / "log.xlsx") as book:
-        pandas.DataFrame({"Vessel": ["Gunnerus"], "Rate": [2]}).to_excel(book, sheet_name="About", index=False)
+        pandas.DataFrame({"Vessel": ["Gunnerus"], "Rate": [2]}).to_excel(
+            book, sheet_name="About", index=False
+        )
         frame.to_excel(book, sheet_name="Data", index=False)
     return folder / "log.xlsx"
 
 
 @case
 def dates_with_slashes(table, folder):
-    return save(folder, lines(with_time(table, "Date Time", stamps(table, "%d/%m/%Y %H:%M:%S.%f", 3))))
+    return save(
+        folder, lines(with_time(table, "Date Time", stamps(table, "%d/%m/%Y %H:%M:%S.%f", 3)))
+    )
 
 
 @case
 def american_dates(table, folder):
-    texts = [f"{d} {h}" for d, h in zip(stamps(table, "%m/%d/%Y"), stamps(table, "%I:%M:%S.%f %p"), strict=True)]
+    texts = [
+        f"{d} {h}"
+        for d, h in zip(stamps(table, "%m/%d/%Y"), stamps(table, "%I:%M:%S.%f %p"), strict=True)
+    ]
     return save(folder, lines(with_time(table, "Timestamp", texts)))
 
 
 @case
 def iso_with_a_zone(table, folder):
-    return save(folder, lines(with_time(table, "timestamp", stamps(table, "%Y-%m-%dT%H:%M:%S.%f+02:00"))))
+    return save(
+        folder, lines(with_time(table, "timestamp", stamps(table, "%Y-%m-%dT%H:%M:%S.%f+02:00")))
+    )
 
 
 @case
 def german_dates(table, folder):
     columns = with_time(table, "Zeit", stamps(table, "%d.%m.%Y %H:%M:%S,%f", 3))
-    columns = {n: [v.replace(".", ",") if n != "Zeit" else v for v in values] for n, values in columns.items()}
+    columns = {
+        n: [v.replace(".", ",") if n != "Zeit" else v for v in values]
+        for n, values in columns.items()
+    }
     return save(folder, lines(columns, ";"))
 
 
@@ -262,7 +327,12 @@ def epoch_in_ms(table, folder):
 @case
 def ros_in_ns(table, folder):
     texts = [str(1666915050000000000 + int(1e9 * t)) for t in table["time"]]
-    names = {"surge": "twist.surge", "sway": "twist.sway", "yaw_rate": "twist.yaw_rate", "heading": "pose.heading"}
+    names = {
+        "surge": "twist.surge",
+        "sway": "twist.sway",
+        "yaw_rate": "twist.yaw_rate",
+        "heading": "pose.heading",
+    }
     return save(folder, lines(with_time(table, "%time", texts, **names)))
 
 
@@ -298,8 +368,12 @@ def nmea_with_hemispheres(table, folder):
 @case
 def positions_in_degrees_and_minutes(table, folder):
     columns = renamed(table, {}, drop=("north", "east"))
-    for name, degrees, sides in zip(("Latitude", "Longitude"), on_earth(table), ("NS", "EW"), strict=True):
-        columns[name] = [f"{int(abs(d))}° {abs(d) % 1 * 60:.6f}' {sides[int(d < 0)]}" for d in degrees]
+    for name, degrees, sides in zip(
+        ("Latitude", "Longitude"), on_earth(table), ("NS", "EW"), strict=True
+    ):
+        columns[name] = [
+            f"{int(abs(d))}° {abs(d) % 1 * 60:.6f}' {sides[int(d < 0)]}" for d in degrees
+        ]
     return save(folder, lines(columns, ";"))
 
 
@@ -308,7 +382,9 @@ def with_quaternion(table, yaw):
     columns = renamed(table, {}, drop=("heading",))
     zero = np.zeros(len(half))
     parts = {"x": zero, "y": zero, "z": np.sin(half), "w": np.cos(half)}
-    return columns | {f"orientation.{k}": [f"{v:.9f}" for v in values] for k, values in parts.items()}
+    return columns | {
+        f"orientation.{k}": [f"{v:.9f}" for v in values] for k, values in parts.items()
+    }
 
 
 @case
@@ -354,7 +430,9 @@ def command_beside_feedback(table, folder):
 def one_value_a_row(table, folder):
     rows = ["timestamp;topic;value"]
     for i, t in enumerate(table["time"]):
-        rows += [f"{t};{name};{number(values[i])}" for name, values in table.items() if name != "time"]
+        rows += [
+            f"{t};{name};{number(values[i])}" for name, values in table.items() if name != "time"
+        ]
     return save(folder, rows)
 
 
@@ -368,7 +446,12 @@ def one_sensor_a_row(table, folder):
             later = [name if name == "time" or name in group else None for name in table]
             rows.append(
                 ",".join(
-                    "" if n is None else f"{t + 0.001 * k:.3f}" if n == "time" else number(table[n][i]) for n in later
+                    ""
+                    if n is None
+                    else f"{t + 0.001 * k:.3f}"
+                    if n == "time"
+                    else number(table[n][i])
+                    for n in later
                 )
             )
     return save(folder, rows)
@@ -376,14 +459,33 @@ def one_sensor_a_row(table, folder):
 
 @case
 def short_names_of_the_bridge(table, folder):
-    names = {"time": "t", "heading": "HDG", "yaw_rate": "ROT", "port_rpm": "ptside_RPM", "port_azimuth": "bb azi"}
-    names |= {"starboard_rpm": "stbd_rpm", "starboard_azimuth": "SB_AZI", "north": "Northing", "east": "Easting"}
+    names = {
+        "time": "t",
+        "heading": "HDG",
+        "yaw_rate": "ROT",
+        "port_rpm": "ptside_RPM",
+        "port_azimuth": "bb azi",
+    }
+    names |= {
+        "starboard_rpm": "stbd_rpm",
+        "starboard_azimuth": "SB_AZI",
+        "north": "Northing",
+        "east": "Easting",
+    }
     return save(folder, lines(renamed(table | {"yaw_rate": 60.0 * table["yaw_rate"]}, names)))
 
 
 @case
 def letters_of_the_textbook(table, folder):
-    names = {"time": "t", "north": "N", "east": "E", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
+    names = {
+        "time": "t",
+        "north": "N",
+        "east": "E",
+        "heading": "psi",
+        "surge": "u",
+        "sway": "v",
+        "yaw_rate": "r",
+    }
     told = table | {"yaw_rate": np.radians(table["yaw_rate"])}
     return save(folder, lines(renamed(told, names)))
 
@@ -398,7 +500,9 @@ def names_twice_and_a_column_without_a_value(table, folder):
 @case
 def a_restart_and_a_line_cut_off(table, folder):
     rows = lines(cells(table))
-    return save(folder, "\n".join([*rows[:300], rows[0], *rows[300:], rows[-1][: len(rows[-1]) // 2]]))
+    return save(
+        folder, "\n".join([*rows[:300], rows[0], *rows[300:], rows[-1][: len(rows[-1]) // 2]])
+    )
 
 
 SAID = {"pulses_beside_the_motion": {"port_rpm", "starboard_rpm"}}

@@ -43,14 +43,19 @@ def compared(log, table, lacking=()):
     """What of a log is wrong, and the roles that it lacks."""
     log = log.sortby("time")
     time = log["time"].values - log["time"].values[0]
-    offsets, missing = [], [role for role in table if role != "time" and role not in lacking and role not in log]
+    offsets, missing = (
+        [],
+        [role for role in table if role != "time" and role not in lacking and role not in log],
+    )
     for role, right in table.items():
         values = time if role == "time" else log[role].values if role in log else None
         if values is None:
             continue
         if role in ("north", "east"):
             values, right = values - values[np.isfinite(values)][0], right - right[0]
-        wanted = np.interp(time, table["time"], np.unwrap(right, period=360.0) if role.endswith(TURNS) else right)
+        wanted = np.interp(
+            time, table["time"], np.unwrap(right, period=360.0) if role.endswith(TURNS) else right
+        )
         off = values - wanted
         off = np.mod(off + 180.0, 360.0) - 180.0 if role.endswith(TURNS) else off
         known = np.isfinite(off)

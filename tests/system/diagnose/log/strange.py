@@ -5,7 +5,18 @@ from __future__ import annotations
 from datetime import timedelta
 
 import numpy as np
-from diagnose.log.oddities import START, UNITS, cells, lines, number, on_earth, renamed, save, stamps, with_time
+from diagnose.log.oddities import (
+    START,
+    UNITS,
+    cells,
+    lines,
+    number,
+    on_earth,
+    renamed,
+    save,
+    stamps,
+    with_time,
+)
 
 STRANGE = {}
 
@@ -23,7 +34,9 @@ def groups_above_the_names(table, folder):
 
 @strange
 def units_in_the_cells(table, folder):
-    columns = {role: [f"{number(v)} {UNITS[role]}" for v in values] for role, values in table.items()}
+    columns = {
+        role: [f"{number(v)} {UNITS[role]}" for v in values] for role, values in table.items()
+    }
     return save(folder, lines(columns, ";"))
 
 
@@ -75,10 +88,23 @@ def carriage_returns_only(table, folder):
 
 @strange
 def axes_and_angles_of_ros(table, folder):
-    names = {"time": "Time", "surge": "twist.linear.x", "sway": "y_left", "yaw_rate": "twist.angular.z"}
+    names = {
+        "time": "Time",
+        "surge": "twist.linear.x",
+        "sway": "y_left",
+        "yaw_rate": "twist.angular.z",
+    }
     told = table | {"north": table["east"], "east": table["north"], "sway": -table["sway"]}
-    told |= {"heading": np.mod(90.0 - table["heading"] + 180.0, 360.0) - 180.0, "yaw_rate": -table["yaw_rate"]}
-    names |= {"heading": "yaw [deg]", "north": "pose.position.x", "east": "pose.position.y", "sway": "twist.linear.y"}
+    told |= {
+        "heading": np.mod(90.0 - table["heading"] + 180.0, 360.0) - 180.0,
+        "yaw_rate": -table["yaw_rate"],
+    }
+    names |= {
+        "heading": "yaw [deg]",
+        "north": "pose.position.x",
+        "east": "pose.position.y",
+        "sway": "twist.linear.y",
+    }
     return save(folder, lines(renamed(told, names)))
 
 
@@ -104,7 +130,9 @@ def newest_first(table, folder):
 def exponents_of_fortran(table, folder):
     columns = cells(table, "{:.8E}")
     columns = {name: [v.replace("E", "D") for v in values] for name, values in columns.items()}
-    return save(folder, lines({name.replace(" ", ""): v for name, v in columns.items()}, "  "), "log.dat")
+    return save(
+        folder, lines({name.replace(" ", ""): v for name, v in columns.items()}, "  "), "log.dat"
+    )
 
 
 @strange
@@ -122,19 +150,32 @@ def time_last_and_paths_for_names(table, folder):
 
 @strange
 def topic_field_value_and_unit(table, folder):
-    topics = {"port_rpm": "port", "starboard_rpm": "stbd", "port_azimuth": "port", "starboard_azimuth": "stbd"}
+    topics = {
+        "port_rpm": "port",
+        "starboard_rpm": "stbd",
+        "port_azimuth": "port",
+        "starboard_azimuth": "stbd",
+    }
     rows = ["stamp,topic,field,value,unit"]
     for i, t in enumerate(table["time"]):
         for role, values in table.items():
             name = role.split("_")[-1] if role in topics else role
-            rows += [f"{t},{topics.get(role, 'nav')},{name},{number(values[i])},{UNITS[role]}"] * (role != "time")
+            rows += [f"{t},{topics.get(role, 'nav')},{name},{number(values[i])},{UNITS[role]}"] * (
+                role != "time"
+            )
     return save(folder, rows)
 
 
 @strange
 def two_sensors_of_a_kind(table, folder):
-    columns = renamed(table, {"heading": "Gyro1 Heading [deg]", "north": "GPS1 North [m]", "east": "GPS1 East [m]"})
-    return save(folder, lines(columns | {"Gyro2 Heading [deg]": [number(v + 0.3) for v in table["heading"]]}))
+    columns = renamed(
+        table,
+        {"heading": "Gyro1 Heading [deg]", "north": "GPS1 North [m]", "east": "GPS1 East [m]"},
+    )
+    return save(
+        folder,
+        lines(columns | {"Gyro2 Heading [deg]": [number(v + 0.3) for v in table["heading"]]}),
+    )
 
 
 @strange

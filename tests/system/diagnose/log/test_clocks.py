@@ -47,7 +47,9 @@ def test_a_clock_that_is_put_back_by_an_hour_goes_on(read):
     assert "put back by an hour" in " ".join(log.attrs["column_remarks"])
 
 
-@pytest.mark.parametrize("start", [738821.9, 0.5, 59879.2], ids=["MATLAB", "fraction of a day", "modified Julian"])
+@pytest.mark.parametrize(
+    "start", [738821.9, 0.5, 59879.2], ids=["MATLAB", "fraction of a day", "modified Julian"]
+)
 def test_days_without_a_unit_are_refused_with_what_to_write(read, start):
     with pytest.raises(ShipcosimError, match='are these days.*0.5 s apart.*unit = "d"'):
         read("time", [f"{start + t / 86400.0:.10f}" for t in SECONDS])
@@ -59,6 +61,12 @@ def test_milliseconds_without_a_unit_are_refused_with_what_to_write(read):
 
 
 def test_a_stated_unit_is_believed(read):
-    assert passed(read("time [ms]", [f"{1000.0 * t:.0f}" for t in SECONDS])) == pytest.approx(SECONDS)
-    assert passed(read("time [d]", [f"{t / 86400.0:.10f}" for t in SECONDS])) == pytest.approx(SECONDS, abs=1e-4)
-    assert passed(read("time [s]", [f"{1000.0 * t:.0f}" for t in SECONDS]))[-1] == pytest.approx(299500.0)
+    assert passed(read("time [ms]", [f"{1000.0 * t:.0f}" for t in SECONDS])) == pytest.approx(
+        SECONDS
+    )
+    assert passed(read("time [d]", [f"{t / 86400.0:.10f}" for t in SECONDS])) == pytest.approx(
+        SECONDS, abs=1e-4
+    )
+    assert passed(read("time [s]", [f"{1000.0 * t:.0f}" for t in SECONDS]))[-1] == pytest.approx(
+        299500.0
+    )

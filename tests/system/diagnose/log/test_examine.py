@@ -38,7 +38,14 @@ def test_a_right_log_gives_no_finding(seed):
 def test_a_ship_at_rest_gives_no_finding():
     log = measured(seed=3)
     random = np.random.default_rng(3)
-    quiet = {"north": 0.2, "east": 0.2, "surge": 0.02, "sway": 0.02, "yaw_rate": 0.05, "heading": 0.1}
+    quiet = {
+        "north": 0.2,
+        "east": 0.2,
+        "surge": 0.02,
+        "sway": 0.02,
+        "yaw_rate": 0.05,
+        "heading": 0.1,
+    }
     log |= {role: spread * random.normal(size=len(log["time"])) for role, spread in quiet.items()}
     log["heading"] = np.mod(log["heading"] + 40.0, 360.0)
     assert examine(table(log)) == []
@@ -52,7 +59,11 @@ def test_lost_rows_are_a_gap_however_they_are_filled(kind):
         log = {role: values[~here] for role, values in log.items()}
     for role in () if kind == "missing" else set(log) - {"time"}:
         first, last = log[role][499], log[role][541]
-        filled = {"empty": np.nan, "held": first, "interpolated": np.linspace(first, last, 43)[1:-1]}
+        filled = {
+            "empty": np.nan,
+            "held": first,
+            "interpolated": np.linspace(first, last, 43)[1:-1],
+        }
         log[role] = np.where(here, 0.0, log[role])
         log[role][here] = filled[kind]
     finding = only(log)
@@ -84,7 +95,11 @@ def test_a_heading_wrap_is_found_where_a_sample_beside_it_is_missing():
     for k in range(1, 4):
         raw[row + k] = raw[row] + (raw[row + 4] - raw[row]) * k / 4.0
     raw[row + 4 : row + 6] = np.nan
-    found = [finding for finding in examine(table(log | {"heading": raw})) if finding.cause == "heading_wrap"]
+    found = [
+        finding
+        for finding in examine(table(log | {"heading": raw}))
+        if finding.cause == "heading_wrap"
+    ]
     assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
 
 
@@ -93,7 +108,11 @@ def test_samples_of_a_heading_wrap_that_lie_near_north_are_cut_out_with_it():
     row = int(np.argmax(np.abs(np.diff(np.round(log["heading"], 1))) > 180.0))
     raw = log["heading"].copy()
     raw[row + 1 : row + 3] = raw[row] + (raw[row + 3] - raw[row]) * np.array([0.08, 0.6])
-    found = [finding for finding in examine(table(log | {"heading": raw})) if finding.cause == "heading_wrap"]
+    found = [
+        finding
+        for finding in examine(table(log | {"heading": raw}))
+        if finding.cause == "heading_wrap"
+    ]
     assert [finding.segments for finding in found] == [((float(row + 1), float(row + 2)),)]
 
 
@@ -108,7 +127,9 @@ def test_a_heading_wrap_is_found_where_a_sample_of_it_is_missing(lost):
         raw[row + 2] = np.nan
         log = log | {"heading": raw}
     else:
-        log = {role: np.delete(values, row + 2) for role, values in (log | {"heading": raw}).items()}
+        log = {
+            role: np.delete(values, row + 2) for role, values in (log | {"heading": raw}).items()
+        }
     assert abs(raw[row + 4] - raw[row]) > 180.0
     found = [finding for finding in examine(table(log)) if finding.cause == "heading_wrap"]
     assert [finding.segments for finding in found] == [((float(row + 1), float(row + 3)),)]
@@ -149,10 +170,26 @@ LABELS = {
     "sway": ("sign", ("sway",), lambda log: {"sway": -log["sway"]}),
     "east": ("sign", ("east",), lambda log: {"east": -log["east"]}),
     "yaw_rate": ("sign", ("yaw_rate",), lambda log: {"yaw_rate": -log["yaw_rate"]}),
-    "wind_from": ("sign", ("wind_from",), lambda log: {"wind_from": np.mod(-log["wind_from"], 360.0)}),
-    "body": ("channel_swap", ("surge", "sway"), lambda log: {"surge": log["sway"], "sway": log["surge"]}),
-    "earth": ("channel_swap", ("north", "east"), lambda log: {"north": log["east"], "east": log["north"]}),
-    "knots": ("frame", ("surge", "sway"), lambda log: {r: log[r] * 3600 / 1852 for r in ("surge", "sway")}),
+    "wind_from": (
+        "sign",
+        ("wind_from",),
+        lambda log: {"wind_from": np.mod(-log["wind_from"], 360.0)},
+    ),
+    "body": (
+        "channel_swap",
+        ("surge", "sway"),
+        lambda log: {"surge": log["sway"], "sway": log["surge"]},
+    ),
+    "earth": (
+        "channel_swap",
+        ("north", "east"),
+        lambda log: {"north": log["east"], "east": log["north"]},
+    ),
+    "knots": (
+        "frame",
+        ("surge", "sway"),
+        lambda log: {r: log[r] * 3600 / 1852 for r in ("surge", "sway")},
+    ),
     "radians": ("frame", ("yaw_rate",), lambda log: {"yaw_rate": np.radians(log["yaw_rate"])}),
     "from north": (
         "frame",
@@ -178,7 +215,9 @@ def test_a_mislabelled_channel_is_named_and_put_right(fault, segment):
     cause, channels, change = LABELS[fault]
     right = measured(seed=8)
     here = inside(right, *segment) if segment else np.ones(len(right["time"]), bool)
-    wrong = right | {role: np.where(here, values, right[role]) for role, values in change(right).items()}
+    wrong = right | {
+        role: np.where(here, values, right[role]) for role, values in change(right).items()
+    }
     finding = only(wrong)
     assert (finding.cause, finding.channels) == (cause, channels)
     near(finding.segments, *([segment] if segment else []), within=15.0)
@@ -206,7 +245,9 @@ def test_rows_lost_between_even_times_are_a_gap():
     log = measured(seed=9)
     for role in ("north", "east"):
         log[role][600:] += 80.0
-        log[role][598:601] = np.interp([598, 599, 600], [597, 601], [log[role][597], log[role][601]])
+        log[role][598:601] = np.interp(
+            [598, 599, 600], [597, 601], [log[role][597], log[role][601]]
+        )
     finding = next(f for f in examine(table(log)) if f.cause == "gap")
     near(finding.segments, (597.0, 601.0), within=2.0)
 
@@ -257,11 +298,29 @@ def test_a_later_start_moves_the_segments_along(faulty):
 
 def test_other_units_in_the_file_change_nothing(faulty, tmp_path):
     log, found = faulty
-    units = {"surge": ("kn", 3600 / 1852), "sway": ("kn", 3600 / 1852), "heading": ("rad", np.pi / 180)}
-    units |= {"yaw_rate": ("deg/min", 60.0), "north": ("km", 1e-3), "east": ("km", 1e-3), "time": ("min", 1 / 60)}
+    units = {
+        "surge": ("kn", 3600 / 1852),
+        "sway": ("kn", 3600 / 1852),
+        "heading": ("rad", np.pi / 180),
+    }
+    units |= {
+        "yaw_rate": ("deg/min", 60.0),
+        "north": ("km", 1e-3),
+        "east": ("km", 1e-3),
+        "time": ("min", 1 / 60),
+    }
     headers = [f"{role} [{units[role][0]}]" if role in units else role for role in log]
-    columns = np.column_stack([units.get(role, ("", 1.0))[1] * values for role, values in log.items()])
-    np.savetxt(tmp_path / "log.csv", columns, delimiter=",", header=",".join(headers), comments="", fmt="%.9f")
+    columns = np.column_stack(
+        [units.get(role, ("", 1.0))[1] * values for role, values in log.items()]
+    )
+    np.savetxt(
+        tmp_path / "log.csv",
+        columns,
+        delimiter=",",
+        header=",".join(headers),
+        comments="",
+        fmt="%.9f",
+    )
     again = examine(read_log(tmp_path / "log.csv"))
     assert causes(again) == causes(found)
     for one, other in zip(again, found, strict=True):
@@ -281,7 +340,9 @@ def still(seed):
         "surge": log["surge"] - 0.99 * calm["surge"],
         "sway": log["sway"] - 0.99 * calm["sway"],
         "yaw_rate": log["yaw_rate"] - 0.99 * calm["yaw_rate"],
-        "wind_from": np.mod(80.0 + 4.0 * np.random.default_rng(seed).normal(size=len(log["time"])), 360.0),
+        "wind_from": np.mod(
+            80.0 + 4.0 * np.random.default_rng(seed).normal(size=len(log["time"])), 360.0
+        ),
     }
 
 
@@ -327,14 +388,18 @@ def test_a_rate_that_is_rounded_away_is_told_by_the_signs_of_its_zeros():
 def test_a_craft_that_spins_goes_the_long_way_round_and_that_is_no_heading_wrap(step):
     time, random = np.arange(0.0, 300.0, step), np.random.default_rng(3)
     heading = np.mod(np.degrees(1.0) * time + 0.5 * random.normal(size=len(time)), 360.0)
-    position = 0.3 * np.exp(1j * time) + 0.02 * (random.normal(size=len(time)) + 1j * random.normal(size=len(time)))
+    position = 0.3 * np.exp(1j * time) + 0.02 * (
+        random.normal(size=len(time)) + 1j * random.normal(size=len(time))
+    )
     log = {"time": time, "north": position.real, "east": position.imag, "heading": heading}
     assert examine(table(log)) == []
 
 
 def test_a_ship_that_keeps_north_wraps_again_and_again_and_each_is_found():
     log, random = measured(seed=16), np.random.default_rng(7)
-    heading = np.mod(0.5 * np.sin(log["time"] / 20.0) + 0.3 * random.normal(size=len(log["time"])), 360.0)
+    heading = np.mod(
+        0.5 * np.sin(log["time"] / 20.0) + 0.3 * random.normal(size=len(log["time"])), 360.0
+    )
     few = {"time": log["time"], "heading": heading}
     crossing = np.flatnonzero(np.abs(np.diff(heading)) > 180.0)[::3]
     crossing = crossing[(np.diff(crossing, append=9999) > 4) & (crossing < len(heading) - 4)]
@@ -344,7 +409,9 @@ def test_a_ship_that_keeps_north_wraps_again_and_again_and_each_is_found():
             heading[row : row + 4] = np.linspace(heading[row], heading[row + 3], 4)
             found.append(row)
     (finding,) = [f for f in examine(table(few)) if f.cause == "heading_wrap"]
-    assert len(found) > 20 and {first for first, _ in finding.segments} >= {float(row + 1) for row in found}
+    assert len(found) > 20 and {first for first, _ in finding.segments} >= {
+        float(row + 1) for row in found
+    }
 
 
 def test_a_small_craft_that_swings_across_north_is_no_heading_wrap():
@@ -376,7 +443,10 @@ def test_a_channel_that_never_changes_is_said_and_not_used(dead, value):
     found = examine(table(log))
     assert [(finding.cause, finding.channels) for finding in found] == [("gap", dead)]
     again = repaired(table(log), found)
-    assert all(np.isnan(again[role].values).all() for role in dead) and np.isfinite(again["north"].values).any()
+    assert (
+        all(np.isnan(again[role].values).all() for role in dead)
+        and np.isfinite(again["north"].values).any()
+    )
 
 
 def test_a_ship_moored_with_a_channel_at_zero_gives_no_finding():
@@ -390,7 +460,10 @@ def test_a_ship_moored_with_a_channel_at_zero_gives_no_finding():
 
 def test_segments_of_a_wrong_clock_that_lie_in_each_other_contradict_and_none_is_named():
     def clock(*segments):
-        return [Finding("clock", kind="data", segments=(segment,), channels=("time",)) for segment in segments]
+        return [
+            Finding("clock", kind="data", segments=(segment,), channels=("time",))
+            for segment in segments
+        ]
 
     assert examining._agreeing(clock((89.0, 166.0), (111.0, 144.0))) == []
     beside = clock((0.0, 100.0), (98.0, 200.0))

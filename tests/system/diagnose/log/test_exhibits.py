@@ -14,7 +14,9 @@ from shipcosim.series import make_table
 
 def stated(log):
     """The log as a file with all units in its headers gives it."""
-    table = make_table(log["time"], [(role, log[role], UNITS[role], role) for role in log if role != "time"])
+    table = make_table(
+        log["time"], [(role, log[role], UNITS[role], role) for role in log if role != "time"]
+    )
     table["time"].attrs["units"] = "s"
     return read_log(table)
 
@@ -24,7 +26,9 @@ EXHIBITS = {
     "0.5 s pass in each logged second": lambda log: {"time": 2.0 * log["time"]},
     "time is in tenths of a second, not s": lambda log: {"time": 10.0 * log["time"]},
     "heading is in rad, not deg": lambda log: {"heading": np.radians(log["heading"])},
-    "surge and sway are in km/h, not m/s": lambda log: {role: 3.6 * log[role] for role in ("surge", "sway")},
+    "surge and sway are in km/h, not m/s": lambda log: {
+        role: 3.6 * log[role] for role in ("surge", "sway")
+    },
 }
 
 
@@ -38,7 +42,11 @@ def test_a_craft_that_spins_and_is_averaged_over_four_seconds_is_in_no_other_uni
     """Her heading turns by more than half a circle between rows: nothing tells how she went."""
     for seed in range(3):
         fine = boat(seed, style="spin", step=0.1, minutes=6.0)
-        log = {role: values[: len(values) // 40 * 40] for role, values in fine.items() if not role.startswith("wind")}
+        log = {
+            role: values[: len(values) // 40 * 40]
+            for role, values in fine.items()
+            if not role.startswith("wind")
+        }
         assert np.median(np.abs(log["yaw_rate"])) > 30.0
         angle = np.exp(1j * np.radians(log["heading"])).reshape(-1, 40).mean(axis=1)
         log = {role: values.reshape(-1, 40).mean(axis=1) for role, values in log.items()}
@@ -50,7 +58,10 @@ def test_a_craft_that_spins_and_is_averaged_over_four_seconds_is_in_no_other_uni
 def test_positions_of_five_decimals_of_a_degree_are_not_interpolated(seed):
     log = measured(seed=42 + seed, minutes=10)
     grain = 1e-5 * 111195.0
-    log |= {"north": grain * np.round(log["north"] / grain), "east": 0.5 * grain * np.round(2.0 * log["east"] / grain)}
+    log |= {
+        "north": grain * np.round(log["north"] / grain),
+        "east": 0.5 * grain * np.round(2.0 * log["east"] / grain),
+    }
     assert examine(stated(log)) == []
 
 

@@ -21,7 +21,10 @@ def zipped(*names, kind=""):
 
 ODS = zipped("content.xml", kind="application/vnd.oasis.opendocument.spreadsheet")
 CASES = {
-    "old.xls": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "Excel before 2007.*libreoffice .* old.xls"),
+    "old.xls": (
+        b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600),
+        "Excel before 2007.*libreoffice .* old.xls",
+    ),
     "named.csv": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(600), "Excel before 2007"),
     "sheet.ods": (ODS, "LibreOffice.*Save it as .xlsx"),
     "sheet.csv": (ODS, "LibreOffice"),

@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from shipcosim.diagnose.log.checks.kinematics import Filter, filter_for, heading_motion, is_clear, whiteness
+from shipcosim.diagnose.log.checks.kinematics import (
+    Filter,
+    filter_for,
+    heading_motion,
+    is_clear,
+    whiteness,
+)
 
 TIME = np.arange(4000.0)
 
@@ -13,7 +19,11 @@ def log(heading_noise, rate_noise, turning=1.0, seed=1):
     true = 20.0 * turning * np.sin(TIME / 60.0)
     rate = turning * np.cos(TIME / 60.0) / 3.0
     heading = true + heading_noise * random.normal(size=len(TIME))
-    return {"time": TIME, "heading": heading, "yaw_rate": rate + rate_noise * random.normal(size=len(TIME))}
+    return {
+        "time": TIME,
+        "heading": heading,
+        "yaw_rate": rate + rate_noise * random.normal(size=len(TIME)),
+    }
 
 
 @pytest.mark.parametrize(("heading_noise", "rate_noise"), [(0.1, 0.05), (1.0, 0.01), (0.1, 0.1)])

@@ -41,13 +41,17 @@ def truth(t):
 
 def gga(t, talker="GP", quality=1, latitude=LATITUDE, sides="NE", start=START):
     position = minutes(latitude, 2), sides[0], minutes(truth(t)["longitude"], 3), sides[1]
-    return sentence(f"{talker}GGA", stamp(t, start)[0], *position, quality, 9, 0.8, 12.0, "M", 40.0, "M", "", "")
+    return sentence(
+        f"{talker}GGA", stamp(t, start)[0], *position, quality, 9, 0.8, 12.0, "M", 40.0, "M", "", ""
+    )
 
 
 def rmc(t, status="A", start=START):
     clock, date = stamp(t, start)
     position = minutes(LATITUDE, 2), "N", minutes(truth(t)["longitude"], 3), "E"
-    return sentence("GPRMC", clock, status, *position, f"{2.0 * 3600 / 1852:.4f}", "90.0", date, "", "", "A")
+    return sentence(
+        "GPRMC", clock, status, *position, f"{2.0 * 3600 / 1852:.4f}", "90.0", date, "", "", "A"
+    )
 
 
 def others(t):
@@ -83,9 +87,9 @@ def test_a_voyage_past_midnight_is_read_back(read):
     t = time - START
     assert np.abs((log["heading"].values - truth(t)["heading"] + 180.0) % 360.0 - 180.0).max() < 0.3
     assert np.diff(log["east"].values) / np.diff(time) == pytest.approx(2.0, rel=0.02)
-    assert log["yaw_rate"].values[5] == pytest.approx(0.2) and log["wind_speed"].values[5] == pytest.approx(
-        5.144, rel=1e-3
-    )
+    assert log["yaw_rate"].values[5] == pytest.approx(0.2) and log["wind_speed"].values[
+        5
+    ] == pytest.approx(5.144, rel=1e-3)
     assert log["wind_from"].values == pytest.approx(truth(t)["wind"], abs=0.2)
     surge, sway = log["surge"].values[5], log["sway"].values[5]  # heading about 356, course 90
     assert (surge, sway) == pytest.approx((-0.14, 2.0), abs=0.05)
@@ -95,7 +99,11 @@ def test_a_voyage_past_midnight_is_read_back(read):
 
 def test_damaged_sentences_are_left_out_and_counted(read):
     lines = voyage()
-    lines[30] = lines[30].replace(",T*", ",9T*") if "HDT" in lines[30] else lines[30][:12] + "9" + lines[30][13:]
+    lines[30] = (
+        lines[30].replace(",T*", ",9T*")
+        if "HDT" in lines[30]
+        else lines[30][:12] + "9" + lines[30][13:]
+    )
     lines[48] = sentence("HEHDT", "123.4", "T", wrong=True)
     log = read(lines)
     assert "2 sentences do not fit checksum or form, the first in line 31" in said(log)
@@ -139,16 +147,27 @@ def test_a_position_without_a_fix_is_none(read):
 
 
 def test_a_receiver_that_has_no_time_yet_is_no_damage(read):
-    cold = [sentence("GPGGA", *[""] * 5, 0, *[""] * 8), sentence("GPRMC", "", "V", *[""] * 7, "", "", "N")]
+    cold = [
+        sentence("GPGGA", *[""] * 5, 0, *[""] * 8),
+        sentence("GPRMC", "", "V", *[""] * 7, "", "", "N"),
+    ]
     log = read([*cold, *cold, *voyage()])
     assert "not fit checksum" not in said(log) and log.sizes["time"] > 50
 
 
 def test_dates_tell_of_days_without_a_sentence(read):
     morning = 9 * 3600.0
-    lines = [line for t in SECONDS[:20] for line in (gga(t, start=morning), rmc(t, start=morning), *others(t))]
+    lines = [
+        line
+        for t in SECONDS[:20]
+        for line in (gga(t, start=morning), rmc(t, start=morning), *others(t))
+    ]
     later = morning + 2 * 86400.0 - 1800.0  # two days on, half an hour earlier
-    lines += [line for t in SECONDS[:20] for line in (gga(t, start=later), rmc(t, start=later), *others(t))]
+    lines += [
+        line
+        for t in SECONDS[:20]
+        for line in (gga(t, start=later), rmc(t, start=later), *others(t))
+    ]
     log = read(lines)
     assert np.ptp(log["time"].values) == pytest.approx(2 * 86400.0 - 1800.0 + 19.0, abs=2.0)
     assert (np.diff(log["time"].values) > 0.0).all() and "2 whole days more" in said(log)
@@ -156,9 +175,15 @@ def test_dates_tell_of_days_without_a_sentence(read):
 
 @pytest.mark.parametrize("form", ["{:.3f} ", "2022-10-27T12:{m:02d}:{s:06.3f}Z,", "{:.3f};"])
 def test_a_time_before_each_sentence_is_its_time(read, form):
-    lines = [form.format(1000.0 + t, m=int(t // 60), s=t % 60) + line for t in SECONDS for line in (gga(t), *others(t))]
+    lines = [
+        form.format(1000.0 + t, m=int(t // 60), s=t % 60) + line
+        for t in SECONDS
+        for line in (gga(t), *others(t))
+    ]
     log = read(lines)
-    assert np.ptp(log["time"].values) == pytest.approx(59.0) and "stand before the sentences" in said(log)
+    assert np.ptp(log["time"].values) == pytest.approx(
+        59.0
+    ) and "stand before the sentences" in said(log)
     assert log["heading"].values[0] == pytest.approx(355.0)
 
 
@@ -180,7 +205,13 @@ def test_speed_and_course_of_vtg_are_of_the_fix_before_it(read):
 
 
 def test_what_is_not_read_is_counted(read):
-    lines = [*voyage(), sentence("GPGSV", 1, 1, "00"), sentence("PSIMSNS", "1"), "!AIVDM,1,1,,A,15M,0", "-- stop --"]
+    lines = [
+        *voyage(),
+        sentence("GPGSV", 1, 1, "00"),
+        sentence("PSIMSNS", "1"),
+        "!AIVDM,1,1,,A,15M,0",
+        "-- stop --",
+    ]
     log = read(lines)
     assert "Sentences not read: AIVDM (1), GPGSV (1), PSIMSNS (1)" in said(log)
     assert "1 line that is no sentence left out, the first is line 364." in said(log)

@@ -25,14 +25,21 @@ def test_columns_named_by_roles_are_read_in_the_units_of_the_roles(tmp_path):
     log = read_log(written(tmp_path, PLAIN))
     assert log["surge"].values == pytest.approx(np.array([1.0, 2.0, 3.0]) * 1852 / 3600, rel=1e-12)
     assert log["surge"].attrs["units"] == "m/s" and log["bow_rpm"].attrs["units"] == "rpm"
-    assert log["time"].values.tolist() == [0.0, 0.5, 1.0] and log["heading"].values.tolist() == [359.0, 1.0, 3.0]
+    assert log["time"].values.tolist() == [0.0, 0.5, 1.0] and log["heading"].values.tolist() == [
+        359.0,
+        1.0,
+        3.0,
+    ]
     assert np.isnan(log["bow_rpm"].values).tolist() == [False, True, False]
     assert log.attrs["unused_columns"] == ["note"]
 
 
 @pytest.mark.parametrize("suffix", [".csv.gz", ".parquet", ".nc"])
 def test_every_format_gives_the_same_log(tmp_path, suffix):
-    plain = written(tmp_path, PLAIN.replace(",note", "").replace(",a\n", "\n").replace(",b\n", "\n").replace(",c", ""))
+    plain = written(
+        tmp_path,
+        PLAIN.replace(",note", "").replace(",a\n", "\n").replace(",b\n", "\n").replace(",c", ""),
+    )
     path = tmp_path / f"other{suffix}"
     if suffix == ".csv.gz":
         path.write_bytes(gzip.compress(plain.read_bytes()))
@@ -66,17 +73,24 @@ def test_a_channel_file_gives_roles_units_signs_and_offsets(tmp_path):
     assert log["surge"].values == pytest.approx([1852 / 3600, 3704 / 3600], rel=1e-12)
     assert log["sway"].values == pytest.approx([-1852 / 3600, -3704 / 3600], rel=1e-12)
     assert log["heading"].values == pytest.approx([0.0, 180.0], abs=1e-9)
-    assert log["thruster.n"].attrs["units"] == "rad/s" and log["thruster.n"].values.tolist() == [5.0, 6.0]
+    assert log["thruster.n"].attrs["units"] == "rad/s" and log["thruster.n"].values.tolist() == [
+        5.0,
+        6.0,
+    ]
     assert log["bow_rpm"].values.tolist() == [5.0, 6.0] and log.attrs["unused_columns"] == []
 
 
 def test_a_degree_of_latitude_is_as_long_as_surveyors_say(tmp_path):
     """At 60 degrees: 111.412 km and 55.800 km, tables of the WGS 84 ellipsoid."""
-    path = written(tmp_path, "time,latitude,longitude\n0,,\n1,60,10\n2,60.001,10\n3,60,10.001\n4,60,370.001\n")
+    path = written(
+        tmp_path, "time,latitude,longitude\n0,,\n1,60,10\n2,60.001,10\n3,60,10.001\n4,60,370.001\n"
+    )
     log = read_log(path)
     assert log["north"].values[1:] == pytest.approx([0.0, 111.412, 0.0, 0.0], abs=2e-3)
     assert log["east"].values[1:] == pytest.approx([0.0, 0.0, 55.800, 55.800], abs=2e-3)
-    assert (log.attrs["latitude_origin"], log.attrs["longitude_origin"]) == pytest.approx((60.0, 10.0))
+    assert (log.attrs["latitude_origin"], log.attrs["longitude_origin"]) == pytest.approx(
+        (60.0, 10.0)
+    )
 
 
 def test_stamps_of_date_and_time_become_seconds(tmp_path):
@@ -120,5 +134,7 @@ def test_a_bad_channel_file_is_refused_with_what_is_wrong(tmp_path, text, said):
 
 
 def test_a_zero_keeps_its_sign(tmp_path):
-    values = read_log(written(tmp_path, "time,yaw_rate [deg/s]\n0,-0.0\n1,0.0\n"))["yaw_rate"].values
+    values = read_log(written(tmp_path, "time,yaw_rate [deg/s]\n0,-0.0\n1,0.0\n"))[
+        "yaw_rate"
+    ].values
     assert np.signbit(values).tolist() == [True, False]

@@ -19,13 +19,23 @@ CHANGES = {
     "time is in tenths of a second, not s": lambda log: {"time": 10.0 * log["time"]},
     "2 s pass in each logged second": lambda log: {"time": 0.5 * log["time"]},
     "0.5 s pass in each logged second": lambda log: {"time": 2.0 * log["time"]},
-    "surge and sway are in km/h, not m/s": lambda log: {role: 3.6 * log[role] for role in ("surge", "sway")},
-    "surge and sway are in ft/s, not m/s": lambda log: {role: log[role] / 0.3048 for role in ("surge", "sway")},
+    "surge and sway are in km/h, not m/s": lambda log: {
+        role: 3.6 * log[role] for role in ("surge", "sway")
+    },
+    "surge and sway are in ft/s, not m/s": lambda log: {
+        role: log[role] / 0.3048 for role in ("surge", "sway")
+    },
     "heading is in rad, not deg": lambda log: {"heading": np.radians(log["heading"])},
     "heading has the other sign": lambda log: {"heading": np.mod(-log["heading"], 360.0)},
-    "heading is counted counter-clockwise from east": lambda log: {"heading": np.mod(90.0 - log["heading"], 360.0)},
-    "north and east are in km, not m": lambda log: {role: 1e-3 * log[role] for role in ("north", "east")},
-    "north and east are in ft, not m": lambda log: {role: log[role] / 0.3048 for role in ("north", "east")},
+    "heading is counted counter-clockwise from east": lambda log: {
+        "heading": np.mod(90.0 - log["heading"], 360.0)
+    },
+    "north and east are in km, not m": lambda log: {
+        role: 1e-3 * log[role] for role in ("north", "east")
+    },
+    "north and east are in ft, not m": lambda log: {
+        role: log[role] / 0.3048 for role in ("north", "east")
+    },
 }
 
 
@@ -63,7 +73,10 @@ def test_a_velocity_that_is_some_per_cent_off_is_no_mistake_of_units():
 def test_two_mistakes_are_both_named():
     log = measured(seed=24)
     wrong = log | {"time": 1000.0 * log["time"], "yaw_rate": np.radians(log["yaw_rate"])}
-    assert {f.note for f in examine(table(wrong))} == {"time is in ms, not s", "yaw_rate is in rad/s, not deg/s"}
+    assert {f.note for f in examine(table(wrong))} == {
+        "time is in ms, not s",
+        "yaw_rate is in rad/s, not deg/s",
+    }
 
 
 def turned(log, degrees):
@@ -76,7 +89,11 @@ def test_a_grid_that_is_turned_further_than_compasses_are_off_is_named_with_its_
     log = measured(seed=25)
     wrong = turned(log, degrees)
     (finding,) = examine(table(wrong))
-    assert (finding.cause, finding.channels, finding.alternatives) == ("frame", ("north", "east"), ())
+    assert (finding.cause, finding.channels, finding.alternatives) == (
+        "frame",
+        ("north", "east"),
+        (),
+    )
     assert "the heading is off by that angle" in finding.note
     angle = finding.parameters["angle"]
     assert angle.estimate == pytest.approx(degrees, abs=4.0 * angle.std) and angle.std < 2.0
@@ -91,7 +108,9 @@ def test_an_angle_that_a_compass_can_be_off_by_is_no_mistake_of_frames():
 
 
 def test_positions_of_latitude_and_longitude_are_in_no_turned_grid():
-    wrong = table(turned(measured(seed=25), 35.0)).assign_attrs(latitude_origin=60.0, longitude_origin=10.0)
+    wrong = table(turned(measured(seed=25), 35.0)).assign_attrs(
+        latitude_origin=60.0, longitude_origin=10.0
+    )
     (finding,) = examine(wrong)
     assert "the heading is off by that angle" in finding.alternatives
 
@@ -107,7 +126,10 @@ def test_the_wind_tells_which_way_round_the_ship_is():
     way = np.cumsum((log["surge"] + 1j * log["sway"]) * np.exp(1j * np.radians(log["heading"])))
     log |= {"north": way.real, "east": way.imag}
     apparent = (6.0 * np.exp(2.0j) + np.gradient(way)) * np.exp(-1j * np.radians(log["heading"]))
-    log |= {"wind_speed": np.abs(apparent), "wind_from": np.mod(np.degrees(np.angle(apparent)), 360.0)}
+    log |= {
+        "wind_speed": np.abs(apparent),
+        "wind_from": np.mod(np.degrees(np.angle(apparent)), 360.0),
+    }
     found = examine(table(two_mirrors(log)))
     assert {f.note for f in found} == {"surge has the other sign", "east has the other sign"}
 
@@ -116,7 +138,9 @@ def test_a_craft_that_has_one_course_against_her_bow_goes_ahead():
     log = without_wind(measured(seed=35))
     way = 1.5 * np.exp(1j * np.radians(log["heading"]))
     log |= {"surge": log["surge"] / 5.0 + 1.5}
-    way = np.cumsum((log["surge"] + 1j * log["sway"] / 5.0) * np.exp(1j * np.radians(log["heading"])))
+    way = np.cumsum(
+        (log["surge"] + 1j * log["sway"] / 5.0) * np.exp(1j * np.radians(log["heading"]))
+    )
     log |= {"north": way.real, "east": way.imag, "sway": log["sway"] / 5.0}
     found = examine(table(two_mirrors(log)))
     assert {f.note for f in found} == {"surge has the other sign", "east has the other sign"}
@@ -124,13 +148,19 @@ def test_a_craft_that_has_one_course_against_her_bow_goes_ahead():
 
 def test_a_craft_that_goes_both_ways_leaves_open_which_way_round_she_is():
     (finding,) = examine(table(without_wind(two_mirrors(measured(seed=36)))))
-    assert {finding.note, *finding.alternatives} >= {"north has the other sign and sway has the other sign"}
+    assert {finding.note, *finding.alternatives} >= {
+        "north has the other sign and sway has the other sign"
+    }
     assert finding.alternatives
 
 
 def mirrored(log):
     """Position to east and north, and heading from east."""
-    return log | {"north": log["east"], "east": log["north"], "heading": np.mod(90.0 - log["heading"], 360.0)}
+    return log | {
+        "north": log["east"],
+        "east": log["north"],
+        "heading": np.mod(90.0 - log["heading"], 360.0),
+    }
 
 
 def test_only_the_wind_tells_a_mirrored_earth_from_mirrored_axes_of_the_ship():
@@ -139,7 +169,9 @@ def test_only_the_wind_tells_a_mirrored_earth_from_mirrored_axes_of_the_ship():
     assert {"north and east are swapped", "sway has the other sign"} <= set(
         " and ".join([finding.note, *finding.alternatives]).split(" and ")
     ) or len(finding.alternatives) >= 1
-    assert repaired(table(mirrored(log)), [finding])["east"].values == pytest.approx(mirrored(log)["east"])
+    assert repaired(table(mirrored(log)), [finding])["east"].values == pytest.approx(
+        mirrored(log)["east"]
+    )
 
 
 def test_what_a_header_states_is_wrong_less_often_than_what_nobody_stated(tmp_path):
@@ -149,7 +181,12 @@ def test_what_a_header_states_is_wrong_less_often_than_what_nobody_stated(tmp_pa
     units = {"time": "s", "surge": "m/s", "sway": "m/s", "heading": "deg", "yaw_rate": "deg/s"}
     headers = [f"{role} [{units[role]}]" if role in units else role for role in log]
     np.savetxt(
-        tmp_path / "log.csv", np.column_stack(list(log.values())), "%.9g", ",", header=",".join(headers), comments=""
+        tmp_path / "log.csv",
+        np.column_stack(list(log.values())),
+        "%.9g",
+        ",",
+        header=",".join(headers),
+        comments="",
     )
     (finding,) = examine(read_log(tmp_path / "log.csv"))
     assert finding.note == "north and east are in km, not m" and not finding.alternatives

@@ -26,14 +26,29 @@ def why(folder, text, column):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("time;surge\n0;1,234\n1;2,345\n", r"'1,234' can be 1.234 \(decimal comma\) or 1234 \(thousands\)"),
+        (
+            "time;surge\n0;1,234\n1;2,345\n",
+            r"'1,234' can be 1.234 \(decimal comma\) or 1234 \(thousands\)",
+        ),
         ("time;surge;sway\n0;1,5;2.345\n1;2,5;3.456\n", "'2.345' can be 2.345 or 2345"),
-        ("time,surge\n03/04/2022 08:00:00,1\n04/05/2022 08:00:00,2\n", "day/month/year .* or month/day/year"),
+        (
+            "time,surge\n03/04/2022 08:00:00,1\n04/05/2022 08:00:00,2\n",
+            "day/month/year .* or month/day/year",
+        ),
         ("time,surge\n08:01,1\n08:02,2\n08:03,2\n", "hours and minutes or minutes and seconds"),
-        ("time,surge\n0,1,5\n1,2,5\n2,3,5\n", "line 2: has 3 cells, and the header has 2. Are these decimal commas"),
+        (
+            "time,surge\n0,1,5\n1,2,5\n2,3,5\n",
+            "line 2: has 3 cells, and the header has 2. Are these decimal commas",
+        ),
         ("0,1,2\n1,1,2\n2,1,2\n", "no names of columns stand above .* file = {names"),
-        ('time,surge,note\n0,1,a\n1,1,"b\n2,1,c\n3,2,d"\n4,2,e\n', "a quotation mark is opened in a row"),
-        ("time,lat,lon\n0,94.2,10\n1,94.3,10\n2,94.4,10\n", "latitude: is 94.2 in row 2, beyond 90 deg"),
+        (
+            'time,surge,note\n0,1,a\n1,1,"b\n2,1,c\n3,2,d"\n4,2,e\n',
+            "a quotation mark is opened in a row",
+        ),
+        (
+            "time,lat,lon\n0,94.2,10\n1,94.3,10\n2,94.4,10\n",
+            "latitude: is 94.2 in row 2, beyond 90 deg",
+        ),
         ("time,heading,heading\n0,1,2\n1,1,2\n", "column 'heading': is there twice"),
     ],
 )
@@ -53,7 +68,11 @@ def test_what_can_be_read_in_two_ways_or_in_none_is_refused(tmp_path, text, said
             "time,p\n0,1250\n1,2000\n",
             [-1, 4],
         ),
-        ('file = {decimal = "."}\ntime = "t"\nsurge = "u (m/s)"', "t,u (m/s)\n0,1\n1,2\n", [1.0, 2.0]),
+        (
+            'file = {decimal = "."}\ntime = "t"\nsurge = "u (m/s)"',
+            "t,u (m/s)\n0,1\n1,2\n",
+            [1.0, 2.0],
+        ),
     ],
 )
 def test_a_channel_file_says_what_the_log_leaves_open(tmp_path, entry, text, surge):
@@ -76,13 +95,21 @@ def test_a_column_of_a_thruster_is_matched_or_the_thrusters_are_listed(tmp_path)
     text = ["time,surge,stbd_rpm,stern_rpm", *(f"{row},3,4" for row in ROWS)]
     said = remarks(tmp_path, text)
     assert "starboard_rpm from 'stbd_rpm'" in said
-    assert "'stern_rpm': no thruster of the system is meant by it: there is port, starboard, tunnel" in said
+    assert (
+        "'stern_rpm': no thruster of the system is meant by it: there is port, starboard, tunnel"
+        in said
+    )
 
 
 def test_without_thrusters_that_a_log_can_name_a_channel_file_is_the_way(tmp_path):
     """As of a ship whose thrusters are all measured maps, over any command."""
-    said = remarks(tmp_path, ["time,surge,left_command", *(f"{row},3" for row in ROWS)], thrusters={})
-    assert "the system has no thruster that it can be; a channel file can name an input of the system" in said
+    said = remarks(
+        tmp_path, ["time,surge,left_command", *(f"{row},3" for row in ROWS)], thrusters={}
+    )
+    assert (
+        "the system has no thruster that it can be; a channel file can name an input of the system"
+        in said
+    )
 
 
 def test_pulses_and_per_cent_are_said_with_what_to_write(tmp_path):
@@ -95,7 +122,10 @@ def test_pulses_and_per_cent_are_said_with_what_to_write(tmp_path):
 def test_a_command_beside_feedback_and_one_alone_are_said(tmp_path):
     text = ["time,surge,port_rpm_cmd,port_rpm_fb,stbd_rpm_cmd", *(f"{row},5,6,7" for row in ROWS)]
     said = remarks(tmp_path, text)
-    assert "the command beside it, 'port_rpm_cmd', is not used" in said and "a command; there is no feedback" in said
+    assert (
+        "the command beside it, 'port_rpm_cmd', is not used" in said
+        and "a command; there is no feedback" in said
+    )
     log = read_log(save(tmp_path, text), None, THRUSTERS)
     assert (log["port_rpm"].values == 6).all() and (log["starboard_rpm"].values == 7).all()
 
@@ -106,7 +136,11 @@ def test_rows_beyond_the_earth_columns_without_a_value_and_damaged_cells_are_sai
     rows[9] = "9,59.00009,10.0,,0.x9"
     rows[11] = "11,0,0,,1.1"
     said = remarks(tmp_path, ["time,lat,lon,heading,surge", *rows])
-    for part in ("1 row with a position beyond the earth", "heading: no row has a value", "the first '0.x9' in row 11"):
+    for part in (
+        "1 row with a position beyond the earth",
+        "heading: no row has a value",
+        "the first '0.x9' in row 11",
+    ):
         assert part in said
     assert "0, 0, which is no fix" in said
 

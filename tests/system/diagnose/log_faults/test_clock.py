@@ -22,8 +22,12 @@ def hurried(log):
     rows = true <= time[-1]
     table = {str(name): np.interp(true[rows], time, log[name].values) for name in log.data_vars}
     for name in ("heading", "wind_from"):
-        table[name] = np.mod(np.interp(true[rows], time, np.unwrap(log[name].values, period=360.0)), 360.0)
-    return log.isel(time=rows).assign({name: ("time", values, log[name].attrs) for name, values in table.items()})
+        table[name] = np.mod(
+            np.interp(true[rows], time, np.unwrap(log[name].values, period=360.0)), 360.0
+        )
+    return log.isel(time=rows).assign(
+        {name: ("time", values, log[name].attrs) for name, values in table.items()}
+    )
 
 
 def test_a_right_clock_is_not_suspected():
@@ -48,7 +52,9 @@ def test_a_clock_is_testable_where_the_ship_moves_and_not_where_nothing_happens(
     motion = problem.motion
     still = motion._replace(**{name: 0.0 * getattr(motion, name) for name in ("u", "v", "r")})
     units = {name: (0.0 * speed, angle) for name, (speed, angle) in problem.record.units.items()}
-    calm = replace(problem.record, units=units, wind=tuple(0.0 * series for series in problem.record.wind))
+    calm = replace(
+        problem.record, units=units, wind=tuple(0.0 * series for series in problem.record.wind)
+    )
     assert not is_testable(replace(problem, motion=still, record=calm))
 
 
@@ -58,18 +64,33 @@ def test_a_compass_that_deviates_with_the_heading_is_no_clock():
     heading = log["heading"].values
     deviated = np.mod(heading + 15.0 * np.sin(np.radians(heading) + 4.5), 360.0)
     problem = twin.ready(log.assign(heading=("time", deviated, log["heading"].attrs)))
-    gain, finding = timing._most_likely(timing._blocks(problem, timing._edges(problem), problem.known(())))
+    gain, finding = timing._most_likely(
+        timing._blocks(problem, timing._edges(problem), problem.known(()))
+    )
     assert gain > 30.0 and finding.cause == "clock"
-    assert not timing._all_aspects_agree(problem, finding, problem.known(())) and clock_by_response(problem) is None
+    assert (
+        not timing._all_aspects_agree(problem, finding, problem.known(()))
+        and clock_by_response(problem) is None
+    )
 
 
 def test_thrusters_that_push_less_for_a_while_are_no_clock():
     """The speed answers at another rate then, but she comes as far at her speed as before."""
     log = twin.logs()["healthy"]
     here = (log["time"].values > FIRST) & (log["time"].values < LAST)
-    told = {role: ("time", np.where(here, 1.25, 1.0) * log[role].values) for role in log.data_vars if "_rpm" in role}
+    told = {
+        role: ("time", np.where(here, 1.25, 1.0) * log[role].values)
+        for role in log.data_vars
+        if "_rpm" in role
+    }
     clock = Finding(
-        "clock", None, "data", 0.98, {"rate": ParameterEstimate(0.8, 0.02, "1")}, ((FIRST, LAST),), ("time",)
+        "clock",
+        None,
+        "data",
+        0.98,
+        {"rate": ParameterEstimate(0.8, 0.02, "1")},
+        ((FIRST, LAST),),
+        ("time",),
     )
     problem = twin.ready(log.assign(told))
     assert not timing._all_aspects_agree(problem, clock, problem.known(()))

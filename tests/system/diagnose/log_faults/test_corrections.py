@@ -16,13 +16,18 @@ KNOTS = next(label for label in WIND_LABELS if "in kn," in label.sentence)
 
 def counted_from_north(log):
     """A log with the direction of the wind counted from north."""
-    return log.assign(wind_from=log["wind_from"].copy(data=np.mod(log["wind_from"] + log["heading"], 360.0)))
+    return log.assign(
+        wind_from=log["wind_from"].copy(data=np.mod(log["wind_from"] + log["heading"], 360.0))
+    )
 
 
 def over_ground_from_north(log):
     """A log with the wind over ground, counted from north."""
     speed, angle = log["wind_speed"].values, np.radians(log["wind_from"].values)
-    ahead, aside = speed * np.cos(angle) - log["surge"].values, speed * np.sin(angle) - log["sway"].values
+    ahead, aside = (
+        speed * np.cos(angle) - log["surge"].values,
+        speed * np.sin(angle) - log["sway"].values,
+    )
     angle = log["wind_from"].copy(data=np.degrees(np.arctan2(aside, ahead)))
     return counted_from_north(
         log.assign(wind_speed=log["wind_speed"].copy(data=np.hypot(ahead, aside)), wind_from=angle)
@@ -34,7 +39,9 @@ def over_ground_from_north(log):
     [(counted_from_north, FROM_NORTH), (over_ground_from_north, OVER_GROUND_FROM_NORTH)],
     ids=["from north", "over ground, from north"],
 )
-def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_says_so(hidden, label):
+def test_a_wind_told_to_be_counted_from_north_is_over_ground_too_where_the_ship_says_so(
+    hidden, label
+):
     log = hidden(twin.logs()["healthy"])
     told = finding_of(FROM_NORTH, 0.99)
     clean = with_label(log, FROM_NORTH)
@@ -51,6 +58,8 @@ def test_a_unit_of_the_wind_that_the_ship_answers_nowhere_is_no_fault():
     log = twin.logs()["healthy"]
     told = finding_of(KNOTS, 0.97)
     clean = with_label(log, KNOTS)
-    right = with_right_wind(Identification(log, twin.model(), read_catalogue(), (told,), clean, twin.ready(clean)))
+    right = with_right_wind(
+        Identification(log, twin.model(), read_catalogue(), (told,), clean, twin.ready(clean))
+    )
     assert right.faults == ()
     np.testing.assert_array_equal(right.repaired["wind_speed"], log["wind_speed"])

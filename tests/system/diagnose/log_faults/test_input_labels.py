@@ -23,7 +23,12 @@ def changed(channels, part=True):
     log = twin.logs()["healthy"]
     time = log["time"].values
     here = (time >= FIRST) & (time <= LAST) | (not part)
-    return log.assign({role: ("time", np.where(here, values, log[role].values)) for role, values in channels.items()})
+    return log.assign(
+        {
+            role: ("time", np.where(here, values, log[role].values))
+            for role, values in channels.items()
+        }
+    )
 
 
 def best(log):
@@ -39,7 +44,9 @@ def test_a_tunnel_of_the_other_sign_is_found_in_its_part_of_the_log():
     assert abs(first - FIRST) < 20.0 and abs(last - LAST) < 20.0
     time = healthy["time"].values
     inner = (time > FIRST + 20.0) & (time < LAST - 20.0)
-    np.testing.assert_array_equal(right["tunnel_rpm"].values[inner], healthy["tunnel_rpm"].values[inner])
+    np.testing.assert_array_equal(
+        right["tunnel_rpm"].values[inner], healthy["tunnel_rpm"].values[inner]
+    )
 
 
 def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
@@ -48,14 +55,18 @@ def test_the_ends_of_a_segment_are_settled_to_a_few_rows():
     _, mislabel, finding = suspected_inputs(log, twin.ready(log))[0]
     finding = replace(finding, segments=((FIRST + 25.0, LAST - 30.0),))
     for _ in range(2):
-        finding = with_refined_segment(log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments)))
+        finding = with_refined_segment(
+            log, mislabel, finding, twin.ready(with_label(log, mislabel, finding.segments))
+        )
     ((first, last),) = finding.segments
     assert abs(first - FIRST) <= 4.0 and abs(last - LAST) <= 4.0
 
 
 @pytest.mark.parametrize("part", [True, False], ids=["in a part", "throughout"])
 def test_what_is_told_throughout_is_settled_to_the_part_where_it_is_so(part):
-    log = changed({"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values}, part)
+    log = changed(
+        {"wind_speed": 3600.0 / 1852.0 * twin.logs()["healthy"]["wind_speed"].values}, part
+    )
     told = finding_of(KNOTS, 0.99)
     found = with_refined_segment(log, KNOTS, told, twin.ready(with_label(log, KNOTS)))
     np.testing.assert_allclose(found.segments, [(FIRST, LAST)] if part else np.zeros(0), atol=10.0)
@@ -72,7 +83,9 @@ def test_swapped_twins_are_found_by_their_channels():
     healthy = twin.logs()["healthy"]
     pairs = [(f"port_{what}", f"starboard_{what}") for what in ("rpm", "azimuth")]
     pairs += [pair[::-1] for pair in pairs]
-    finding, right = best(changed({role: healthy[other].values for role, other in pairs}, part=False))
+    finding, right = best(
+        changed({role: healthy[other].values for role, other in pairs}, part=False)
+    )
     assert finding.cause == "channel_swap"
     assert set(finding.channels) == {role for pair in pairs for role in pair}
     for role in finding.channels:

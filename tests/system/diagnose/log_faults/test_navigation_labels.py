@@ -18,9 +18,15 @@ def test_another_label_than_was_found_first_is_taken():
     """East was mirrored; what was undone is a swap of surge and sway."""
     healthy = twin.logs()["healthy"]
     log = healthy.assign(east=("time", -healthy["east"].values, healthy["east"].attrs))
-    swap = next(label for label in POSITION_LABELS if label.channels == ("surge", "sway") and label.scale is None)
+    swap = next(
+        label
+        for label in POSITION_LABELS
+        if label.channels == ("surge", "sway") and label.scale is None
+    )
     better, *_ = relabelled(log, [said(swap)], twin.ready(healthy))
-    assert [(fault.cause, fault.channels, fault.segments) for fault in better.faults] == [("sign", ("east",), ())]
+    assert [(fault.cause, fault.channels, fault.segments) for fault in better.faults] == [
+        ("sign", ("east",), ())
+    ]
 
 
 def test_what_was_found_rightly_stays():
@@ -32,9 +38,14 @@ def test_what_was_found_rightly_stays():
 def test_units_stretch_the_density_of_their_channels():
     healthy = twin.logs()["healthy"]
     knots = {role: 3600.0 / 1852.0 for role in ("surge", "sway")}
-    log = healthy.assign({r: ("time", k * healthy[r].values, healthy[r].attrs) for r, k in knots.items()})
+    log = healthy.assign(
+        {r: ("time", k * healthy[r].values, healthy[r].attrs) for r, k in knots.items()}
+    )
     problem = twin.ready(healthy)
-    loud = replace(problem, noise=replace(problem.noise, white=problem.noise.white * [1, 1, 1, 1.944, 1.944, 1]))
+    loud = replace(
+        problem,
+        noise=replace(problem.noise, white=problem.noise.white * [1, 1, 1, 1.944, 1.944, 1]),
+    )
     swap = said(next(label for label in POSITION_LABELS if label.cause == "channel_swap"))
     better, *_ = relabelled(log, [swap], loud)
     assert better.faults[0].note == "surge and sway are in kn, not m/s"
@@ -46,6 +57,8 @@ def test_near_north_earth_fixed_is_body_fixed_and_no_fault():
     healthy = twin.logs()["healthy"]
     earth = next(label for label in POSITION_LABELS if "velocity towards north" in label.sentence)
     for heading, matters in ((20.0, False), (90.0, True)):
-        kept = healthy.assign(heading=("time", np.full(healthy.sizes["time"], heading), healthy["heading"].attrs))
+        kept = healthy.assign(
+            heading=("time", np.full(healthy.sizes["time"], heading), healthy["heading"].attrs)
+        )
         assert _matters(kept, earth) is matters
     assert _matters(kept, negative("surge"))

@@ -18,10 +18,14 @@ def test_gaussian_filter_is_scipys(ends, mode, order, n, width):
         assert np.allclose(ours, theirs, rtol=1e-12, atol=1e-13 * width**-order)
 
 
-@pytest.mark.parametrize("n, rows", [(1, 1), (1, 4), (9, 2), (9, 3), (9, 40), (2000, 41), (2000, 300)])
+@pytest.mark.parametrize(
+    "n, rows", [(1, 1), (1, 4), (9, 2), (9, 3), (9, 40), (2000, 41), (2000, 300)]
+)
 def test_moving_average_is_scipys(n, rows):
     series = np.random.default_rng(rows).normal(size=n)
-    assert np.allclose(moving_average(series, rows), ndimage.uniform_filter1d(series, rows), rtol=1e-12, atol=1e-13)
+    assert np.allclose(
+        moving_average(series, rows), ndimage.uniform_filter1d(series, rows), rtol=1e-12, atol=1e-13
+    )
 
 
 def test_a_row_without_a_value_spoils_only_the_rows_about_it():

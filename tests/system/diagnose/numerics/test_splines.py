@@ -22,4 +22,6 @@ def test_integral_is_scipys(n, kind, uneven):
 
 def test_a_cubic_is_integrated_exactly():
     time = np.array([0.0, 0.3, 1.0, 1.1, 2.7, 4.0])
-    assert np.allclose(spline_integral(time, time**3 - time), 0.25 * time**4 - 0.5 * time**2, rtol=0.0, atol=1e-13)
+    assert np.allclose(
+        spline_integral(time, time**3 - time), 0.25 * time**4 - 0.5 * time**2, rtol=0.0, atol=1e-13
+    )

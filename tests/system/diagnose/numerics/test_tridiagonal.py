@@ -12,11 +12,17 @@ from shipcosim.diagnose.numerics import solve_tridiagonal
 def test_solution_is_that_of_scipy(n, shape):
     random = np.random.default_rng(n)
     lower, upper = random.uniform(-1.0, 1.0, (2, n))
-    diagonal = random.choice([-1.0, 1.0], n) * (np.abs(lower) + np.abs(upper) + random.uniform(1e-3, 1.0, n))
-    right = random.normal(size=(n, *shape)) * 10.0 ** random.uniform(-6.0, 6.0, (n, *[1] * len(shape)))
+    diagonal = random.choice([-1.0, 1.0], n) * (
+        np.abs(lower) + np.abs(upper) + random.uniform(1e-3, 1.0, n)
+    )
+    right = random.normal(size=(n, *shape)) * 10.0 ** random.uniform(
+        -6.0, 6.0, (n, *[1] * len(shape))
+    )
     bands = np.array([np.r_[0.0, upper[:-1]], diagonal, np.r_[lower[1:], 0.0]])
     theirs = solve_banded((1, 1), bands, right.reshape(n, -1)).reshape(right.shape)
-    assert np.allclose(solve_tridiagonal(lower, diagonal, upper, right), theirs, rtol=1e-10, atol=1e-11)
+    assert np.allclose(
+        solve_tridiagonal(lower, diagonal, upper, right), theirs, rtol=1e-10, atol=1e-11
+    )
 
 
 @pytest.mark.parametrize("gain", [1e-9, 0.01, 1.0])

@@ -21,7 +21,9 @@ CURRENT = {"water.current_north": 0.2, "water.current_east": -0.15}
 @cache
 def logs(seed):
     """By name, logs of the same ship on one day: well, with a loss since, and in a current."""
-    return twin.sailed({"well": HER_OWN, "lost": HER_OWN | SINCE, "current": HER_OWN | CURRENT}, seed=seed)
+    return twin.sailed(
+        {"well": HER_OWN, "lost": HER_OWN | SINCE, "current": HER_OWN | CURRENT}, seed=seed
+    )
 
 
 @cache
@@ -41,4 +43,6 @@ def reference(name="well", seed=3):
     """The reference of it."""
     found, log = calibration(name, seed), ReferenceLog(name=name, rows=361, span_s=(0.0, 360.0))
     ordinary = found.unmodelled[name]
-    return reference_of(found, twin.model(), ordinary, [log], system="gunnerus_open", version="test")
+    return reference_of(
+        found, twin.model(), ordinary, [log], system="gunnerus_open", version="test"
+    )

@@ -32,7 +32,11 @@ def made(tmp_path_factory):
 
 def test_calibration_leaves_set_reference_and_page(made):
     ship, folder = made
-    assert sorted(path.name for path in folder.iterdir()) == ["calibrated.ssv", "reference.json", "report.html"]
+    assert sorted(path.name for path in folder.iterdir()) == [
+        "calibrated.ssv",
+        "reference.json",
+        "report.html",
+    ]
     assert not ship.refusals and [log.name for log in ship.logs] == ["log-1", "log-2"]
     assert "vessel.cross_flow_drag" in (folder / "report.html").read_text(encoding="utf-8")
 
@@ -55,8 +59,12 @@ def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
     gross = Finding("thrust_to_inertia")
     logs = {
         "open": SimpleNamespace(faults=(misread,), comparison=None),
-        "poor": SimpleNamespace(faults=(), comparison=SimpleNamespace(obstacles=("Rows 9 s apart.",), findings=())),
-        "gross": SimpleNamespace(faults=(), comparison=SimpleNamespace(obstacles=(), findings=(gross,))),
+        "poor": SimpleNamespace(
+            faults=(), comparison=SimpleNamespace(obstacles=("Rows 9 s apart.",), findings=())
+        ),
+        "gross": SimpleNamespace(
+            faults=(), comparison=SimpleNamespace(obstacles=(), findings=(gross,))
+        ),
     }
     with pytest.raises(ShipcosimError) as raised:
         _check_usable(logs)
@@ -68,7 +76,9 @@ def test_a_log_is_held_against_the_ship_of_the_reference(made):
     ship, folder = made
     read = read_measurements(ships.logs(4)["lost"], twin.system(), reference=read_reference(folder))
     estimates = {number.name: number.estimate for number in ship.reference.numbers}
-    assert read.ship.directions and read.ship.get("vessel.mass") == estimates["vessel.mass"] != 531e3
+    assert (
+        read.ship.directions and read.ship.get("vessel.mass") == estimates["vessel.mass"] != 531e3
+    )
 
 
 def test_logs_have_names_of_their_own():

@@ -27,15 +27,22 @@ def test_a_loss_has_what_it_was_at_the_reference_and_what_it_is_now(since):
     (found,) = since(lost)
     number = next(one for one in ships.reference().numbers if one.name == "port.thrust_loss")
     before = found.at_reference["loss"]
-    assert (before.estimate, before.std) == (pytest.approx(number.estimate), pytest.approx(number.std))
-    assert json.loads(json.dumps(found.as_json()))["at_reference"]["loss"]["std"] == pytest.approx(number.std)
+    assert (before.estimate, before.std) == (
+        pytest.approx(number.estimate),
+        pytest.approx(number.std),
+    )
+    assert json.loads(json.dumps(found.as_json()))["at_reference"]["loss"]["std"] == pytest.approx(
+        number.std
+    )
     ((name, size),) = size_rows(found)
     assert name == "loss" and size.endswith(" → 0.120 ± 0.010")
     assert "at the reference: loss" in told(found)
 
 
 def test_an_angle_is_in_the_units_of_the_catalogue(since):
-    turned = Finding("azimuth_offset", "port", parameters={"offset": ParameterEstimate(9.0, 0.3, "deg")})
+    turned = Finding(
+        "azimuth_offset", "port", parameters={"offset": ParameterEstimate(9.0, 0.3, "deg")}
+    )
     (found,) = since(turned)
     number = next(one for one in ships.reference().numbers if one.name == "port.azimuth_offset")
     assert found.at_reference["offset"].std == pytest.approx(57.29578 * number.std, rel=1e-6)
@@ -45,7 +52,10 @@ def test_an_angle_is_in_the_units_of_the_catalogue(since):
 def test_weather_and_faults_of_the_log_have_no_size_at_the_reference(since):
     current = Finding(
         "current",
-        parameters={"north": ParameterEstimate(0.2, 0.01, "m/s"), "east": ParameterEstimate(0.0, 0.01, "m/s")},
+        parameters={
+            "north": ParameterEstimate(0.2, 0.01, "m/s"),
+            "east": ParameterEstimate(0.0, 0.01, "m/s"),
+        },
     )
     for found in since(current, Finding("gap", kind="data")):
         assert not found.at_reference and "at_reference" not in found.as_json()

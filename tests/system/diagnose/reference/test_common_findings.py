@@ -28,18 +28,22 @@ SWAP = Finding(
 
 def ratios(*sizes, axes=("surge", "sway", "yaw")):
     """By name of the log: ratios with their standard deviations."""
-    return {f"log-{k}": CommonRatio(ratio, std, axes) for k, (ratio, std) in enumerate(sizes, start=1)}
+    return {
+        f"log-{k}": CommonRatio(ratio, std, axes) for k, (ratio, std) in enumerate(sizes, start=1)
+    }
 
 
 def test_estimates_of_logs_are_weighed_by_what_they_know():
-    found = together([{"lag": ParameterEstimate(0.4, 0.01, "s")}, {"lag": ParameterEstimate(0.5, 0.1, "s")}])["lag"]
+    found = together(
+        [{"lag": ParameterEstimate(0.4, 0.01, "s")}, {"lag": ParameterEstimate(0.5, 0.1, "s")}]
+    )["lag"]
     assert found.estimate == pytest.approx(0.401, abs=0.001) and 0.0099 < found.std < 0.0101
 
 
 def test_estimates_that_disagree_are_as_uncertain_as_they_differ():
-    assert together([{"x": ParameterEstimate(0.3, 0.01, "1")}, {"x": ParameterEstimate(0.5, 0.01, "1")}])[
-        "x"
-    ].std == pytest.approx(0.1)
+    assert together(
+        [{"x": ParameterEstimate(0.3, 0.01, "1")}, {"x": ParameterEstimate(0.5, 0.01, "1")}]
+    )["x"].std == pytest.approx(0.1)
 
 
 def test_one_ratio_is_common_to_logs_that_agree_and_better_known_than_by_one():
@@ -96,7 +100,8 @@ def test_what_a_log_leaves_open_is_no_common_fault():
 
 
 @pytest.mark.parametrize(
-    ("best", "leans"), [([LabelError(("left", "right"))], True), ([], False), ([LabelError(("left",))], False)]
+    ("best", "leans"),
+    [([LabelError(("left", "right"))], True), ([], False), ([LabelError(("left",))], False)],
 )
 def test_a_log_that_cannot_tell_leans_to_a_fault_by_its_best_reading(best, leans):
     labels = SimpleNamespace(best=SimpleNamespace(changes=best), rivals=())
@@ -116,7 +121,9 @@ def test_labels_are_put_right_in_the_log_as_read():
 
 def test_discrepancies_alike_are_one_with_the_range_of_their_sizes_signs_first():
     def weak(size, share=0.8):
-        return Discrepancy(f"thrust over inertia {size:.2f} of the model's", None, None, size, 0.05, "1", share)
+        return Discrepancy(
+            f"thrust over inertia {size:.2f} of the model's", None, None, size, 0.05, "1", share
+        )
 
     wrong = Discrepancy("yaw moment: wrong sign", None, "yaw", -0.6, 0.05, "1", 0.4)
     alone = Discrepancy("thrust acts 2 s after its command", None, None, 2.0, 0.5, "s", 0.1)

@@ -136,7 +136,10 @@ def lost(tmp_path_factory):
         draw("trial", 3000, among=["thrust_loss"], minutes=10, day=day).save(logs / f"day{day}.csv")
     told = []
     found = diagnose_jointly(
-        sorted(logs.iterdir()), twin.system(), progress=lambda step, *_: told.append(step), out=folder
+        sorted(logs.iterdir()),
+        twin.system(),
+        progress=lambda step, *_: told.append(step),
+        out=folder,
     )
     return found, folder, list(dict.fromkeys(told))
 
@@ -150,7 +153,9 @@ def test_logs_that_cannot_be_used_are_said_together_before_any_work(tmp_path):
     for name in ("one", "two"):
         (tmp_path / f"{name}.csv").write_text("time [s],nothing [m]\n0,1\n1,2\n", encoding="utf-8")
     with pytest.raises(ShipcosimError) as raised:
-        diagnose_jointly(sorted(tmp_path.iterdir()), twin.system(), progress=lambda step, *_: told.append(step))
+        diagnose_jointly(
+            sorted(tmp_path.iterdir()), twin.system(), progress=lambda step, *_: told.append(step)
+        )
     assert {"one.csv", "two.csv"} <= {
         problem.where.rpartition("/")[2].split(",")[0] for problem in raised.value.problems
     }
@@ -164,8 +169,12 @@ def test_a_loss_in_both_logs_is_named_once_with_what_each_log_says_of_it(lost):
     ]
     (finding,) = found.findings
     assert finding.logs == ["day0", "day1"] and set(finding.by_log) == {"day0", "day1"}
-    assert finding.parameters["loss"].estimate == pytest.approx(LOST, abs=3.0 * finding.parameters["loss"].std)
-    assert all(size["loss"].std > finding.parameters["loss"].std for size in finding.by_log.values())
+    assert finding.parameters["loss"].estimate == pytest.approx(
+        LOST, abs=3.0 * finding.parameters["loss"].std
+    )
+    assert all(
+        size["loss"].std > finding.parameters["loss"].std for size in finding.by_log.values()
+    )
 
 
 def test_each_log_is_predicted_better_by_the_size_that_the_other_says(lost):
@@ -178,9 +187,16 @@ def test_baseline_and_gain_are_over_both_logs_each_judged_by_the_other(lost):
     found = schema_of(lost[0])
     errors = [one.errors for one in found.logs]
     assert found.baseline.horizon_s == errors[0].horizon_s == errors[1].horizon_s
-    assert found.gain.horizon_s == found.baseline.horizon_s[-1] and found.gain.logs == ["day0", "day1"]
-    over_logs = np.sqrt(np.mean([np.square([e.before_m[-1], e.after_m[-1]]) for e in errors], axis=0))
-    assert (found.baseline.position_error_m[-1], found.gain.after_m) == pytest.approx(tuple(over_logs))
+    assert found.gain.horizon_s == found.baseline.horizon_s[-1] and found.gain.logs == [
+        "day0",
+        "day1",
+    ]
+    over_logs = np.sqrt(
+        np.mean([np.square([e.before_m[-1], e.after_m[-1]]) for e in errors], axis=0)
+    )
+    assert (found.baseline.position_error_m[-1], found.gain.after_m) == pytest.approx(
+        tuple(over_logs)
+    )
     assert found.gain.before_m == pytest.approx(over_logs[0])
     low, high = found.gain.ci95
     assert 0.0 < low < found.gain.share_of_explainable < high < 1.2
@@ -217,29 +233,52 @@ def test_without_a_cause_the_page_still_says_how_far_the_simulation_is_off(lost)
     found = lost[0]
     bare = {
         name: replace(
-            one, fitted_on=(), position={"before": one.position["before"]}, heading={"before": one.heading["before"]}
+            one,
+            fitted_on=(),
+            position={"before": one.position["before"]},
+            heading={"before": one.heading["before"]},
         )
         for name, one in found.errors.items()
     }
-    plain = replace(found, verdict="consistent", findings=(), sizes={}, errors=bare, extension=None, changes=())
+    plain = replace(
+        found, verdict="consistent", findings=(), sizes={}, errors=bare, extension=None, changes=()
+    )
     text = render(plain)
     assert schema_of(plain).gain is None and schema_of(plain).baseline == schema_of(found).baseline
-    assert "CONSISTENT" in text and "the system stays as it is" in text and "Position error by log" in text
+    assert (
+        "CONSISTENT" in text
+        and "the system stays as it is" in text
+        and "Position error by log" in text
+    )
 
 
 def test_weather_has_its_log_in_diagnosis_json_and_a_thruster_her_component():
-    findings = (Shared(Finding("current", "monday"), ("monday",)), Shared(Finding("thrust_loss", "port"), ("friday",)))
+    findings = (
+        Shared(Finding("current", "monday"), ("monday",)),
+        Shared(Finding("thrust_loss", "port"), ("friday",)),
+    )
     candidates = (Candidate("current", "monday", 0.9),)
-    logs = {"monday": Diagnosis("consistent"), "friday": Diagnosis("named", (Finding("gap", kind="data"),))}
+    logs = {
+        "monday": Diagnosis("consistent"),
+        "friday": Diagnosis("named", (Finding("gap", kind="data"),)),
+    }
     content = schema_of(JointDiagnosis("named", findings, candidates, (), ("mass",), logs))
-    assert [(one.component, one.log) for one in content.findings] == [(None, "monday"), ("port", None)]
+    assert [(one.component, one.log) for one in content.findings] == [
+        (None, "monday"),
+        ("port", None),
+    ]
     assert content.candidates[0].log == "monday"
-    assert [(one.name, one.verdict) for one in content.logs] == [("monday", "consistent"), ("friday", "named")]
+    assert [(one.name, one.verdict) for one in content.logs] == [
+        ("monday", "consistent"),
+        ("friday", "named"),
+    ]
     assert content.logs[1].findings[0]["cause"] == "gap"
 
 
 def test_a_fault_that_logs_share_is_common_and_another_is_its_logs_own():
-    shared = Finding("frame", kind="data", channels=("wind_speed",), note="wind_speed is in kn, not m/s")
+    shared = Finding(
+        "frame", kind="data", channels=("wind_speed",), note="wind_speed is in kn, not m/s"
+    )
     own = Finding("gap", kind="data", segments=((1.0, 9.0),))
     logs = {"a": Diagnosis("named", (shared,)), "b": Diagnosis("named", (shared, own))}
     found = JointDiagnosis("named", (Shared(shared, ("a", "b")),), logs=logs)

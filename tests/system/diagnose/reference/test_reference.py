@@ -11,7 +11,12 @@ from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import judge
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.reference.calibration import calibrated_to, causes_beside, likeliest_scale, numbers_of
+from shipcosim.diagnose.reference.calibration import (
+    calibrated_to,
+    causes_beside,
+    likeliest_scale,
+    numbers_of,
+)
 from shipcosim.diagnose.reference.reference import read_reference, with_reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import DAY_TO_DAY
@@ -26,7 +31,10 @@ def known():
 
 def test_calibration_finds_the_ships_own_numbers_within_what_it_says_of_them():
     numbers = {number.name: number for number in ships.reference().numbers}
-    off = [(numbers[name].estimate - value) / numbers[name].std for name, value in ships.HER_OWN.items()]
+    off = [
+        (numbers[name].estimate - value) / numbers[name].std
+        for name, value in ships.HER_OWN.items()
+    ]
     assert np.abs(off).max() < 2.5
     assert numbers["vessel.cross_flow_drag"].std < 0.5 * numbers["vessel.cross_flow_drag"].tolerance
     assert not any(name.startswith(("water.", "instruments.")) for name in numbers)
@@ -65,9 +73,13 @@ def test_directions_have_the_covariance_of_the_reference_and_what_days_differ_by
     found = np.array([[direction[name] for direction in known.directions] for name in names])
     expected = covariance + np.diag((DAY_TO_DAY * tolerances) ** 2)
     np.testing.assert_allclose(
-        (found @ found.T) / np.outer(tolerances, tolerances), expected / np.outer(tolerances, tolerances), atol=1e-3
+        (found @ found.T) / np.outer(tolerances, tolerances),
+        expected / np.outer(tolerances, tolerances),
+        atol=1e-3,
     )
-    assert known.get("vessel.mass") == next(n.estimate for n in reference.numbers if n.name == "vessel.mass")
+    assert known.get("vessel.mass") == next(
+        n.estimate for n in reference.numbers if n.name == "vessel.mass"
+    )
 
 
 def test_healthy_ships_are_drawn_as_the_reference_leaves_them_uncertain(known):

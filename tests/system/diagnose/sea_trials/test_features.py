@@ -22,7 +22,9 @@ def circle(side=1, current=(0.0, 0.0), compass=0.0, course=0.7, drift=0.1):
     going = SPEED * np.cos(path) + current[0], SPEED * np.sin(path) + current[1]
     u = np.cos(heading) * going[0] + np.sin(heading) * going[1]
     v = -np.sin(heading) * going[0] + np.cos(heading) * going[1]
-    measured = np.column_stack((north, east, heading, u, v, np.full(time.size, side * SPEED / RADIUS)))
+    measured = np.column_stack(
+        (north, east, heading, u, v, np.full(time.size, side * SPEED / RADIUS))
+    )
     return SeaTrial("turning circle", side, (0.0, float(time[-1])), 0.5, time, measured, {})
 
 
@@ -33,15 +35,18 @@ def told(trial):
 @pytest.mark.parametrize("side", [1, -1])
 def test_advance_transfer_and_tactical_diameter_of_a_circle_are_its_radius_and_diameter(side):
     found = told(circle(side))
-    assert [np.exp(found[name]) for name in ("advance", "transfer", "tactical diameter")] == pytest.approx(
-        [RADIUS, RADIUS, 2.0 * RADIUS], rel=1e-3
-    )
+    assert [
+        np.exp(found[name]) for name in ("advance", "transfer", "tactical diameter")
+    ] == pytest.approx([RADIUS, RADIUS, 2.0 * RADIUS], rel=1e-3)
 
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_current_and_a_wrong_compass_change_no_distance(side):
     """Transfer is across the first course, so neither heading nor drift of the water turns it."""
-    plain, found = told(circle(side)), told(circle(side, current=(0.2, -0.15), compass=np.radians(3.0)))
+    plain, found = (
+        told(circle(side)),
+        told(circle(side, current=(0.2, -0.15), compass=np.radians(3.0))),
+    )
     for name in ("advance", "transfer", "tactical diameter"):
         assert found[name] == pytest.approx(plain[name], abs=2e-3)
 

@@ -13,7 +13,13 @@ from shipcosim.diagnose.sea_trials.clock import own_clock
 from shipcosim.diagnose.sea_trials.evidence import ranked, trial_evidence
 from shipcosim.diagnose.sea_trials.features import SOUGHT, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
-from shipcosim.diagnose.sea_trials.study import best_of, causes_of_trials, estimates, rivals_of, study
+from shipcosim.diagnose.sea_trials.study import (
+    best_of,
+    causes_of_trials,
+    estimates,
+    rivals_of,
+    study,
+)
 from shipcosim.diagnose.sea_trials.windows import as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.errors import ShipcosimError
@@ -91,7 +97,9 @@ def test_drag_in_turns_and_late_orders_are_found_together_however_bad_the_clock(
         names = {cause.cause for cause in one.hypotheses}
         assert "late_orders" in names and names & DRAG_IN_TURNS and len(names) == 2
     assert "drift_drag" in {cause.cause for one in (best, *rivals) for cause in one.hypotheses}
-    lag = dict(zip((cause.cause for cause in best.hypotheses), estimates(best), strict=True))["late_orders"]
+    lag = dict(zip((cause.cause for cause in best.hypotheses), estimates(best), strict=True))[
+        "late_orders"
+    ]
     assert abs(lag.estimate - 2.5) < 3.0 * lag.std and lag.std < 0.8
 
 

@@ -21,12 +21,20 @@ SHAFTS = {"port": 170.0 / 60.0, "starboard": 170.0 / 60.0}
 
 @pytest.fixture(scope="module")
 def found():
-    (log,) = trials.logs({"slowed in turns": {"vessel.mmg_X_vv": -0.7, "lag": 2.5}}, seed=3).values()
+    (log,) = trials.logs(
+        {"slowed in turns": {"vessel.mmg_X_vv": -0.7, "lag": 2.5}}, seed=3
+    ).values()
     read = checked(ReadLog(log, twin.model(), {}))
     record = as_ordered(record_of(read.repaired, read.ship), read.repaired, read.ship)
     drags = {"drift_drag", "turn_drag", "sway_momentum", "late_orders"}
-    causes = [one for one in causes_of_trials(twin.model(), read_catalogue(), orders=True) if one.cause in drags]
-    return trial_evidence(sea_trials_of(record, read.ship, orders=True), twin.model(), causes, orders=True)
+    causes = [
+        one
+        for one in causes_of_trials(twin.model(), read_catalogue(), orders=True)
+        if one.cause in drags
+    ]
+    return trial_evidence(
+        sea_trials_of(record, read.ship, orders=True), twin.model(), causes, orders=True
+    )
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +52,9 @@ def test_a_ship_sails_every_manoeuvre_of_the_catalogue_to_both_sides():
         assert turned[0] == pytest.approx(-turned[1], abs=1e-6), one.name
         if one.kind == "turning circle":
             assert turned[0] > np.radians(540.0)
-    swings = next(pair[0] for one, pair in sailed if one.name == "zig-zag 20/20 at full speed").measured[:, 2]
+    swings = next(
+        pair[0] for one, pair in sailed if one.name == "zig-zag 20/20 at full speed"
+    ).measured[:, 2]
     assert 20.0 < np.degrees(swings.max()) < 45.0 and -45.0 < np.degrees(swings.min()) < -20.0
 
 
@@ -53,8 +63,13 @@ def test_as_few_manoeuvres_are_prescribed_as_tell_all_pairs_apart():
         pairs = dict(zip(((0, 1), (0, 2), (1, 2)), nats, strict=True))
         return Separation(name, minutes, read, pairs, {})
 
-    sets = [SetOfCauses((SimpleNamespace(label=name),), np.zeros(1), np.zeros(1), 0.0) for name in "abc"]
-    half, other = separation("half", 10.0, True, 5.0, 30.0, 40.0), separation("other", 8.0, True, 12.0, 3.0, 2.0)
+    sets = [
+        SetOfCauses((SimpleNamespace(label=name),), np.zeros(1), np.zeros(1), 0.0) for name in "abc"
+    ]
+    half, other = (
+        separation("half", 10.0, True, 5.0, 30.0, 40.0),
+        separation("other", 8.0, True, 12.0, 3.0, 2.0),
+    )
     quick = separation("quick, not read from logs", 4.0, False, 50.0, 0.0, 0.0)
     (first, second) = designed([half, other, quick], sets)
     assert first.manoeuvre == "half" and first.separates == (("a", "c"), ("b", "c"))

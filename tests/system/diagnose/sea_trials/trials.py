@@ -18,9 +18,23 @@ from shipcosim.series import make_table
 FINE = 0.5  # s
 RPM_LAG = 1.0  # s
 WHITE = np.array([0.3, 0.3, np.radians(0.2), 0.03, 0.03, np.radians(0.05)])
-ROLES = {"north": "m", "east": "m", "heading": "deg", "surge": "m/s", "sway": "m/s", "yaw_rate": "deg/s"}
+ROLES = {
+    "north": "m",
+    "east": "m",
+    "heading": "deg",
+    "surge": "m/s",
+    "sway": "m/s",
+    "yaw_rate": "deg/s",
+}
 TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
-LEGS = ((20.0, 170.0), (-20.0, 170.0), (10.0, 170.0), (-10.0, 170.0), (32.0, 110.0), (-32.0, 110.0))  # deg, rpm
+LEGS = (
+    (20.0, 170.0),
+    (-20.0, 170.0),
+    (10.0, 170.0),
+    (-10.0, 170.0),
+    (32.0, 110.0),
+    (-32.0, 110.0),
+)  # deg, rpm
 STRAIGHT, ROUND, SWING = 200.0, {20.0: 170.0, 10.0: 240.0, 32.0: 200.0}, 20.0  # s
 
 
@@ -72,14 +86,20 @@ def logs(problems, seed=0, model=None, slow=1.0):
     state = Motion(zero, zero, zero, zero + 5.4, zero, zero)
     angle, n, shown = zero, zero + rpm[0] / 60.0, []
     for now in time:
-        shown.append(np.stack([np.broadcast_to(value, many) for value in readings(state, ship)], axis=1))
+        shown.append(
+            np.stack([np.broadcast_to(value, many) for value in readings(state, ship)], axis=1)
+        )
         late = np.clip(((now - lags) / FINE).astype(int), 0, time.size - 1)
         angle = turned(angle, azimuth[late], np.radians(10.0) * FINE)
         n = rpm[late] / 60.0 + (n - rpm[late] / 60.0) * np.exp(-FINE / RPM_LAG)
-        units = {name: (n, zero) for name in model.azimuths} | {name: (n, angle) for name in steered}
+        units = {name: (n, zero) for name in model.azimuths} | {
+            name: (n, angle) for name in steered
+        }
         units = {name: (zero, zero) for name in model.thrusters} | units
         state = _stepped(state, Inputs(now, units, None, None), ship)
-    rate = 1.0 - 0.2 * np.sin(np.cumsum(random.normal(0.0, 0.05, int(duration(slow)))))  # true seconds a row
+    rate = 1.0 - 0.2 * np.sin(
+        np.cumsum(random.normal(0.0, 0.05, int(duration(slow))))
+    )  # true seconds a row
     rows = np.minimum((np.cumsum(rate) / FINE).astype(int), time.size - 1)
     rows = rows[: np.argmax(rows >= time.size - 1) or None]
     found = np.stack(shown)[rows] + WHITE * random.standard_normal((rows.size, many, 6))
@@ -88,7 +108,9 @@ def logs(problems, seed=0, model=None, slow=1.0):
         found[:, i, 2] = wrap(found[:, i, 2]) % (2.0 * np.pi)
         columns = [
             (role, factor * values, unit, role)
-            for (role, unit), factor, values in zip(ROLES.items(), TO_LOG, found[:, i].T, strict=True)
+            for (role, unit), factor, values in zip(
+                ROLES.items(), TO_LOG, found[:, i].T, strict=True
+            )
         ]
         for unit in model.azimuths:
             columns.append((f"{unit}_rpm", rpm[rows], "rpm", ""))
@@ -102,16 +124,24 @@ def drawn(problems, random, model):
     """Numbers of ships side by side: each with tolerances drawn anew and her planted numbers."""
     values = {}
     for path, size in model.tolerances.items():
-        if path.partition(".")[0] in (model.vessel, *model.thrusters) and isinstance(model.get(path), float):
+        if path.partition(".")[0] in (model.vessel, *model.thrusters) and isinstance(
+            model.get(path), float
+        ):
             values[path] = model.get(path) + size * random.standard_normal(len(problems))
     planted = {path for changes in problems.values() for path in changes if path != "lag"}
     for path in planted:
         own = values.get(path, np.full(len(problems), model.get(path)))
-        values[path] = np.array([changes.get(path, one) for changes, one in zip(problems.values(), own, strict=True)])
+        values[path] = np.array(
+            [changes.get(path, one) for changes, one in zip(problems.values(), own, strict=True)]
+        )
     return values
 
 
 def _stepped(state, inputs, ship):
     """A midpoint step."""
-    half = Motion(*(a + 0.5 * FINE * b for a, b in zip(state, motion_rates(state, inputs, ship), strict=True)))
-    return Motion(*(a + FINE * b for a, b in zip(state, motion_rates(half, inputs, ship), strict=True)))
+    half = Motion(
+        *(a + 0.5 * FINE * b for a, b in zip(state, motion_rates(state, inputs, ship), strict=True))
+    )
+    return Motion(
+        *(a + FINE * b for a, b in zip(state, motion_rates(half, inputs, ship), strict=True))
+    )

@@ -20,10 +20,16 @@ from shipcosim.diagnose.ship.inputs import Inputs
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.hull import HullParameters
 
-MOTION = Motion(*np.array([[0.0, 1.0], [0.0, 2.0], [0.3, 2.0], [0.8, -0.4], [0.2, -0.3], [0.02, -0.03]]))
+MOTION = Motion(
+    *np.array([[0.0, 1.0], [0.0, 2.0], [0.3, 2.0], [0.8, -0.4], [0.2, -0.3], [0.02, -0.03]])
+)
 UNITS = {"port": (1.5, 0.4), "starboard": (1.0, -0.5), "tunnel": (8.0, 0.0)}
 INPUTS = Inputs(0.0, UNITS, np.array([8.0, 6.0]), np.array([0.7, -2.0]))
-EACH = [f"hull_form.cross_flow_{k}" for k in (1, 2, 3)] + ["wind_form.X_mean", "wind_form.Y_cos_1", "wind_form.N_sin_2"]
+EACH = [f"hull_form.cross_flow_{k}" for k in (1, 2, 3)] + [
+    "wind_form.X_mean",
+    "wind_form.Y_cos_1",
+    "wind_form.N_sin_2",
+]
 EACH += ["port.form.across", "starboard.form.under_way"]
 
 
@@ -43,7 +49,9 @@ def test_drag_that_is_larger_at_the_ends_resists_turning_more():
     """Closed form: N = -k l⁴ r² ∫ |s|³ (3 s² - 1) / 2 ds = -k l⁴ r² / 4, s from -1 to 1, times its share."""
     hull = twin.model().parts["hull"]
     _, Y, N = cross_flow_form(0.0, 0.03, hull, HullForm(cross_flow_2=0.3))
-    assert pytest.approx(-strength(hull) * 0.3 * (hull.length / 2) ** 4 * 0.03**2 / 4.0, rel=0.02) == N
+    assert (
+        pytest.approx(-strength(hull) * 0.3 * (hull.length / 2) ** 4 * 0.03**2 / 4.0, rel=0.02) == N
+    )
     assert pytest.approx(0.0, abs=1e-6) == Y
 
 
@@ -58,7 +66,9 @@ def test_the_wind_s_harmonics_are_those_of_its_angle():
 def test_wind_that_is_stronger_on_all_axes_is_a_scale_of_the_wind():
     ship = twin.model()
     form = {f"wind_form.{axis}_mean": 0.1 for axis in "XYN"}
-    one, other = (loads(MOTION, INPUTS, ship.with_values(v)) for v in (form, {"vessel.wind_load_scale": 1.1}))
+    one, other = (
+        loads(MOTION, INPUTS, ship.with_values(v)) for v in (form, {"vessel.wind_load_scale": 1.1})
+    )
     np.testing.assert_allclose(np.stack(one["wind"]), np.stack(other["wind"]))
 
 
@@ -76,7 +86,9 @@ def test_a_thruster_that_the_hull_takes_from_loads_the_ship_as_much_less():
     ship = twin.model()
     taken = ship.with_values({"port.form.across": 0.2})
     lost = 0.2 * np.sin(UNITS["port"][1]) ** 2
-    plain, less = (np.stack(np.broadcast_arrays(*loads(MOTION, INPUTS, one)["port"])) for one in (ship, taken))
+    plain, less = (
+        np.stack(np.broadcast_arrays(*loads(MOTION, INPUTS, one)["port"])) for one in (ship, taken)
+    )
     np.testing.assert_allclose(less, (1.0 - lost) * plain)
 
 
@@ -103,7 +115,15 @@ def test_a_ship_of_the_model_s_form_is_as_uncertain_as_her_tolerances_say():
 
 
 def test_a_hull_without_cross_flow_has_the_strength_of_her_quadratic_damping():
-    needed = {"mass": 10.0, "inertia_yaw": 1.0, "A11": 1.0, "A22": 1.0, "A26": 0.0, "A62": 0.0, "A66": 1.0}
+    needed = {
+        "mass": 10.0,
+        "inertia_yaw": 1.0,
+        "A11": 1.0,
+        "A22": 1.0,
+        "A26": 0.0,
+        "A62": 0.0,
+        "A66": 1.0,
+    }
     hull = HullParameters(**needed, length=2.0, breadth=0.5, draught=0.2, Y_v=-10.0, Y_modvv=-60.0)
     ship = replace(twin.model(), parts=twin.model().parts | {"hull": hull})
     _, _, N = cross_flow_form(1.0, 0.0, hull, HullForm(cross_flow_1=0.3))

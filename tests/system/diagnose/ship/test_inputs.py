@@ -30,7 +30,11 @@ INNER = slice(20, -20)
 
 
 def log(without=(), **changed):
-    channels = {role: (changed.get(role, values), unit) for role, (values, unit) in RAMP.items() if role not in without}
+    channels = {
+        role: (changed.get(role, values), unit)
+        for role, (values, unit) in RAMP.items()
+        if role not in without
+    }
     return make_table(TIME, [(role, values, unit, "") for role, (values, unit) in channels.items()])
 
 
@@ -68,7 +72,9 @@ def test_a_gap_in_a_measurement_stays_one_and_the_ship_is_driven_on():
 
 def test_heading_does_not_jump_across_a_gap_through_north():
     record = record_of(log(**holed("heading", 90, 110)), twin.model())
-    np.testing.assert_allclose(record.measured[111:, 2], np.radians(350.0 + 0.1 * TIME[111:]), atol=1e-12)
+    np.testing.assert_allclose(
+        record.measured[111:, 2], np.radians(350.0 + 0.1 * TIME[111:]), atol=1e-12
+    )
 
 
 @pytest.mark.parametrize(
@@ -88,8 +94,12 @@ def test_late_channels_are_taken_where_they_belong(lag, thrusters, wind, share):
     inputs = record_of(log(), model).inputs(model, share)
     at = TIME[:-1] + share
     np.testing.assert_allclose(inputs.time, at)
-    np.testing.assert_allclose(inputs.units["tunnel"][0][INNER], (10.0 - 0.01 * (at + thrusters))[INNER], rtol=1e-9)
-    np.testing.assert_allclose(inputs.wind_speed[INNER], (5.0 + 0.01 * (at + wind))[INNER], rtol=1e-9)
+    np.testing.assert_allclose(
+        inputs.units["tunnel"][0][INNER], (10.0 - 0.01 * (at + thrusters))[INNER], rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        inputs.wind_speed[INNER], (5.0 + 0.01 * (at + wind))[INNER], rtol=1e-9
+    )
 
 
 def test_a_sensor_that_averages_over_the_last_seconds_is_read_half_of_them_later():
@@ -103,7 +113,12 @@ def test_what_is_not_in_the_log_is_said():
     absent = ("tunnel_rpm", "port_azimuth", "wind_speed")
     record = record_of(log(absent), twin.model())
     tunnel, port = record.remarks[1], record.remarks[0]
-    assert "'tunnel'" in tunnel and "stand still" in tunnel and "'port'" in port and "point ahead" in port
+    assert (
+        "'tunnel'" in tunnel
+        and "stand still" in tunnel
+        and "'port'" in port
+        and "point ahead" in port
+    )
     assert "No wind" in record.remarks[2] and record.wind is None and len(record.remarks) == 3
     assert record.inputs(twin.model()).wind_speed is None
     assert (record.units["tunnel"][0] == 0.0).all() and record.known.all()
@@ -121,7 +136,11 @@ def test_wind_over_ground_serves_where_there_is_no_apparent_wind():
     ("rows", "absent", "said"),
     [
         (400, ("east", "heading"), "no channel east, heading.*needs north, east and heading"),
-        (46, (), "46 rows over 45 s, of a ship whose slowest answer takes .* s.*60 rows over 105 s"),
+        (
+            46,
+            (),
+            "46 rows over 45 s, of a ship whose slowest answer takes .* s.*60 rows over 105 s",
+        ),
         (100, (), "100 rows over 99 s.*over 105 s"),
     ],
 )
@@ -136,17 +155,26 @@ def test_first_motion_has_rates_of_positions_where_none_are_measured():
     psi = np.radians(350.0 + 0.1 * TIME)
     np.testing.assert_allclose(made.psi[INNER], psi[INNER], atol=1e-9)
     np.testing.assert_allclose(made.r[INNER], np.radians(0.1), rtol=1e-6)
-    np.testing.assert_allclose(made.u[INNER], (0.5 * np.cos(psi) - 0.25 * np.sin(psi))[INNER], atol=1e-6)
-    np.testing.assert_allclose(made.v[INNER], (-0.25 * np.cos(psi) - 0.5 * np.sin(psi))[INNER], atol=1e-6)
+    np.testing.assert_allclose(
+        made.u[INNER], (0.5 * np.cos(psi) - 0.25 * np.sin(psi))[INNER], atol=1e-6
+    )
+    np.testing.assert_allclose(
+        made.v[INNER], (-0.25 * np.cos(psi) - 0.5 * np.sin(psi))[INNER], atol=1e-6
+    )
     np.testing.assert_allclose(given.u, 0.4)
 
 
 def test_several_logs_are_driven_as_each_alone():
     model, record = twin.model(), record_of(log(), twin.model())
-    both = {name: tuple(np.stack([series, 2.0 * series]) for series in pair) for name, pair in record.units.items()}
+    both = {
+        name: tuple(np.stack([series, 2.0 * series]) for series in pair)
+        for name, pair in record.units.items()
+    }
     inputs = replace(record, units=both).inputs(model, 0.5)
     alone = record.inputs(model, 0.5)
-    np.testing.assert_allclose(inputs.units["port"][0], np.stack([alone.units["port"][0], 2 * alone.units["port"][0]]))
+    np.testing.assert_allclose(
+        inputs.units["port"][0], np.stack([alone.units["port"][0], 2 * alone.units["port"][0]])
+    )
 
 
 def test_a_stiff_ship_gets_as_many_steps_as_her_damping_asks_for():
@@ -160,12 +188,20 @@ def test_a_stiff_ship_gets_as_many_steps_as_her_damping_asks_for():
 def fast(step, rows, **changed):
     """A log with rows that close; ramps go on at the same pace."""
     time = step * np.arange(rows)
-    channels = [(role, np.interp(time, TIME, values), unit, "") for role, (values, unit) in RAMP.items()]
-    channels = [(role, changed.get(role, values), unit, meaning) for role, values, unit, meaning in channels]
-    return make_table(time, [one for one in channels if one[0] not in ("heading", "port_azimuth", "wind_from")])
+    channels = [
+        (role, np.interp(time, TIME, values), unit, "") for role, (values, unit) in RAMP.items()
+    ]
+    channels = [
+        (role, changed.get(role, values), unit, meaning) for role, values, unit, meaning in channels
+    ]
+    return make_table(
+        time, [one for one in channels if one[0] not in ("heading", "port_azimuth", "wind_from")]
+    )
 
 
-@pytest.mark.parametrize(("step", "rows", "thinned"), [(0.1, 9, 0.9), (0.5, 2, 1.0), (0.9, 1, 0.9), (1.0, 1, 1.0)])
+@pytest.mark.parametrize(
+    ("step", "rows", "thinned"), [(0.1, 9, 0.9), (0.5, 2, 1.0), (0.9, 1, 0.9), (1.0, 1, 1.0)]
+)
 def test_rows_closer_than_the_ship_answers_are_averaged_and_that_is_said(step, rows, thinned):
     heading = np.mod(350.0 + 0.1 * step * np.arange(1800), 360.0)
     table = fast(step, 1800).assign(heading=("time", heading, {"units": "deg", "long_name": ""}))
@@ -176,7 +212,9 @@ def test_rows_closer_than_the_ship_answers_are_averaged_and_that_is_said(step, r
     np.testing.assert_allclose(record.measured[:, 0], 0.5 * np.minimum(middles, 399.0), atol=0.5)
     np.testing.assert_allclose(record.measured[:, 2], np.radians(350.0 + 0.1 * middles), atol=1e-9)
     said = [remark for remark in record.remarks if "averaged" in remark]
-    assert said == ([] if rows == 1 else [f"Rows {step:g} s apart are averaged over {thinned:g} s, " + ENOUGH])
+    assert said == (
+        [] if rows == 1 else [f"Rows {step:g} s apart are averaged over {thinned:g} s, " + ENOUGH]
+    )
 
 
 ENOUGH = "which resolves this ship's answer."
@@ -191,6 +229,8 @@ def test_a_speed_that_swings_is_averaged_by_its_push():
     record = record_of(table, twin.model())
     assert record.step == 1.0
     port, tunnel = record.units["port"][0][2:-2] * 60.0, record.units["tunnel"][0][2:-2] * 60.0
-    before = 0.25 * swings[:-2] + 0.5 * swings[1:-1] + 0.25 * swings[2:]  # what no reader could tell from noise
+    before = (
+        0.25 * swings[:-2] + 0.5 * swings[1:-1] + 0.25 * swings[2:]
+    )  # what no reader could tell from noise
     np.testing.assert_allclose(port, np.sqrt(np.mean(before**2)), rtol=1e-9)
     np.testing.assert_allclose(tunnel, 0.0, atol=1e-9)

@@ -55,10 +55,14 @@ START = {"x": 5.0, "y": -3.0, "psi": 0.7, "u": 1.5, "v": -0.4, "r": 0.03}
 @pytest.fixture(scope="module", params=[{}, WRONG], ids=["as she is", "with causes"])
 def sailed(request):
     """Twenty seconds of the FMUs, and the ship in array form with the same numbers."""
-    ready = with_values(twin.system(), request.param | {f"vessel.{name}_start": start for name, start in START.items()})
+    ready = with_values(
+        twin.system(),
+        request.param | {f"vessel.{name}_start": start for name, start in START.items()},
+    )
     ready = with_values(ready, {"environment.gust_scale": 0.0})
     inputs = make_table(
-        np.array([0.0, 20.0]), [(n, np.full(2, value), unit, "") for n, (value, unit) in INPUTS.items()]
+        np.array([0.0, 20.0]),
+        [(n, np.full(2, value), unit, "") for n, (value, unit) in INPUTS.items()],
     )
     table = simulate(ready, Scenario(stop_time=20.0, step_size=0.05), RunOptions(inputs=inputs))
     return table, twin.model().with_values(request.param | CURRENT)
@@ -76,7 +80,9 @@ def inputs(table, rows=slice(None)):
         "tunnel": (INPUTS["tunnel_rpm"][0] / 60.0, 0.0),
     }
     wind = (table[f"vessel.apparent_wind_{name}"].values[rows] for name in ("speed", "from"))
-    return Inputs(time, {name: (n + 0.0 * time, a + 0.0 * time) for name, (n, a) in units.items()}, *wind)
+    return Inputs(
+        time, {name: (n + 0.0 * time, a + 0.0 * time) for name, (n, a) in units.items()}, *wind
+    )
 
 
 def test_forces_are_those_of_the_fmus(sailed):
@@ -85,20 +91,30 @@ def test_forces_are_those_of_the_fmus(sailed):
     found = loads(motion(table), inputs(table), model)
     for name in model.thrusters:
         for axis, load in zip("XYN", found[name], strict=True):
-            np.testing.assert_allclose(load[1:-1], table[f"{name}.tau_{axis}"].values[2:], rtol=1e-9, atol=1e-6)
+            np.testing.assert_allclose(
+                load[1:-1], table[f"{name}.tau_{axis}"].values[2:], rtol=1e-9, atol=1e-6
+            )
     for axis, load in zip("XYN", found["wind"], strict=True):
-        np.testing.assert_allclose(load, table[f"vessel.tau_wind_{axis}"].values, rtol=1e-9, atol=1e-6)
+        np.testing.assert_allclose(
+            load, table[f"vessel.tau_wind_{axis}"].values, rtol=1e-9, atol=1e-6
+        )
 
 
 def test_motion_integrated_in_array_form_is_that_of_the_fmus(sailed):
     """Euler's steps of 0.05 s against the FMUs' Runge-Kutta with loads held: both of first order in the step."""
     table, model = sailed
-    table_drivers, ship, h = inputs(table), Motion(*(np.array(value) for value in START.values())), 0.05
+    table_drivers, ship, h = (
+        inputs(table),
+        Motion(*(np.array(value) for value in START.values())),
+        0.05,
+    )
     wind = "true_wind_speed", "true_wind_from"
     model = replace(model, wind_is_true=True)
     for k in range(table.sizes["time"] - 1):
         units = {name: (n[k], azimuth[k]) for name, (n, azimuth) in table_drivers.units.items()}
-        rates = motion_rates(ship, Inputs(k * h, units, INPUTS[wind[0]][0], radians(INPUTS[wind[1]][0])), model)
+        rates = motion_rates(
+            ship, Inputs(k * h, units, INPUTS[wind[0]][0], radians(INPUTS[wind[1]][0])), model
+        )
         ship = Motion(*(value + h * rate for value, rate in zip(ship, rates, strict=True)))
     last = motion(table, -1)
     assert hypot(ship.x - last.x, ship.y - last.y) < 0.1  # of some 30 m
@@ -111,17 +127,24 @@ def test_a_ship_that_moves_with_the_water_feels_nothing():
     psi = np.array([0.0, 1.0, 2.5])
     u, v = to_body(psi, 0.3, -0.2)
     still = {name: (np.zeros(3), np.zeros(3)) for name in model.thrusters}
-    rates = motion_rates(Motion(0.0, 0.0, psi, u, v, np.zeros(3)), Inputs(0.0, still, None, None), model)
+    rates = motion_rates(
+        Motion(0.0, 0.0, psi, u, v, np.zeros(3)), Inputs(0.0, still, None, None), model
+    )
     np.testing.assert_allclose((rates.x, rates.y), ([0.3] * 3, [-0.2] * 3), atol=1e-12)
     np.testing.assert_allclose((rates.u, rates.v, rates.r), np.zeros((3, 3)), atol=1e-12)
 
 
 def test_a_varying_current_turns_the_shorter_way_at_constant_speed():
     ends = {"north_start": 0.4, "east_start": 0.0, "north_end": 0.0, "east_end": 0.4}
-    model = replace(twin.model().with_values({f"water.{name}": v for name, v in ends.items()}), span=(100.0, 300.0))
+    model = replace(
+        twin.model().with_values({f"water.{name}": v for name, v in ends.items()}),
+        span=(100.0, 300.0),
+    )
     times = np.array([0.0, 100.0, 200.0, 300.0, 400.0])
     angle = np.radians([0.0, 0.0, 45.0, 90.0, 90.0])
-    np.testing.assert_allclose(current_at(times, model), (0.4 * np.cos(angle), 0.4 * np.sin(angle)), atol=1e-12)
+    np.testing.assert_allclose(
+        current_at(times, model), (0.4 * np.cos(angle), 0.4 * np.sin(angle)), atol=1e-12
+    )
 
 
 def test_a_trend_grows_from_the_first_to_the_last_row():
@@ -144,7 +167,11 @@ def test_line_and_waves_load_the_ship_by_their_closed_forms():
         found["earth_force"], (tow[0] * np.cos(psi) + tow[1] * np.sin(psi), Y, -17.0 * Y), atol=1e-9
     )
     A, gamma = hypot(*drift), np.arctan2(drift[1], drift[0]) - psi
-    expected = A * np.cos(gamma) / 3.0, A * np.sin(gamma) * np.abs(np.sin(gamma)), -1.5 * A * np.sin(2.0 * gamma)
+    expected = (
+        A * np.cos(gamma) / 3.0,
+        A * np.sin(gamma) * np.abs(np.sin(gamma)),
+        -1.5 * A * np.sin(2.0 * gamma),
+    )
     np.testing.assert_allclose(found["drift_force"], expected, atol=1e-9)
 
 
@@ -153,9 +180,14 @@ def test_drift_swells_about_its_place_in_the_log_and_nowhere_else():
     time = np.arange(0.0, 701.0, 50.0)
     still = {name: (np.zeros_like(time), np.zeros_like(time)) for name in twin.model().thrusters}
     ship = replace(twin.model().with_values({"water.drift_north": 2000.0}), span=(0.0, 700.0))
-    where, at = Motion(*[np.full_like(time, 0.4)] + [np.zeros_like(time)] * 5), Inputs(time, still, None, None)
+    where, at = (
+        Motion(*[np.full_like(time, 0.4)] + [np.zeros_like(time)] * 5),
+        Inputs(time, still, None, None),
+    )
     plain = np.array(loads(where, at, ship)["drift_force"])
-    swollen = np.array(loads(where, at, ship.with_values({"water.drift_swell_4": 0.2}))["drift_force"])
+    swollen = np.array(
+        loads(where, at, ship.with_values({"water.drift_swell_4": 0.2}))["drift_force"]
+    )
     share = 1.0 + 0.2 * np.interp(time, [200.0, 300.0, 400.0], [0.0, 1.0, 0.0])
     np.testing.assert_allclose(swollen, share * plain, atol=1e-9)
 
@@ -163,8 +195,14 @@ def test_drift_swells_about_its_place_in_the_log_and_nowhere_else():
 def test_true_wind_and_apparent_wind_of_a_moving_ship_load_her_alike():
     model, ship = twin.model(), Motion(0.0, 0.0, 0.6, 2.0, -0.5, 0.01)
     still = {name: (0.0, 0.0) for name in model.thrusters}
-    north, east = -10.0 * cos(2.0) - 2.0 * cos(0.6) - 0.5 * sin(0.6), -10.0 * sin(2.0) - 2.0 * sin(0.6) + 0.5 * cos(0.6)
-    apparent = hypot(north, east), np.arctan2(-east, -north) - 0.6  # air seen from the ship, and where it comes from
+    north, east = (
+        -10.0 * cos(2.0) - 2.0 * cos(0.6) - 0.5 * sin(0.6),
+        -10.0 * sin(2.0) - 2.0 * sin(0.6) + 0.5 * cos(0.6),
+    )
+    apparent = (
+        hypot(north, east),
+        np.arctan2(-east, -north) - 0.6,
+    )  # air seen from the ship, and where it comes from
     given = loads(ship, Inputs(0.0, still, *apparent), model)["wind"]
     true = loads(ship, Inputs(0.0, still, 10.0, 2.0), replace(model, wind_is_true=True))["wind"]
     np.testing.assert_allclose(true, given, rtol=1e-9)
@@ -175,7 +213,9 @@ def test_a_vane_turned_to_starboard_makes_the_ship_feel_the_wind_further_to_port
     still = {name: (0.0, 0.0) for name in model.thrusters}
     wrong = model.with_values({"vessel.apparent_wind_offset": 0.3})
     given = loads(ship, Inputs(0.0, still, 8.0, 1.0), wrong)["wind"]
-    np.testing.assert_allclose(given, loads(ship, Inputs(0.0, still, 8.0, 0.7), model)["wind"], rtol=1e-12)
+    np.testing.assert_allclose(
+        given, loads(ship, Inputs(0.0, still, 8.0, 0.7), model)["wind"], rtol=1e-12
+    )
 
 
 def test_a_heading_measured_too_large_turns_the_velocity_to_port():
@@ -197,24 +237,40 @@ def test_position_and_velocity_are_both_of_the_antenna():
     ship = Motion(0.8 * t, 0.2 * t, psi, *to_body(psi, 0.8, 0.2), r)
     seen = readings(ship, model)
     rate = np.gradient(seen.x + 1j * seen.y, t)[1:-1]
-    np.testing.assert_allclose(rate, ((seen.u + 1j * seen.v) * np.exp(1j * seen.psi))[1:-1], atol=1e-7)
+    np.testing.assert_allclose(
+        rate, ((seen.u + 1j * seen.v) * np.exp(1j * seen.psi))[1:-1], atol=1e-7
+    )
     ahead = readings(Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), model)
-    assert (ahead.x, ahead.y) == (5.0, -2.0)  # heading north: forward is north, to starboard is east
+    assert (ahead.x, ahead.y) == (
+        5.0,
+        -2.0,
+    )  # heading north: forward is north, to starboard is east
 
 
 def test_velocity_is_logged_over_true():
     seen = readings(
-        Motion(0.0, 0.0, 0.3, 2.0, -1.0, 0.1), twin.model().with_values({"instruments.velocity_scale": 1.1})
+        Motion(0.0, 0.0, 0.3, 2.0, -1.0, 0.1),
+        twin.model().with_values({"instruments.velocity_scale": 1.1}),
     )
     assert (seen.u, seen.v, seen.r) == pytest.approx((2.2, -1.1, 0.1))
 
 
 def test_numbers_are_read_and_changed_by_their_names():
     model = twin.model()
-    other = model.with_values({"vessel.mass_scale": 1.2, "vessel.wind_load_scale": 0.9, "port.x": -13.0})
-    assert (other.get("vessel.mass_scale"), other.get("vessel.wind_load_scale"), other.get("port.x")) == (1.2, 0.9, -13)
-    assert model.get("vessel.mass_scale") == 1.0 and other.get("starboard.x") == model.get("starboard.x")
-    assert model.has("water.tow_x") and not model.has("water.nothing") and not model.has("crane.mass")
+    other = model.with_values(
+        {"vessel.mass_scale": 1.2, "vessel.wind_load_scale": 0.9, "port.x": -13.0}
+    )
+    assert (
+        other.get("vessel.mass_scale"),
+        other.get("vessel.wind_load_scale"),
+        other.get("port.x"),
+    ) == (1.2, 0.9, -13)
+    assert model.get("vessel.mass_scale") == 1.0 and other.get("starboard.x") == model.get(
+        "starboard.x"
+    )
+    assert (
+        model.has("water.tow_x") and not model.has("water.nothing") and not model.has("crane.mass")
+    )
     assert model.about("tunnel.rpm_offset")["unit"] == "rpm"
     with pytest.raises(KeyError, match=r"vessel\.nothing"):
         model.with_values({"vessel.nothing": 1.0})
@@ -238,7 +294,9 @@ def yard(root):
         ship, fmus = new("other"), twin.build_stale(root)
         ship.add_component("hull", fmus / "vessel.fmu", kinds=())
         lend(ship, "hull", HullParameters, WindParameters)
-        units = [("azimuth_thruster", place) for place in azimuths] + [("tunnel_thruster", (x,)) for x in tunnels]
+        units = [("azimuth_thruster", place) for place in azimuths] + [
+            ("tunnel_thruster", (x,)) for x in tunnels
+        ]
         for number, (fmu, place) in enumerate(units, start=1):
             name = f"{fmu[:3]}{number}"
             ship.add_component(name, fmus / f"{fmu}.fmu", kinds=())
@@ -255,10 +313,17 @@ def yard(root):
 def test_a_ship_with_four_azimuths_is_read(yard):
     places = [(15.0, 3.0), (15.0, -3.0), (-14.0, 2.0), (-14.0, -2.0)]
     ship = ship_model_of(yard(places).checked())
-    assert ship.vessel == "hull" and ship.azimuths == ship.thrusters == ["azi1", "azi2", "azi3", "azi4"]
+    assert ship.vessel == "hull" and ship.azimuths == ship.thrusters == [
+        "azi1",
+        "azi2",
+        "azi3",
+        "azi4",
+    ]
     assert ship.get("hull.length") == parameters(HullParameters).length
     assert [(ship.get(f"{n}.x"), ship.get(f"{n}.y")) for n in ship.azimuths] == places
-    neighbours = [(ship.get(f"{n}.neighbour_x"), ship.get(f"{n}.neighbour_y")) for n in ship.azimuths]
+    neighbours = [
+        (ship.get(f"{n}.neighbour_x"), ship.get(f"{n}.neighbour_y")) for n in ship.azimuths
+    ]
     assert neighbours == [places[1], places[0], places[3], places[2]]
 
 
@@ -290,7 +355,9 @@ def test_tolerances_that_the_system_states_are_taken(yard):
 def test_a_system_without_a_vessel_is_refused_by_what_it_has(root):
     ship = new("none")
     ship.add_component("propeller", twin.build_stale(root) / "azimuth_thruster.fmu", kinds=())
-    with pytest.raises(ShipcosimError, match=r"0 components with .* propeller .*exactly one vessel\.fmu"):
+    with pytest.raises(
+        ShipcosimError, match=r"0 components with .* propeller .*exactly one vessel\.fmu"
+    ):
         ship_model_of(ship.checked())
 
 
@@ -307,7 +374,10 @@ def test_defaults_of_a_unit_are_neutral():
     ship, unit = Motion(0.0, 0.0, 0.3, 1.0, 0.2, 0.01), unit_on_centreline()
     working = {"port": (1.5, 0.4), "starboard": (-1.0, 2.0), "tunnel": (8.0, 0.0)}
     plain = loads(ship, Inputs(0.0, working, 8.0, 1.0), twin.model())
-    neutral = {f"port.{n}": getattr(unit, n) for n in ("thrust_loss", "reverse_loss", "azimuth_offset", "rpm_offset")}
+    neutral = {
+        f"port.{n}": getattr(unit, n)
+        for n in ("thrust_loss", "reverse_loss", "azimuth_offset", "rpm_offset")
+    }
     again = loads(ship, Inputs(0.0, working, 8.0, 1.0), twin.model().with_values(neutral))
     assert again == plain
 
@@ -330,7 +400,9 @@ def test_a_thruster_of_an_earlier_version_is_learnt_and_a_neutral_number_that_it
     for component, lacking in {"port": ["thrust_polynomial"], "tunnel": ["speed_loss"]}.items():
         fmu = whole.components[component].fmu
         known = {name: variable for name, variable in fmu.variables.items() if name not in lacking}
-        old.components[component] = replace(whole.components[component], fmu=replace(fmu, variables=known))
+        old.components[component] = replace(
+            whole.components[component], fmu=replace(fmu, variables=known)
+        )
     model = ship_model_of(old)
     assert list(model.third_party) == ["port"]
     assert model.get("tunnel.speed_loss") == 0.0 and model.get("tunnel.x") == 14.48

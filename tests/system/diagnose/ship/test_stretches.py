@@ -12,7 +12,13 @@ from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.ship import stretches
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
-from shipcosim.diagnose.ship.stretches import MOST_ROWS, STRETCHES, in_stretches, rows_averaged, stretches_of
+from shipcosim.diagnose.ship.stretches import (
+    MOST_ROWS,
+    STRETCHES,
+    in_stretches,
+    rows_averaged,
+    stretches_of,
+)
 from shipcosim.diagnose.validation.split import starts
 from shipcosim.series import make_table
 
@@ -21,7 +27,9 @@ LENGTH = 33.9  # m
 
 def table(rows, step=1.0, **channels):
     channels = channels or {"north": np.arange(rows, dtype=float)}
-    return make_table(step * np.arange(rows), [(name, values, "m", "") for name, values in channels.items()])
+    return make_table(
+        step * np.arange(rows), [(name, values, "m", "") for name, values in channels.items()]
+    )
 
 
 @pytest.mark.parametrize("step", [1.0, 0.1, 0.01])
@@ -63,7 +71,9 @@ def test_each_stretch_is_smoothed_on_its_own(parted):
     assert [(part.start, part.stop) for part in record.stretches] == [(0, 300), (300, 601)]
     alone = record_of(whole.isel(time=slice(420, 721)), twin.model(12.0))
     there, here = first_motion(alone, twin.model()), first_motion(record, twin.model())
-    np.testing.assert_allclose(np.stack(here)[[0, 1, 3, 4, 5], 300:], np.stack(there)[[0, 1, 3, 4, 5]], rtol=1e-9)
+    np.testing.assert_allclose(
+        np.stack(here)[[0, 1, 3, 4, 5], 300:], np.stack(there)[[0, 1, 3, 4, 5]], rtol=1e-9
+    )
     assert any("2 stretches" in remark for remark in record.remarks)
 
 
@@ -100,5 +110,8 @@ def test_what_is_computed_does_not_grow_with_a_log(parted, monkeypatch):
     monkeypatch.setattr(stretches, "MOST_ROWS", 480)
     log, _ = parted
     later = log.assign_coords(time=log["time"] + log.sizes["time"])
-    records = [record_of(in_stretches(one, LENGTH), twin.model()) for one in (log, xarray.concat([log, later], "time"))]
+    records = [
+        record_of(in_stretches(one, LENGTH), twin.model())
+        for one in (log, xarray.concat([log, later], "time"))
+    ]
     assert records[0].time.size == records[1].time.size <= 480

@@ -98,10 +98,14 @@ def test_its_numbers_change_the_load_as_they_say():
     push, _ = pushes(motion, record, "left")
 
     def found(**values):
-        return at_rows(model.with_values({f"left.{k}": v for k, v in values.items()}), record, motion)["left"][0]
+        return at_rows(
+            model.with_values({f"left.{k}": v for k, v in values.items()}), record, motion
+        )["left"][0]
 
     np.testing.assert_allclose(found(thrust_loss=0.3), 0.7 * push, atol=1e-3)
-    np.testing.assert_allclose(found(gain=7.0), pushes(motion, record, "left", gain=7.0)[0], atol=1e-3)
+    np.testing.assert_allclose(
+        found(gain=7.0), pushes(motion, record, "left", gain=7.0)[0], atol=1e-3
+    )
     late = pushes(motion, record, "left", off=-0.5)[0]
     np.testing.assert_allclose(found(rpm_offset=30.0), late, atol=0.02 * np.abs(push).max())
 
@@ -110,7 +114,9 @@ def test_a_speed_of_the_other_sign_gets_about_the_load_of_the_fmu():
     """Far from what it was linearised about, the quadratic law of thrust holds."""
     model, record, motion = along()
     n, azimuth = record.units["left"]
-    inputs = record.inputs(model)._replace(units=record.inputs(model).units | {"left": (-n[:-1], azimuth[:-1])})
+    inputs = record.inputs(model)._replace(
+        units=record.inputs(model).units | {"left": (-n[:-1], azimuth[:-1])}
+    )
     X, _, _ = loads(Motion(*(value[:-1] for value in motion)), inputs, model)["left"]
     right, _ = closed_form("left", -n[:-1], motion.u[:-1], motion.r[:-1])
     assert np.sqrt(np.mean((X - right) ** 2)) < 0.3 * np.sqrt(np.mean(right**2))
@@ -133,7 +139,9 @@ def test_a_dp_knows_where_it_pushes_and_leaves_alone_what_does_not():
     left = dp_thruster_of(model, "left")
     assert (left.x, left.y, left.axis) == pytest.approx((0.0, -0.9, 0.0), abs=1e-9)
     assert left.ahead == pytest.approx(boat.GAIN, rel=0.2)
-    still, *_ = with_laws(ship_model_of(boat.structure().checked()), logged().assign(left_rpm=0.0 * logged().left_rpm))
+    still, *_ = with_laws(
+        ship_model_of(boat.structure().checked()), logged().assign(left_rpm=0.0 * logged().left_rpm)
+    )
     assert dp_thruster_of(still, "left").ahead == 0.0 and dp_thruster_of(still, "right").ahead > 0.0
 
 
@@ -143,14 +151,19 @@ def test_suspects_and_tolerances_are_those_that_it_has():
     assert {"thrust_loss of left", "rpm_offset of right", "mass"} <= set(found)
     assert not {"azimuth_offset of left", "reverse_loss"} & set(found)
     fastest = np.abs(logged().left_rpm.values).max()
-    assert found["rpm_offset of left"].parameters[0].typical == pytest.approx(0.06 * fastest, rel=0.02)
+    assert found["rpm_offset of left"].parameters[0].typical == pytest.approx(
+        0.06 * fastest, rel=0.02
+    )
     assert model.tolerances["left.gain"] == pytest.approx(boat.TOLERANCE)
 
 
 def test_a_law_is_kept_for_a_part_of_its_log_and_made_anew_for_other_drivers():
     model, *_ = along()
     part = logged().isel(time=slice(100, 300))
-    assert with_laws(model, part)[0].third_party["left"].surrogate is model.third_party["left"].surrogate
+    assert (
+        with_laws(model, part)[0].third_party["left"].surrogate
+        is model.third_party["left"].surrogate
+    )
     other = part.assign(left_rpm=part.left_rpm.copy(data=-part.left_rpm.values))
     again = with_laws(model, other)[0].third_party
     assert again["left"].surrogate is not model.third_party["left"].surrogate
@@ -173,7 +186,9 @@ def test_our_azimuth_as_a_black_box_has_the_loads_of_the_array_form(strange_azim
         most = np.abs(at_rows(twin.model(), record, motion)[name]).max(axis=1)
         assert (missed(model, record, motion, name, 0.0) < 1e-9 * most).all()
         near, far = (missed(model, record, motion, name, by) for by in (0.05, 0.2))
-        assert (far < 0.03 * most).all() and (near < far / 8.0).all()  # of second order: a sixteenth
+        assert (far < 0.03 * most).all() and (
+            near < far / 8.0
+        ).all()  # of second order: a sixteenth
 
 
 def missed(model, record, motion, name, by):
@@ -195,7 +210,9 @@ def test_the_extended_boat_has_it_on_her_connections(tmp_path):
         for system in (boat.structure(), sc.read(extension.ssp))
     )
     n = (extended["right_rpm"].values[:-1] - 30.0) / 60.0
-    push, _ = closed_form("right", n, extended["boat.u_r"].values[:-1], extended["boat.r"].values[:-1])
+    push, _ = closed_form(
+        "right", n, extended["boat.u_r"].values[:-1], extended["boat.r"].values[:-1]
+    )
     np.testing.assert_allclose(extended["right.push"].values[1:], push, rtol=1e-9)
     ends = [end for end in sc.read(extension.ssp).checked().connections if end.source[0] == "left"]
     assert [end.factor for end in ends] == [0.75, 0.75]
@@ -208,7 +225,9 @@ def test_the_extended_boat_has_it_on_her_connections(tmp_path):
 
 def test_a_line_that_only_the_motion_of_the_ship_drives_is_a_load_and_no_thruster(root):
     ship = sc.read(root / "ssp" / "gunnerus_open", fmus=[twin.build_stale(root)])
-    ship.add_component("line", sc.build_fmu(root / "docs" / "examples" / "line", mkdtemp(prefix="shipcosim-")))
+    ship.add_component(
+        "line", sc.build_fmu(root / "docs" / "examples" / "line", mkdtemp(prefix="shipcosim-"))
+    )
     for name in ("x", "y", "psi"):
         ship.connect(f"vessel.{name}", f"line.{name}")
     for axis in "XYN":
@@ -227,7 +246,9 @@ def test_a_stranger_that_nothing_of_a_log_feeds_is_refused_with_what_would_be_ri
     ship = boat.structure()
     for target in ("left.shaft", "left.way", "left.swing"):
         ship.disconnect(target)
-    with pytest.raises(ShipcosimError, match=r"'left' \(screw\) puts a load on 'boat'.*named 'left_rpm'"):
+    with pytest.raises(
+        ShipcosimError, match=r"'left' \(screw\) puts a load on 'boat'.*named 'left_rpm'"
+    ):
         ship_model_of(ship.checked())
 
 
@@ -241,11 +262,15 @@ def test_a_log_without_its_speed_is_refused_and_one_with_it_is_said_what_it_rest
 def test_what_nobody_logs_keeps_its_start_value_and_that_is_said(strange_azimuths):
     model = ship_model_of(twin.system())
     assert set(model.third_party["port"].idle) == {"neighbour_rpm", "neighbour_azimuth"}
-    assert any("neighbour_rpm" in remark for remark in record_of(twin.logs()["healthy"], model).remarks)
+    assert any(
+        "neighbour_rpm" in remark for remark in record_of(twin.logs()["healthy"], model).remarks
+    )
 
 
 def test_a_case_of_the_boat_is_prepared_with_her_laws():
-    problem = identification_problem(logged(), ship_model_of(boat.structure().checked()), read_catalogue())
+    problem = identification_problem(
+        logged(), ship_model_of(boat.structure().checked()), read_catalogue()
+    )
     assert all(one.surrogate for one in problem.model.third_party.values())
     assert {"left.gain", "left.rpm_offset", "left.thrust_loss"} <= set(problem.model.tolerances)
 
@@ -261,17 +286,27 @@ def with_input(ship, name, unit, target="left.shaft"):
 
 def test_an_input_of_another_name_is_known_by_its_unit_and_its_factor_followed():
     ship = with_input(boat.structure(), "throttle", "rad/s")
-    (link,) = [link for link in ship_model_of(ship.checked()).third_party["left"].links if link.quantity == "rpm"]
+    (link,) = [
+        link
+        for link in ship_model_of(ship.checked()).third_party["left"].links
+        if link.quantity == "rpm"
+    ]
     assert (link.variable, link.factor) == ("shaft", pytest.approx(2.0 * np.pi / 60.0))
     ship.disconnect("throttle", "left.shaft")
     ship.connect("throttle", "left.shaft", factor=0.5, offset=3.0)
-    (link,) = [link for link in ship_model_of(ship.checked()).third_party["left"].links if link.quantity == "rpm"]
+    (link,) = [
+        link
+        for link in ship_model_of(ship.checked()).third_party["left"].links
+        if link.quantity == "rpm"
+    ]
     assert (link.factor, link.offset) == (pytest.approx(np.pi / 60.0), 3.0)
 
 
 def test_two_inputs_that_could_be_the_speed_are_refused_by_name():
     ship = with_input(with_input(boat.structure(), "engine", "rpm"), "rate", "rad/s", "left.swing")
-    with pytest.raises(ShipcosimError, match="'left' .*any of shaft, swing could be what drives it"):
+    with pytest.raises(
+        ShipcosimError, match="'left' .*any of shaft, swing could be what drives it"
+    ):
         ship_model_of(ship.checked())
 
 
@@ -316,7 +351,9 @@ def podded(tmp_path):
 def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(podded):
     model = ship_model_of(podded.checked())
     assert model.drives("pod") == ("thrust", "azimuth") and not model.has("pod.rpm_offset")
-    log = logged().assign(pod_thrust=200.0 + logged().left_rpm, pod_azimuth=0.2 * logged().right_rpm)
+    log = logged().assign(
+        pod_thrust=200.0 + logged().left_rpm, pod_azimuth=0.2 * logged().right_rpm
+    )
     model, record, motion = with_laws(model, log)
     wanted, azimuth = (series[:-1] for series in record.units["pod"])
     X, Y, N = at_rows(model.with_values({"pod.thrust_loss": 0.5}), record, motion)["pod"]
@@ -326,14 +363,25 @@ def test_a_unit_that_is_told_its_thrust_is_followed_by_the_thrust_of_the_log(pod
     assert dp_thruster_of(model, "pod").ahead == 0.0
 
 
-def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(podded, tmp_path):
-    off = Finding("azimuth_offset", "pod", parameters={"offset": ParameterEstimate(8.0, 0.3, "deg")})
+def test_an_offset_of_its_direction_goes_to_the_connection_in_the_units_on_the_way(
+    podded, tmp_path
+):
+    off = Finding(
+        "azimuth_offset", "pod", parameters={"offset": ParameterEstimate(8.0, 0.3, "deg")}
+    )
     extension = extend(podded, [off], tmp_path)
     run = sc.simulate(
-        sc.read(extension.ssp), stop_time=0.2, step_size=0.1, set={"pod_thrust": 1.0, "pod_azimuth": np.radians(20.0)}
+        sc.read(extension.ssp),
+        stop_time=0.2,
+        step_size=0.1,
+        set={"pod_thrust": 1.0, "pod_azimuth": np.radians(20.0)},
     )
-    np.testing.assert_allclose(run["pod.ahead"].values[-1], 0.9 * np.cos(np.radians(28.0)), rtol=1e-9)
-    np.testing.assert_allclose(run["pod.aside"].values[-1], 0.9 * np.sin(np.radians(28.0)), rtol=1e-9)
+    np.testing.assert_allclose(
+        run["pod.ahead"].values[-1], 0.9 * np.cos(np.radians(28.0)), rtol=1e-9
+    )
+    np.testing.assert_allclose(
+        run["pod.aside"].values[-1], 0.9 * np.sin(np.radians(28.0)), rtol=1e-9
+    )
 
 
 MINE = """
@@ -355,10 +403,15 @@ def test_a_cause_of_ones_own_can_turn_a_parameter_that_has_a_tolerance(tmp_path)
     (tmp_path / "worn_blades.toml").write_text(MINE, encoding="utf-8")
     found = hypotheses_of(read_catalogue(tmp_path), along()[0])
     parameters = {
-        hypothesis.component: hypothesis.parameters[0] for hypothesis in found if hypothesis.cause == "worn_blades"
+        hypothesis.component: hypothesis.parameters[0]
+        for hypothesis in found
+        if hypothesis.cause == "worn_blades"
     }
     assert set(parameters) == set(boat.SIDES)
-    assert (parameters["left"].neutral, parameters["left"].tolerance) == (boat.GAIN, pytest.approx(boat.TOLERANCE))
+    assert (parameters["left"].neutral, parameters["left"].tolerance) == (
+        boat.GAIN,
+        pytest.approx(boat.TOLERANCE),
+    )
 
 
 def test_a_thruster_that_follows_what_no_log_can_tell_is_refused_by_name():
@@ -366,5 +419,7 @@ def test_a_thruster_that_follows_what_no_log_can_tell_is_refused_by_name():
     fmu = SimpleNamespace(model_name="mapped_thruster")
     left = SimpleNamespace(drives=(), idle=("command_in",), component=SimpleNamespace(fmu=fmu))
     log = xarray.Dataset({"surge": ("time", [0.0])}, {"time": [0.0]})
-    with pytest.raises(ShipcosimError, match="left: mapped_thruster follows command_in.*another kind"):
+    with pytest.raises(
+        ShipcosimError, match="left: mapped_thruster follows command_in.*another kind"
+    ):
         inputs._check_third_party(log, SimpleNamespace(third_party={"left": left}))

@@ -44,7 +44,9 @@ def having(ship, hull):
 
 
 def test_linear_damping_gives_mass_with_added_mass_over_damping(ship):
-    assert response_times(having(ship, LINEAR), moving()) == pytest.approx((100.0 / 50.0, 200.0 / 400.0, 40.0 / 8.0))
+    assert response_times(having(ship, LINEAR), moving()) == pytest.approx(
+        (100.0 / 50.0, 200.0 / 400.0, 40.0 / 8.0)
+    )
 
 
 def test_quadratic_damping_slows_a_faster_ship_sooner(ship):

@@ -11,7 +11,12 @@ from shipcosim.diagnose.inference.predictions import replayable
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import true_motion
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table, in_array_form, replayed
+from shipcosim.diagnose.validation.cosimulation import (
+    Replayed,
+    driving_table,
+    in_array_form,
+    replayed,
+)
 from shipcosim.diagnose.validation.gain import Predictor
 from shipcosim.errors import ShipcosimError
 from shipcosim.library import build_stale
@@ -56,7 +61,10 @@ def predictor(log, ship_model):
 
 
 def found(cause, component=None, **parameters):
-    estimates = {name: ParameterEstimate(value, 0.1 * abs(value), unit) for name, (value, unit) in parameters.items()}
+    estimates = {
+        name: ParameterEstimate(value, 0.1 * abs(value), unit)
+        for name, (value, unit) in parameters.items()
+    }
     return Finding(cause, component, parameters=estimates)
 
 
@@ -118,20 +126,25 @@ def extended(root, folder, findings):
 
 
 @pytest.mark.parametrize("name", CAUSES)
-def test_a_minute_of_the_extended_system_is_that_of_the_array_form(root, tmp_path, ship_model, log, name):
+def test_a_minute_of_the_extended_system_is_that_of_the_array_form(
+    root, tmp_path, ship_model, log, name
+):
     findings, values = CAUSES[name]
     model = predictor(log, ship_model.with_values(values))
     array, one = in_array_form(model, ROWS), extended(root, tmp_path, findings)
     coarse, fine = (replayed(one, model, ROWS, step_size=h) for h in (0.1, 0.05))
     assert np.hypot(coarse.x - array.x, coarse.y - array.y).max() < 0.1
-    limit = Motion(*(2.0 * b - a for a, b in zip(coarse, fine, strict=True)))  # exchange is of first order in the step
+    limit = Motion(
+        *(2.0 * b - a for a, b in zip(coarse, fine, strict=True))
+    )  # exchange is of first order in the step
     assert np.hypot(limit.x - array.x, limit.y - array.y).max() < 0.01
     assert np.abs(np.angle(np.exp(1j * (limit.psi - array.psi)))).max() < np.radians(0.02)
 
 
 def test_without_the_cause_a_minute_ends_elsewhere(ship_model, log):
     with_it, without = (
-        in_array_form(predictor(log, ship_model.with_values(values)), ROWS) for values in (CAUSES["aboard"][1], {})
+        in_array_form(predictor(log, ship_model.with_values(values)), ROWS)
+        for values in (CAUSES["aboard"][1], {})
     )
     assert np.hypot(with_it.x - without.x, with_it.y - without.y)[-1].min() > 0.3
 
@@ -165,8 +178,13 @@ def test_a_thruster_that_no_input_feeds_is_named(system, ship_model, log):
 
 
 def test_a_propeller_that_cannot_turn_needs_no_input_for_its_direction(system, ship_model, log):
-    fixed = replace(log, units=log.units | {"port": (log.units["port"][0], np.full(TIME.size, 0.1))})
-    without = replace(system, connections=tuple(c for c in system.connections if c.target != ("port", "azimuth_in")))
+    fixed = replace(
+        log, units=log.units | {"port": (log.units["port"][0], np.full(TIME.size, 0.1))}
+    )
+    without = replace(
+        system,
+        connections=tuple(c for c in system.connections if c.target != ("port", "azimuth_in")),
+    )
     model = predictor(fixed, ship_model)
     table, states = driving_table(without, model, 0.1)
     assert "port_azimuth" not in table and states["port.azimuth_in"] == 0.1

@@ -11,7 +11,13 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted, 
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.parts import in_parts
-from shipcosim.diagnose.inference.predictions import observed, predicted, reference, replayable, restarted
+from shipcosim.diagnose.inference.predictions import (
+    observed,
+    predicted,
+    reference,
+    replayable,
+    restarted,
+)
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.log.repair import repaired
@@ -43,7 +49,15 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.ssp import read_system, with_values
 from truth import draw
 
-CONTRACT = {"horizon_s", "before_m", "bias_observer_m", "after_m", "noise_floor_m", "share_of_explainable", "ci95"}
+CONTRACT = {
+    "horizon_s",
+    "before_m",
+    "bias_observer_m",
+    "after_m",
+    "noise_floor_m",
+    "share_of_explainable",
+    "ci95",
+}
 
 
 @pytest.fixture(scope="module")
@@ -69,9 +83,13 @@ def diagnosed(model, tmp_path_factory):
         ship = replace(model, span=(float(log.time[0]), float(log.time[-1])))
         record, answer = record_of(log, ship), hidden.answer[0]
         here = (answer.cause, answer.component)
-        only = tuple(s for s in hypotheses_of(read_catalogue(), ship) if (s.cause, s.component) == here)
+        only = tuple(
+            s for s in hypotheses_of(read_catalogue(), ship) if (s.cause, s.component) == here
+        )
         noise = first_noise(record, ship.parts["hull"].length)
-        case = prepared(IdentificationProblem(record, ship, only, noise, first_motion(record, ship)))
+        case = prepared(
+            IdentificationProblem(record, ship, only, noise, first_motion(record, ship))
+        )
         fit = fitted(case)
         if not healthy:
             fit = fitted(case, only, screened(case, fit)[0][2])
@@ -106,18 +124,27 @@ def test_a_healthy_log_gains_nothing(loss, twin):
     assert found["before_m"] < 0.5 * gain(loss.errors)["before_m"]
 
 
-def test_both_sides_have_the_same_observers_so_that_without_a_cause_nothing_is_beyond_them(twin, loss):
+def test_both_sides_have_the_same_observers_so_that_without_a_cause_nothing_is_beyond_them(
+    twin, loss
+):
     assert twin.observers["extended_observer"] == twin.observers["bias_observer"]
     assert twin.errors.sel(model="extended_observer").equals(
         twin.errors.sel(model="bias_observer").assign_coords(model="extended_observer")
     )
     assert not beyond_observer(twin.errors) > 0.0
     errors = loss.errors.copy(deep=True)
-    for model, missed in (("plain", 9.0), ("bias_observer", 3.0), ("extended", 8.0), ("extended_observer", 1.5)):
+    for model, missed in (
+        ("plain", 9.0),
+        ("bias_observer", 3.0),
+        ("extended", 8.0),
+        ("extended_observer", 1.5),
+    ):
         errors["position"].loc[{"model": model}] = missed
     errors["position"].loc[{"model": "floor"}] = 1.0
     assert beyond_observer(errors) == pytest.approx(0.75)
-    assert gain(errors)["after_m"] == 8.0  # the cause alone: what an observer does is not the name's doing
+    assert (
+        gain(errors)["after_m"] == 8.0
+    )  # the cause alone: what an observer does is not the name's doing
 
 
 def test_with_the_cause_named_the_ship_is_as_predictable_as_her_healthy_twin(loss, twin):
@@ -129,7 +156,9 @@ def test_a_wrong_instrument_gains_in_what_it_shows(diagnosed):
     comparison = compare(case, fit)
     found = gain(comparison.errors)
     assert found["after_m"] < 0.8 * found["before_m"]
-    assert np.degrees(comparison.fit.values["instruments.heading_bias"]) == pytest.approx(truth["offset"], abs=1.0)
+    assert np.degrees(comparison.fit.values["instruments.heading_bias"]) == pytest.approx(
+        truth["offset"], abs=1.0
+    )
 
 
 def test_baseline_grows_with_the_horizon_and_is_what_the_gain_starts_from(loss):
@@ -142,7 +171,9 @@ def test_baseline_grows_with_the_horizon_and_is_what_the_gain_starts_from(loss):
 
 def test_the_same_seed_gives_the_same_interval_and_another_nearly(loss):
     assert gain(loss.errors, seed=5) == gain(loss.errors, seed=5)
-    assert gain(loss.errors, seed=6)["ci95"] == pytest.approx(gain(loss.errors, seed=5)["ci95"], abs=0.05)
+    assert gain(loss.errors, seed=6)["ci95"] == pytest.approx(
+        gain(loss.errors, seed=5)["ci95"], abs=0.05
+    )
 
 
 def test_conditions_share_the_segments_among_them(loss):
@@ -150,7 +181,9 @@ def test_conditions_share_the_segments_among_them(loss):
     assert set(parts) <= {"holding", "moving", "turning"}  # no thruster fails in these logs
     assert sum(part["segments"] for part in parts.values()) == loss.errors.sizes["segment"]
     squares = sum(part["segments"] * part["plain"] ** 2 for part in parts.values())
-    assert np.sqrt(squares / loss.errors.sizes["segment"]) == pytest.approx(rms(loss.errors, "position", "plain"))
+    assert np.sqrt(squares / loss.errors.sizes["segment"]) == pytest.approx(
+        rms(loss.errors, "position", "plain")
+    )
     assert set(loss.errors["model"].values) == set(MODELS)
 
 
@@ -181,7 +214,9 @@ def test_held_out_rows_have_no_say_in_the_parameters(diagnosed):
     base = case.base.whole()
     base = base._replace(seen=np.where(train[:, None, None], base.seen, 1000.0))
     other = replace(case, record=replace(case.record, measured=lied), base=in_parts(base))
-    honest, untouched = (fitted(trained(one, train), fit.hypotheses, fit.values, rounds=1) for one in (case, other))
+    honest, untouched = (
+        fitted(trained(one, train), fit.hypotheses, fit.values, rounds=1) for one in (case, other)
+    )
     assert honest.score == untouched.score and np.array_equal(honest.theta, untouched.theta)
     assert honest.std != fit.std
 
@@ -194,15 +229,21 @@ def test_the_reference_favours_no_model(diagnosed):
         found.append(reference(linear, motion, case.noise, case.record, model))
     one, other = found
     assert np.sqrt(np.mean((one.x - other.x) ** 2 + (one.y - other.y) ** 2)) < 0.05
-    assert np.hypot(case.motion.x - fit.motion.x, case.motion.y - fit.motion.y).max() > 0.3  # what it must not inherit
+    assert (
+        np.hypot(case.motion.x - fit.motion.x, case.motion.y - fit.motion.y).max() > 0.3
+    )  # what it must not inherit
 
 
 def test_a_problem_restarted_for_another_ship_is_hers(diagnosed):
     case, _, _ = diagnosed("thrust_loss")
-    other = case.model.with_values({"vessel.mass_scale": 1.02, "instruments.lever_x": 0.5, "port.thrust_loss": 0.05})
+    other = case.model.with_values(
+        {"vessel.mass_scale": 1.02, "instruments.lever_x": 0.5, "port.thrust_loss": 0.05}
+    )
     own, theirs = (linearise(case.motion, case.record, model, []) for model in (other, case.model))
     found = restarted(theirs, case.motion, case.record, other)
-    assert np.allclose(found.driven, own.driven, atol=1e-12) and np.allclose(found.seen, own.seen, atol=1e-12)
+    assert np.allclose(found.driven, own.driven, atol=1e-12) and np.allclose(
+        found.seen, own.seen, atol=1e-12
+    )
     assert not np.allclose(found.driven, theirs.driven) and not np.allclose(found.seen, theirs.seen)
 
 
@@ -211,8 +252,16 @@ def test_observers_know_nothing_of_later_rows(diagnosed):
     linear = linearise(case.motion, case.record, case.model, [])
     later = linear.seen.copy()
     later[400:] += 5.0
-    noise = replace(case.noise, **{n: np.stack([getattr(case.noise, n)] * 2) for n in ("white", "jolt", "walk")})
-    known = observed([linear, linear._replace(seen=later)], noise, case.record, [case.motion] * 2, [case.model] * 2)
+    noise = replace(
+        case.noise, **{n: np.stack([getattr(case.noise, n)] * 2) for n in ("white", "jolt", "walk")}
+    )
+    known = observed(
+        [linear, linear._replace(seen=later)],
+        noise,
+        case.record,
+        [case.motion] * 2,
+        [case.model] * 2,
+    )
     for value in (*known.motion, known.force):
         assert np.array_equal(value[0, :400], value[1, :400])
     assert not np.allclose(known.motion.x[0, 400], known.motion.x[1, 400])
@@ -232,7 +281,9 @@ def test_unseen_headings_are_predicted_with_what_the_others_taught(diagnosed):
     most = np.nanmedian(np.mod(case.record.measured[:, 2] + np.pi, 2.0 * np.pi)) - np.pi
     comparison = compare(case, fit, train=without_headings(case.record, most, np.radians(80.0)))
     assert comparison.errors["heading_known"].mean() < 0.5
-    assert rms(comparison.errors, "position", "extended") < rms(comparison.errors, "position", "plain")
+    assert rms(comparison.errors, "position", "extended") < rms(
+        comparison.errors, "position", "plain"
+    )
 
 
 def test_a_condition_is_held_out_wherever_it_is_in_the_log(diagnosed):
@@ -255,7 +306,11 @@ def test_headings_that_nothing_was_fitted_on_are_15_deg_away_from_those(diagnose
     heading = np.degrees(case.motion.psi)
     known = np.unique(heading[comparison.train].round() % 360.0)
     apart = np.abs((heading[comparison.rows][:, None] - known + 180.0) % 360.0 - 180.0).min(axis=1)
-    assert comparison.train.mean() > 0.5 and apart.min() > 14.0 and apart.size == comparison.errors.sizes["segment"]
+    assert (
+        comparison.train.mean() > 0.5
+        and apart.min() > 14.0
+        and apart.size == comparison.errors.sizes["segment"]
+    )
     assert gain(comparison.errors)["share_of_explainable"] > 0.5
 
 
@@ -286,11 +341,15 @@ def test_a_force_held_in_the_earth_undoes_a_line_and_one_held_aboard_does_not(mo
     start = Motion(*(np.array([value]) for value in (0.0, 0.0, 0.4, 0.5, 0.0, 0.06)))
     rows, pull = np.array([300]), np.array([3000.0, -2000.0])
     still = replace(
-        record, units={name: tuple(0.0 * s for s in pair) for name, pair in record.units.items()}, wind=None
+        record,
+        units={name: tuple(0.0 * s for s in pair) for name, pair in record.units.items()},
+        wind=None,
     )
     c, s = np.cos(0.4), np.sin(0.4)
     force = -np.array([[c * pull[0] + s * pull[1], c * pull[1] - s * pull[0], 0.0]])
-    towed = model.with_values({"water.tow_north": pull[0], "water.tow_east": pull[1], "water.tow_x": 0.0})
+    towed = model.with_values(
+        {"water.tow_north": pull[0], "water.tow_east": pull[1], "water.tow_x": 0.0}
+    )
     free = predicted(start, rows, still, model, [60])
     held = predicted(start, rows, still, towed, [60], force)
     aboard = predicted(start, rows, still, towed, [60], force, earth=False)
@@ -315,14 +374,19 @@ def test_the_missing_force_of_a_line_points_where_it_pulls(diagnosed):
         assert float(found[name].median()) == pytest.approx(truth[name], abs=0.25 * size)
     rest = missing_force(case, fit.model, fit.motion)
     assert float((rest["north"] ** 2 + rest["east"] ** 2).mean()) < 0.1 * size**2
-    sizes = (np.hypot(found[a], found[b]) for a, b in (("port_along", "port_across"), ("north", "east")))
+    sizes = (
+        np.hypot(found[a], found[b]) for a, b in (("port_along", "port_across"), ("north", "east"))
+    )
     assert np.allclose(*sizes, equal_nan=True)
 
 
 def test_a_ship_without_thrust_drifts(diagnosed):
     case, _, _ = diagnosed("thrust_loss")
     record, rows = case.record, np.array([200, 500])
-    dead = {name: (np.where(np.arange(n.size) < 300, 0.0, n), a) for name, (n, a) in record.units.items()}
+    dead = {
+        name: (np.where(np.arange(n.size) < 300, 0.0, n), a)
+        for name, (n, a) in record.units.items()
+    }
     seen, train = case.motion, first_rows(record)
     found = conditions(replace(record, units=dead), seen, rows, train, case.model)["regime"][1]
     assert found[0] == "drifting" and found[1] != "drifting"

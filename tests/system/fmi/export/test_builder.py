@@ -39,7 +39,9 @@ def test_the_newcomers_thruster_runs_as_written(own_shipcosim, build, load):
     assert validate_fmu(str(fmu)) == []
     thruster = load(fmu).start(thrust_max=100.0, time_constant=1.0)
     thruster.set(thrust_cmd=500.0)
-    assert thruster.step(20, read="thrust")[-1] == pytest.approx(100.0 * (1 - 2.718281828459045**-2.0))
+    assert thruster.step(20, read="thrust")[-1] == pytest.approx(
+        100.0 * (1 - 2.718281828459045**-2.0)
+    )
 
 
 def test_two_versions_of_shipcosim_run_side_by_side(own_shipcosim, build, load):
@@ -68,7 +70,10 @@ def test_the_same_source_gives_the_same_bytes_wherever_and_whenever(build, sourc
 def test_another_source_gives_another_guid_and_module(build, sources):
     first, second = build("lag", sources.lag), build("lag", sources.lag + "\n", out="other")
     inside = [set(zipfile.ZipFile(path).namelist()) for path in (first, second)]
-    guids = [zipfile.ZipFile(path).read("modelDescription.xml").split(b"guid=")[1][:40] for path in (first, second)]
+    guids = [
+        zipfile.ZipFile(path).read("modelDescription.xml").split(b"guid=")[1][:40]
+        for path in (first, second)
+    ]
     assert inside[0] != inside[1] and guids[0] != guids[1]
 
 
@@ -81,14 +86,22 @@ def test_the_archive_holds_binaries_documentation_and_no_builder(tmp_path, sourc
     with zipfile.ZipFile(builder.build_fmu(folder / "lag.py", tmp_path)) as archive:
         names = archive.namelist()
         assert b"a &lt; b" in archive.read("documentation/index.html")
-    assert {"binaries/linux64/lag.so", "binaries/win64/lag.dll", "documentation/reference.csv"} <= set(names)
+    assert {
+        "binaries/linux64/lag.so",
+        "binaries/win64/lag.dll",
+        "documentation/reference.csv",
+    } <= set(names)
     left_out = ("builder", "bundle", "description.py", "units", "resources/pythonfmu")
     assert not [name for name in names if any(part in name for part in left_out)]
 
 
 def test_building_leaves_no_trace_in_the_process(build, sources):
     modules, path = set(sys.modules), list(sys.path)
-    build("adder", sources.adder.format(module="amounts", name="Adder"), amounts="def amount():\n    return 1.0\n")
+    build(
+        "adder",
+        sources.adder.format(module="amounts", name="Adder"),
+        amounts="def amount():\n    return 1.0\n",
+    )
     assert sys.path == path and not [name for name in set(sys.modules) - modules if "adder" in name]
 
 
@@ -111,7 +124,10 @@ STEP = "\n    def step(self, t, h): pass\n"
             f"{HEAD}    thrust = Output('N', 'x')\n    def step(self, t, h):\n        self.thrst = 1.0\n",
             "line 5 sets self.thrst, .*Did you mean 'thrust'",
         ),
-        ("import shipcosim.nothing\n", "line 1: ModuleNotFoundError: No module named 'shipcosim.nothing'"),
+        (
+            "import shipcosim.nothing\n",
+            "line 1: ModuleNotFoundError: No module named 'shipcosim.nothing'",
+        ),
     ],
 )
 def test_what_is_wrong_with_a_script_is_said_with_its_place(build, script, expected):
@@ -133,10 +149,14 @@ def test_build_all_builds_what_can_be_built_and_reports_the_rest(tmp_path, sourc
     text = str(caught.value)
     assert "no FMU 'goood'" in text and "Did you mean 'good'" in text
     assert "broken.py, line 1" in text and "where case does not count" in text
-    assert [path.name for path in builder.build_all(tmp_path / "fmus", ["good"], tmp_path / "out")] == ["good.fmu"]
+    assert [
+        path.name for path in builder.build_all(tmp_path / "fmus", ["good"], tmp_path / "out")
+    ] == ["good.fmu"]
 
 
-def test_a_place_that_cannot_be_written_is_reported_and_nothing_left(tmp_path, sources, monkeypatch):
+def test_a_place_that_cannot_be_written_is_reported_and_nothing_left(
+    tmp_path, sources, monkeypatch
+):
     (tmp_path / "lag.py").write_text(sources.lag)
     (tmp_path / "file").write_text("")
     with pytest.raises(ShipcosimError, match="cannot be written"):

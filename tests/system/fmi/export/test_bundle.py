@@ -47,7 +47,10 @@ def test_only_what_is_reached_by_imports_comes_along(folder):
     [
         ("import helper", "import P.helper as helper"),
         ("import helper as h, math", "import P.helper as h, math"),
-        ("import shipcosim.models.core.maths", "import P.shipcosim.models.core.maths, P.shipcosim as shipcosim"),
+        (
+            "import shipcosim.models.core.maths",
+            "import P.shipcosim.models.core.maths, P.shipcosim as shipcosim",
+        ),
         ("import shipcosim.models.core.maths as m", "import P.shipcosim.models.core.maths as m"),
         ("from shipcosim.models.core import maths", "from P.shipcosim.models.core import maths"),
         ("from  helper  import (\n    a,\n    b\n)", "from  P.helper  import (\n    a,\n    b\n)"),
@@ -65,7 +68,11 @@ def test_imports_lead_into_the_package_and_lines_stay(folder, statement, expecte
 
 def test_relative_imports_of_a_package_beside_the_script_are_followed(folder, tmp_path):
     (tmp_path / "pack").mkdir()
-    modules = {"pack/__init__": "", "pack/one": "from . import two\nfrom .two import x\n", "pack/two": "x = 1\n"}
+    modules = {
+        "pack/__init__": "",
+        "pack/one": "from . import two\nfrom .two import x\n",
+        "pack/two": "x = 1\n",
+    }
     script = folder(main="from pack.one import x\n", **modules)
     bundled = bundle(script)
     assert f"{bundled.package}/pack/two.py" in bundled.files
@@ -102,11 +109,17 @@ def test_line_ends_of_another_system_change_nothing(folder):
 
 
 def test_all_that_an_fmu_cannot_carry_is_reported_at_once(folder):
-    script = folder(main="import pandas\nimport helper\n", helper="import numpy, json\nfrom scipy.linalg import inv\n")
+    script = folder(
+        main="import pandas\nimport helper\n",
+        helper="import numpy, json\nfrom scipy.linalg import inv\n",
+    )
     with pytest.raises(ShipcosimError) as caught:
         bundle(script)
     text = str(caught.value)
-    assert "main.py, line 1: imports pandas" in text and "helper.py, line 2: imports scipy.linalg" in text
+    assert (
+        "main.py, line 1: imports pandas" in text
+        and "helper.py, line 2: imports scipy.linalg" in text
+    )
 
 
 def test_imports_that_do_not_run_in_an_fmu_are_no_problem(folder):

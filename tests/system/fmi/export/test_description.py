@@ -45,21 +45,40 @@ class Every(Fmu):
 @pytest.fixture
 def described(build):
     path = build("every", SCRIPT)
-    description = read_model_description(str(path), validate_variable_names=True, validate_model_structure=True)
+    description = read_model_description(
+        str(path), validate_variable_names=True, validate_model_structure=True
+    )
     return description, {variable.name: variable for variable in description.modelVariables}
 
 
 def test_variables_carry_unit_bounds_start_and_meaning(described):
     _, variables = described
     rpm, drag, seed = variables["rpm"], variables["drag"], variables["seed"]
-    assert (rpm.unit, rpm.min, rpm.max, rpm.start, rpm.causality) == ("rpm", "-200.0", "200.0", "0.0", "input")
+    assert (rpm.unit, rpm.min, rpm.max, rpm.start, rpm.causality) == (
+        "rpm",
+        "-200.0",
+        "200.0",
+        "0.0",
+        "input",
+    )
     assert (drag.unit, drag.min, drag.max, drag.start) == ("N.s2/m2", "0.0", "9.0", "3.5")
     assert drag.description == "drag (table 4)"
-    assert (seed.type, seed.min, seed.start, seed.variability, seed.initial) == ("Integer", "0", "1", "fixed", "exact")
+    assert (seed.type, seed.min, seed.start, seed.variability, seed.initial) == (
+        "Integer",
+        "0",
+        "1",
+        "fixed",
+        "exact",
+    )
     assert variables["gain"].variability == "tunable"
-    assert variables["ready"].start == "true" and variables["ready"].description == "ready & <willing>"
+    assert (
+        variables["ready"].start == "true" and variables["ready"].description == "ready & <willing>"
+    )
     assert variables["table"].start == "0 1; 2 3"
-    assert variables["heading"].declaredType.name == "Angle" and variables["heading"].displayUnit == "deg"
+    assert (
+        variables["heading"].declaredType.name == "Angle"
+        and variables["heading"].displayUnit == "deg"
+    )
 
 
 def test_units_are_defined_by_base_units_with_factor(described):
@@ -79,18 +98,26 @@ def test_structure_lists_every_output_twice(described):
     outputs = ["heading", "ratio", "count"]
     assert [unknown.variable.name for unknown in description.outputs] == outputs
     assert [unknown.variable.name for unknown in description.initialUnknowns] == outputs
-    assert all(unknown.dependencies == [] for unknown in description.outputs)  # none follows an input before a step
+    assert all(
+        unknown.dependencies == [] for unknown in description.outputs
+    )  # none follows an input before a step
 
 
 def test_the_head_says_what_the_fmu_is_and_can(described):
     description, _ = described
     assert description.description == "All that can be described."
-    assert description.generationTool.startswith("shipcosim") and description.generationDateAndTime is None
+    assert (
+        description.generationTool.startswith("shipcosim")
+        and description.generationDateAndTime is None
+    )
     assert (description.license, description.author) == ("MIT", "shipcosim") and description.version
     assert float(description.defaultExperiment.stepSize) == 0.05
     abilities = description.coSimulation
     assert abilities.canGetAndSetFMUstate and abilities.canSerializeFMUstate
-    assert abilities.canHandleVariableCommunicationStepSize and not abilities.canBeInstantiatedOnlyOncePerProcess
+    assert (
+        abilities.canHandleVariableCommunicationStepSize
+        and not abilities.canBeInstantiatedOnlyOncePerProcess
+    )
 
 
 def test_tolerance_is_kept_as_annotation():

@@ -26,13 +26,19 @@ def test_it_has_every_function_of_the_binary_that_it_stands_for(platform, lag):
         ours = archive.read(f"{folder}lag{SUFFIXES[platform]}")
         (other,) = [n for n in archive.namelist() if n.startswith(folder) and "/lag." not in n]
         other = archive.read(other)
-    found, wanted = (set(re.findall(rb"\x00(fmi2[A-Z][A-Za-z]+)(?=\x00)", data)) for data in (ours, other))
+    found, wanted = (
+        set(re.findall(rb"\x00(fmi2[A-Z][A-Za-z]+)(?=\x00)", data)) for data in (ours, other)
+    )
     assert len(wanted) >= 34 and wanted <= found
 
 
 def test_it_runs_with_the_c_library_of_systems_ten_years_old(needs):
     """As every wheel of manylinux2014 has to: no symbol newer than glibc 2.17."""
     objdump = shutil.which("objdump") or needs("objdump")
-    said = subprocess.run([objdump, "-T", loader_for("linux64")], capture_output=True, text=True, check=True).stdout
-    versions = {tuple(map(int, version.split("."))) for version in re.findall(r"GLIBC_([0-9.]+)", said)}
+    said = subprocess.run(
+        [objdump, "-T", loader_for("linux64")], capture_output=True, text=True, check=True
+    ).stdout
+    versions = {
+        tuple(map(int, version.split("."))) for version in re.findall(r"GLIBC_([0-9.]+)", said)
+    }
     assert versions and max(versions) <= (2, 17)

@@ -38,7 +38,9 @@ def record_of(n=120, many=3, seed=1):
 
 
 def test_no_world_serves_two_purposes():
-    purposes = [set(one) for one in (worlds.TRAINING, worlds.CALIBRATION, worlds.TUNING, worlds.HELD_OUT)]
+    purposes = [
+        set(one) for one in (worlds.TRAINING, worlds.CALIBRATION, worlds.TUNING, worlds.HELD_OUT)
+    ]
     assert sum(map(len, purposes)) == len(set.union(*purposes))
     drawn = [worlds.drawn(seed) for seed in (*worlds.TRAINING, *worlds.CALIBRATION, *worlds.TUNING)]
     held_out = worlds.worlds_of_test(worlds.HELD_OUT)
@@ -54,21 +56,36 @@ def test_the_test_has_every_sea_state_from_every_direction():
 
 def test_nothing_true_is_measured():
     """The names of signals that a law sees: sensors, commands, and what the allocator asks."""
-    assert {signal.partition(".")[0] for signal in worlds.MEASURED.values()} <= {"sensors", "allocator", *worlds.UNITS}
+    assert {signal.partition(".")[0] for signal in worlds.MEASURED.values()} <= {
+        "sensors",
+        "allocator",
+        *worlds.UNITS,
+    }
 
 
 def test_the_known_model_is_that_of_the_files():
-    hull, wind, known = parameters(HullParameters, "osv"), parameters(WindParameters, "osv"), motion_filter.KNOWN
+    hull, wind, known = (
+        parameters(HullParameters, "osv"),
+        parameters(WindParameters, "osv"),
+        motion_filter.KNOWN,
+    )
     assert motion_filter.MASS_SURGE == pytest.approx(hull.mass + hull.A11, rel=1e-3)
     assert motion_filter.MASS_SWAY == pytest.approx(hull.mass + hull.A22, rel=1e-3)
-    for name, unit, mass in (("bow", "bow_1", motion_filter.MASS_SWAY), ("ahead", "port", motion_filter.MASS_SURGE)):
+    for name, unit, mass in (
+        ("bow", "bow_1", motion_filter.MASS_SWAY),
+        ("ahead", "port", motion_filter.MASS_SURGE),
+    ):
         thrust = mapped_thrust(20.0, thruster=parameters(MapParameters, "osv", unit))
         assert known[name] * 400.0 == pytest.approx(thrust / mass, rel=1e-2)
     mast = 3.0**0.12  # of the wind at 30 m over that at 10 m
     for angle in (0.0, 0.5, 1.5, 2.5):
         X, Y, _ = wind_loads(10.0 / mast, angle, wind=wind)
-        forward = 100.0 * (known["wind_surge_1"] * np.cos(angle) + known["wind_surge_3"] * np.cos(3.0 * angle))
-        side = 100.0 * (known["wind_sway_1"] * np.sin(angle) + known["wind_sway_3"] * np.sin(3.0 * angle))
+        forward = 100.0 * (
+            known["wind_surge_1"] * np.cos(angle) + known["wind_surge_3"] * np.cos(3.0 * angle)
+        )
+        side = 100.0 * (
+            known["wind_sway_1"] * np.sin(angle) + known["wind_sway_3"] * np.sin(3.0 * angle)
+        )
         assert forward * motion_filter.MASS_SURGE == pytest.approx(X, abs=4e3)
         assert side * motion_filter.MASS_SWAY == pytest.approx(Y, abs=8e3)
 
@@ -78,7 +95,9 @@ def test_mutual_information_of_normal_numbers_is_the_closed_form(correlation):
     rng = np.random.default_rng(1)
     x, z = rng.normal(size=(2, 1500))
     y = correlation * x + sqrt(1.0 - correlation**2) * z
-    assert inputs.mutual_information(x, y) == pytest.approx(-0.5 * log(1.0 - correlation**2), abs=0.06)
+    assert inputs.mutual_information(x, y) == pytest.approx(
+        -0.5 * log(1.0 - correlation**2), abs=0.06
+    )
 
 
 @pytest.mark.parametrize("name", list(paper_ii.RECIPES))
@@ -93,14 +112,18 @@ def test_torch_and_numpy_give_the_same_velocity(name):
     network = _torch_of(arrays, recipe)
     x = (history[..., design.surge.inputs] - design.surge.mean) / design.surge.std
     wanted = network(torch.from_numpy(x).float())[:, -1, 0].detach().numpy()
-    found = (velocity_network.velocity(history, design.surge) - design.surge.velocity_mean) / design.surge.velocity_std
+    found = (
+        velocity_network.velocity(history, design.surge) - design.surge.velocity_mean
+    ) / design.surge.velocity_std
     np.testing.assert_allclose(found, wanted, atol=1e-5)
 
 
 def _torch_of(arrays, recipe):
     """The network of surge in torch, from its arrays."""
     put = {
-        name.removeprefix("surge."): torch.from_numpy(one).float() for name, one in arrays.items() if "surge" in name
+        name.removeprefix("surge."): torch.from_numpy(one).float()
+        for name, one in arrays.items()
+        if "surge" in name
     }
     if not recipe.recurrent:
         network = paper_ii.SingleLayer(4, recipe.width[0])
@@ -110,15 +133,25 @@ def _torch_of(arrays, recipe):
         return network
     network = Recurrent(4, recipe.width[0], 1, 1)
     both, bias = put["lstm.1.weights"], put["lstm.1.bias"]
-    state = {"lstm.weight_ih_l0": both[:, :4], "lstm.weight_hh_l0": both[:, 4:], "lstm.bias_ih_l0": bias}
-    state |= {"lstm.bias_hh_l0": 0.0 * bias, "dense.weight": put["dense.weights"], "dense.bias": put["dense.bias"]}
+    state = {
+        "lstm.weight_ih_l0": both[:, :4],
+        "lstm.weight_hh_l0": both[:, 4:],
+        "lstm.bias_ih_l0": bias,
+    }
+    state |= {
+        "lstm.bias_hh_l0": 0.0 * bias,
+        "dense.weight": put["dense.weights"],
+        "dense.bias": put["dense.bias"],
+    }
     network.load_state_dict(state)
     return network
 
 
 def test_while_gnss_is_lost_its_values_are_not_used():
     record, arrays = record_of(), {}
-    arrays, _ = paper_ii.trained(replace(paper_ii.RECIPES["paper-ii"], most_epochs=1), record, lambda *_: None)
+    arrays, _ = paper_ii.trained(
+        replace(paper_ii.RECIPES["paper-ii"], most_epochs=1), record, lambda *_: None
+    )
     lost = record.measured["valid"] < 0.5
     spoilt = {name: np.where(lost, 1e3, record.measured[name]) for name in ("x", "y", "u", "v")}
     other = record._replace(measured=record.measured | spoilt)
@@ -139,10 +172,20 @@ def test_learning_finds_the_numbers_of_the_ship_that_made_the_record():
     m = record.measured
     m |= {name: 0.0 * m["x"] for name in ("psi", *(f"command_{k}" for k in range(1, 7)))}
     m["command_1"] = 160.0 * np.sin(np.arange(n) / 20.0 + rng.uniform(0.0, 6.0, (many, 1)))
-    m["wind_speed"], m["wind_from"] = 6.0 + 3.0 * np.sin(np.arange(n) / 20.0) + 0.0 * m["x"], 1.0 + 0.0 * m["x"]
+    m["wind_speed"], m["wind_from"] = (
+        6.0 + 3.0 * np.sin(np.arange(n) / 20.0) + 0.0 * m["x"],
+        1.0 + 0.0 * m["x"],
+    )
     m["valid"] = np.zeros((many, n))
     states = motion_filter.reckoned(record, recipes.filter_law, true)
-    for name, field in (("x", "x"), ("y", "y"), ("second_x", "x"), ("second_y", "y"), ("u", "u"), ("v", "v")):
+    for name, field in (
+        ("x", "x"),
+        ("y", "y"),
+        ("second_x", "x"),
+        ("second_y", "y"),
+        ("u", "u"),
+        ("v", "v"),
+    ):
         m[name] = np.stack([getattr(state, field) for state in states], axis=-1)
     m["x"][:, 0] = m["second_x"][:, 0]
     m["valid"][:, :60] = 1.0
@@ -161,10 +204,14 @@ def test_a_region_covers_nine_of_ten_and_follows_the_sea():
 
     region = calibrated(*cases(20000))
     time, sea, error = cases(20000)
-    radii = np.interp(time, TIMES, region["region.radii"]) * (1.0 + region["region.sea_share"] * np.sqrt(sea))
+    radii = np.interp(time, TIMES, region["region.radii"]) * (
+        1.0 + region["region.sea_share"] * np.sqrt(sea)
+    )
     assert np.mean(error <= radii) == pytest.approx(0.9, abs=0.015)
     calm = sea < 0.05
-    assert all(np.mean((error <= radii)[part]) == pytest.approx(0.9, abs=0.04) for part in (calm, ~calm))
+    assert all(
+        np.mean((error <= radii)[part]) == pytest.approx(0.9, abs=0.04) for part in (calm, ~calm)
+    )
     assert region["region.sea_share"] > 0.0 and (np.diff(region["region.radii"]) >= 0.0).all()
 
 
@@ -172,7 +219,9 @@ def test_a_region_covers_nine_of_ten_and_follows_the_sea():
 def test_weights_and_pages_are_those_of_their_report(name, weights):
     report = json.loads((weights / f"{name}.json").read_text(encoding="utf-8"))
     assert (weights / f"{name}.md").read_text(encoding="utf-8") == markdown(report)
-    assert report["weights"] == sum(one.size for one in read_arrays(weights / f"{name}.npz").values())
+    assert report["weights"] == sum(
+        one.size for one in read_arrays(weights / f"{name}.npz").values()
+    )
     assert report["processor_time_s"] < 1200.0
     if name in recipes.UNLEARNED:
         arrays = read_arrays(weights / f"{name}.npz")

@@ -38,7 +38,9 @@ def test_way_ends_off_the_quay_on_the_side_of_the_water():
     for number in (*FAMILIAR, *UNSEEN):
         port = harbour(number)
         x, y = port.waypoints(12.0, 2000.0)[-1]
-        beside = y * np.cos(port.berth_heading) - x * np.sin(port.berth_heading)  # to starboard of the berth
+        beside = y * np.cos(port.berth_heading) - x * np.sin(
+            port.berth_heading
+        )  # to starboard of the berth
         assert np.hypot(x, y) == pytest.approx(12.0)
         assert beside == pytest.approx(-12.0 * port.berth_side)
 
@@ -54,16 +56,23 @@ def test_true_ship_is_her_model_at_distance_0_and_the_same_at_every_docking():
     assert {name: near[name] for name in nominal} == pytest.approx(nominal)
     differs = dockings.true_ship(1.0).items() - near.items()
     assert len(differs) > 50
-    assert dockings.true_ship(1.0).items() <= dockings.draw(7).set.items() & dockings.draw(8).set.items()
+    assert (
+        dockings.true_ship(1.0).items()
+        <= dockings.draw(7).set.items() & dockings.draw(8).set.items()
+    )
 
 
 def test_record_ends_with_the_ship_at_the_berth(record, docking):
     assert set(record.known) == set(KNOWN) and set(record.truth) == set(TRUTH)
-    assert all(len(one) == dockings.SAMPLES for one in (*record.known.values(), *record.truth.values()))
+    assert all(
+        len(one) == dockings.SAMPLES for one in (*record.known.values(), *record.truth.values())
+    )
     x, y, psi, u, v, _ = (record.truth[name][-1] for name in TRUTH)
     assert np.hypot(x, y) < 3.0 and np.hypot(u, v) < 0.1
     assert abs(np.sin(psi - docking.set["helmsman.berth_heading"])) < 0.1
-    assert record.truth["u"][0] > 3.0 and np.hypot(record.truth["x"][0], record.truth["y"][0]) > 1000.0
+    assert (
+        record.truth["u"][0] > 3.0 and np.hypot(record.truth["x"][0], record.truth["y"][0]) > 1000.0
+    )
 
 
 def test_what_is_measured_is_near_the_truth_but_is_not_it(record):

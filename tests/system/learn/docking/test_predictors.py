@@ -13,7 +13,15 @@ pytest.importorskip("torch")
 from ships import equipped, parameters
 
 from shipcosim.angles import wrap
-from shipcosim.learn.docking import distance_ensemble, dockings, inputs, paper_iii, predictions, regions, training
+from shipcosim.learn.docking import (
+    distance_ensemble,
+    dockings,
+    inputs,
+    paper_iii,
+    predictions,
+    regions,
+    training,
+)
 from shipcosim.learn.docking.records import KNOWN, Record
 from shipcosim.learn.results import markdown
 from shipcosim.models.core.networks import read_arrays
@@ -41,14 +49,28 @@ def record(seed=1, seconds=90, turned=0.0, mirrored=False):
     x, y = (np.cumsum(u * f(psi)) for f in (np.cos, np.sin))
     x, y = x - x[-1], y - y[-1]
     c, s = np.cos(turned), np.sin(turned)
-    truth = {"x": c * x - s * y, "y": s * x + c * y, "psi": wrap(psi + turned), "u": u, "v": 0.0 * u, "r": r}
+    truth = {
+        "x": c * x - s * y,
+        "y": s * x + c * y,
+        "psi": wrap(psi + turned),
+        "u": u,
+        "v": 0.0 * u,
+        "r": r,
+    }
     walk = [5e3 * np.sin(time / (8.0 + k) + rng.uniform(0.0, 3.0)) for k in range(3)]
     known = {f"{name}_meas": values for name, values in truth.items()}
-    known |= {"wind_speed_meas": 5.0 + np.sin(time / 9.0), "wind_from_meas": wrap(side * (0.5 + 0.1 * np.cos(time)))}
+    known |= {
+        "wind_speed_meas": 5.0 + np.sin(time / 9.0),
+        "wind_from_meas": wrap(side * (0.5 + 0.1 * np.cos(time))),
+    }
     near, far = ("port", "starboard")[:: 1 if side > 0.0 else -1]
     for unit, thrust, angle in ((near, walk[0], 0.3), (far, walk[1], 0.5)):
         azimuth = side * angle * np.sin(time / 11.0)
-        known |= {f"{unit}_thrust_cmd": thrust, f"{unit}_azimuth_cmd": azimuth, f"{unit}_azimuth": 0.9 * azimuth}
+        known |= {
+            f"{unit}_thrust_cmd": thrust,
+            f"{unit}_azimuth_cmd": azimuth,
+            f"{unit}_azimuth": 0.9 * azimuth,
+        }
         known[f"{unit}_rpm"] = thrust / 100.0
     known |= {"tunnel_thrust_cmd": side * walk[2], "tunnel_rpm": side * walk[2] / 10.0}
     return Record(seed, 1, time, {name: known[name] for name in KNOWN}, truth)
@@ -67,7 +89,9 @@ def learned(kind, replay):
     """Arrays and losses of a training of a few steps."""
     if kind == "ours":
         pair = distance_ensemble.features(replay, MODEL.hull), distance_ensemble.targets(replay)
-        return distance_ensemble.fit(pair, pair, few(training.OURS, width=6), lambda done, total: None)
+        return distance_ensemble.fit(
+            pair, pair, few(training.OURS, width=6), lambda done, total: None
+        )
     pair = paper_iii.inputs_of(replay), paper_iii.targets(replay)
     recipe = few(training.PAPER_III, trials=2, trial_epochs=1, most_nodes=12)
     return paper_iii.fit(pair, pair, recipe, lambda done, total: None)[:2]
@@ -89,9 +113,13 @@ def test_inputs_of_the_predictor_are_those_of_the_record():
 def test_features_and_targets_are_those_of_a_harbour_turned_by_any_angle(replayed):
     turned = inputs.replay([record(seed, turned=2.0) for seed in range(1, 5)], MODEL)
     np.testing.assert_allclose(
-        distance_ensemble.features(turned, MODEL.hull), distance_ensemble.features(replayed, MODEL.hull), atol=1e-6
+        distance_ensemble.features(turned, MODEL.hull),
+        distance_ensemble.features(replayed, MODEL.hull),
+        atol=1e-6,
     )
-    np.testing.assert_allclose(distance_ensemble.targets(turned), distance_ensemble.targets(replayed), atol=1e-6)
+    np.testing.assert_allclose(
+        distance_ensemble.targets(turned), distance_ensemble.targets(replayed), atol=1e-6
+    )
 
 
 def test_mirror_of_features_is_the_docking_in_a_mirror():
@@ -102,7 +130,9 @@ def test_mirror_of_features_is_the_docking_in_a_mirror():
         distance_ensemble.features(one, MODEL.hull) * distance_ensemble.MIRROR_SIGNS,
     )
     alike = [0, 1, 2, *range(16, 30)]
-    np.testing.assert_allclose(found[..., alike], expected[..., distance_ensemble.MIRROR_ORDER][..., alike], atol=0.05)
+    np.testing.assert_allclose(
+        found[..., alike], expected[..., distance_ensemble.MIRROR_ORDER][..., alike], atol=0.05
+    )
 
 
 def test_truth_is_what_came_and_nothing_where_the_record_ends(replayed):
@@ -118,9 +148,14 @@ def test_torch_and_numpy_give_the_same_distance(replayed):
     trained, found = docking.trained_of(arrays), distance_ensemble.features(replayed, MODEL.hull)
     given = distance_ensemble.given_by(trained, found)
     places = docking.corrected(replayed.own.ship, replayed.ours, given)
-    off = [np.hypot(replayed.later["x"][h] - x, replayed.later["y"][h] - y) for h, (x, y, _) in enumerate(places, 1)]
+    off = [
+        np.hypot(replayed.later["x"][h] - x, replayed.later["y"][h] - y)
+        for h, (x, y, _) in enumerate(places, 1)
+    ]
     turn = [abs(wrap(replayed.later["psi"][h] - psi)) for h, (_, _, psi) in enumerate(places, 1)]
-    expected = np.nanmean(np.sqrt(np.stack(off) ** 2 + 1e-2) + distance_ensemble.HEADING * np.stack(turn))
+    expected = np.nanmean(
+        np.sqrt(np.stack(off) ** 2 + 1e-2) + distance_ensemble.HEADING * np.stack(turn)
+    )
     loss = distance_ensemble.distance(
         distance_ensemble.tensor(given.mean(axis=0)),
         distance_ensemble.tensor(distance_ensemble.targets(replayed)),
@@ -153,7 +188,9 @@ def test_regions_have_their_share_of_the_calibration(replayed):
 
 
 def fmu_of(root, variant):
-    spec = importlib.util.spec_from_file_location("tested", root / "fmus/docking_predictor/docking_predictor.py")
+    spec = importlib.util.spec_from_file_location(
+        "tested", root / "fmus/docking_predictor/docking_predictor.py"
+    )
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -165,7 +202,9 @@ def fmu_of(root, variant):
 @pytest.mark.parametrize("variant", ["kinetic", "paper-iii", "ours"])
 def test_fmu_says_what_is_said_over_whole_records(root, variant, replayed):
     fmu, given = fmu_of(root, variant), record(1)
-    weights = read_arrays(root / WEIGHTS / ("paper-iii.npz" if variant == "paper-iii" else "distance_ensemble.npz"))
+    weights = read_arrays(
+        root / WEIGHTS / ("paper-iii.npz" if variant == "paper-iii" else "distance_ensemble.npz")
+    )
     says = {
         "kinetic": lambda: predictions.kinetic(replayed),
         "paper-iii": lambda: predictions.by_paper_iii(replayed, weights),
@@ -181,7 +220,9 @@ def test_fmu_says_what_is_said_over_whole_records(root, variant, replayed):
         assert fmu.predicted_at == k
         for horizon in (10, 20, 30):
             said = [getattr(fmu, f"{axis}_{horizon}") for axis in ("x", "y", "psi")]
-            assert said == pytest.approx([one[0, k] for one in expected.places[horizon - 1]], abs=1e-8)
+            assert said == pytest.approx(
+                [one[0, k] for one in expected.places[horizon - 1]], abs=1e-8
+            )
         assert fmu.position_region_30 == pytest.approx(radii[2][0, k])
         assert fmu.learned == pytest.approx(expected.share[0, k])
 

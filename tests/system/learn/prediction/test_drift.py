@@ -17,25 +17,48 @@ from shipcosim.models.ship import vessel
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 from shipcosim.models.ship.mast import MastParameters, wind_at_mast
 
-SHIP = rollouts.Ship(parameters(HullParameters), parameters(WindParameters), parameters(MastParameters))
+SHIP = rollouts.Ship(
+    parameters(HullParameters), parameters(WindParameters), parameters(MastParameters)
+)
 WEIGHTS = "fmus/drift_predictor/weights"
 
 
 def sailed(before=12, after=81):
     """Two ships of the nominal hull, held against wind and current by thrust that wavers, then adrift."""
     rng, (x, y, psi, u, v, r), rows = np.random.default_rng(1), np.zeros((6, 2)), []
-    air, current = (np.array([-5.0, 2.0]), np.array([3.0, 6.0])), (np.array([0.2, 0.0]), np.array([-0.1, 0.3]))
+    air, current = (
+        (np.array([-5.0, 2.0]), np.array([3.0, 6.0])),
+        (np.array([0.2, 0.0]), np.array([-0.1, 0.3])),
+    )
     ship = vessel.Motion(x, y, psi + [0.3, -2.0], u, v, r)
     for second in range(before + after + 1):
         wind = apparent_wind(ship.psi, ship.u, ship.v, *air)
         loads = wind_loads(*wind, wind=SHIP.wind)
-        water = hull_loads(*vessel.through_water(ship.psi, ship.u, ship.v, *current), ship.r, hull=SHIP.hull)
-        told = [(second <= before) * (rng.normal(1.0, 0.1) * -(a + b)) for a, b in zip(loads, water, strict=True)]
+        water = hull_loads(
+            *vessel.through_water(ship.psi, ship.u, ship.v, *current), ship.r, hull=SHIP.hull
+        )
+        told = [
+            (second <= before) * (rng.normal(1.0, 0.1) * -(a + b))
+            for a, b in zip(loads, water, strict=True)
+        ]
         measured = wind_at_mast(*wind, ship.u, ship.v, ship.r, mast=SHIP.mast)
-        columns = [*ship, *np.zeros((3, 2)), *told, np.hypot(*measured), np.arctan2(measured[1], measured[0]), 0.0 * x]
+        columns = [
+            *ship,
+            *np.zeros((3, 2)),
+            *told,
+            np.hypot(*measured),
+            np.arctan2(measured[1], measured[0]),
+            0.0 * x,
+        ]
         rows.append(np.stack(columns, axis=-1))
         for _ in range(5):
-            ship = vessel.step(ship, *(a + b for a, b in zip(told, loads, strict=True)), *current, 0.2, hull=SHIP.hull)
+            ship = vessel.step(
+                ship,
+                *(a + b for a, b in zip(told, loads, strict=True)),
+                *current,
+                0.2,
+                hull=SHIP.hull,
+            )
     return rollouts.Sailed(np.array(rows), before)
 
 
@@ -64,8 +87,13 @@ def test_the_gradient_is_that_of_differences():
     drift.loss(numbers, data, SHIP, training.OURS).backward()
     for k in (16, 49, 59):
         step = 1e-4 * np.eye(drift.SIZE)[k]
-        ends = [float(drift.loss(torch.from_numpy(at + d), data, SHIP, training.OURS)) for d in (step, -step)]
-        assert float(numbers.grad[k]) == pytest.approx((ends[0] - ends[1]) / 2e-4, rel=1e-3, abs=1e-7)
+        ends = [
+            float(drift.loss(torch.from_numpy(at + d), data, SHIP, training.OURS))
+            for d in (step, -step)
+        ]
+        assert float(numbers.grad[k]) == pytest.approx(
+            (ends[0] - ends[1]) / 2e-4, rel=1e-3, abs=1e-7
+        )
 
 
 def test_samples_of_a_nominal_ship_have_no_residual_but_the_current():
@@ -76,7 +104,10 @@ def test_samples_of_a_nominal_ship_have_no_residual_but_the_current():
 
 def test_records_are_aligned_at_the_loss():
     time = np.arange(300.0)
-    records = [worlds.Record(1, lost, time, np.tile((time - lost)[:, None], 15), None) for lost in (180.0, 200.0)]
+    records = [
+        worlds.Record(1, lost, time, np.tile((time - lost)[:, None], 15), None)
+        for lost in (180.0, 200.0)
+    ]
     found = training.aligned(records, 170)
     assert found.lost == 170 and found.known.shape == (252, 2, 15)
     assert (found.known[170] == 0.0).all() and (found.known[0] == -170.0).all()

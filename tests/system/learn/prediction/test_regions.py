@@ -14,7 +14,12 @@ def drawn(rng: np.random.Generator, spread: float = 1.0) -> Scores:
     growth = np.array([0.5, 2.0, 8.0])
     sizes = np.exp(0.3 * rng.standard_normal((100, 3)))
     later = np.where(np.arange(100.0) < 20.0, 1.0, 0.6)[:, None]
-    return Scores(np.arange(100.0), spread * growth * later * sizes, 0.1 * growth * later * sizes, np.ones((100, 2)))
+    return Scores(
+        np.arange(100.0),
+        spread * growth * later * sizes,
+        0.1 * growth * later * sizes,
+        np.ones((100, 2)),
+    )
 
 
 def test_calibrated_regions_have_nine_cases_in_ten_of_other_worlds_of_the_same_kind():
@@ -25,7 +30,9 @@ def test_calibrated_regions_have_nine_cases_in_ten_of_other_worlds_of_the_same_k
         found = coverage([drawn(rng) for _ in range(60)], widths, late=late)
         assert all(0.88 <= share <= 0.95 for kind in found.values() for share, _ in kind)
     wild = coverage([drawn(rng, spread=2.0) for _ in range(60)], widths, late=False)
-    assert all(share < 0.5 for share, _ in wild["position"])  # errors beyond those of the calibration do show
+    assert all(
+        share < 0.5 for share, _ in wild["position"]
+    )  # errors beyond those of the calibration do show
 
 
 def test_predictions_count_from_the_loss_of_thrust_and_widen_where_she_was_foreseen_elsewhere():

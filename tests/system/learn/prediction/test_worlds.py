@@ -64,4 +64,6 @@ def test_at_distance_0_the_form_is_neutral():
         rows = [[float(value) for value in row.split()] for row in values[name].split(";")]
         assert all(len(row) == width and set(row[1:]) == {1.0} for row in rows)
     assert (values["vessel.drag_power"], values["vessel.cross_flow_power"]) == (2.0, 2.0)
-    assert not any(values[f"vessel.{name}"] for name in ("X_u", "Y_v", "N_r", "memory_surge", "memory_sway"))
+    assert not any(
+        values[f"vessel.{name}"] for name in ("X_u", "Y_v", "N_r", "memory_surge", "memory_sway")
+    )

@@ -39,7 +39,9 @@ def test_notation_conditions_and_origin_are_on_the_page(page, capability):
     assert notation(capability) in page
     for condition in CONDITIONS:
         assert f">{condition.wind_speed:g} m/s<" in page
-    assert "from memory" in page and "student implementation" in page and "no class document" in page
+    assert (
+        "from memory" in page and "student implementation" in page and "no class document" in page
+    )
 
 
 def test_bow_is_up_and_directions_go_clockwise(figures):
@@ -50,7 +52,9 @@ def test_bow_is_up_and_directions_go_clockwise(figures):
 def test_curves_are_the_numbers_and_closed(figures, capability):
     intact, single, worst = figures[0]["data"]
     assert intact["theta"][0] == 0.0 and intact["theta"][-1] == 360.0
-    assert intact["r"][:-1] == capability.numbers()[0].tolist() and intact["r"][-1] == intact["r"][0]
+    assert (
+        intact["r"][:-1] == capability.numbers()[0].tolist() and intact["r"][-1] == intact["r"][0]
+    )
     assert single["r"][:-1] == capability.worst(most_lost=1).tolist()
     assert worst["r"][:-1] == capability.worst().tolist()
 
@@ -64,9 +68,13 @@ def test_every_direction_and_assumed_particular_is_in_a_table(page):
 def test_every_figure_is_drawn_and_no_text_lies_over_another(shown_at, file, width):
     page = shown_at(file, width)
     assert page.errors() == [] and page.requests() == []
-    places, drawn = page.ask("return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)")
+    places, drawn = page.ask(
+        "return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)"
+    )
     assert places == drawn == 5
-    assert page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
+    assert (
+        page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
+    )
 
 
 def test_page_is_small(file):
@@ -93,8 +101,12 @@ def test_paper_is_light_and_the_screen_is_dark_again_afterwards(shown_at, file):
     page = shown_at(file, 500, "dark")
     page.ask("dispatchEvent(new Event('beforeprint'))")
     assert set(page.ask(PAPER)) == {LIGHT}, "at once: nobody waits for paper"
-    widths = page.ask("return [...document.querySelectorAll('.plot')].map(p => [p.clientWidth, p._fullLayout.width])")
-    assert all(place == drawn > 500 for place, drawn in widths), "as wide as paper, not as the screen"
+    widths = page.ask(
+        "return [...document.querySelectorAll('.plot')].map(p => [p.clientWidth, p._fullLayout.width])"
+    )
+    assert all(place == drawn > 500 for place, drawn in widths), (
+        "as wide as paper, not as the screen"
+    )
     page.ask("dispatchEvent(new Event('afterprint'))")
     page.wait("return document.body.dataset.drawn === 'all'")
     assert set(page.ask(PAPER)) == {DARK}

@@ -21,12 +21,16 @@ def predicted(root, tmp_path_factory):
     draw("trial", 3000, among=["thrust_loss"], minutes=12).save(path)
     found = find_causes(path, read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)]))
     problem, fit = found.basis.problem, found.basis.fit
-    return found, PredictedLog(found.basis, True, compare(problem, fit), {}, missing_forces(problem, fit))
+    return found, PredictedLog(
+        found.basis, True, compare(problem, fit), {}, missing_forces(problem, fit)
+    )
 
 
 @pytest.fixture(scope="session")
 def diagnosis(root, predicted):
     """The same with all that the page shows, in array form, the system not extended."""
     found, log = predicted
-    system = ExtendedSystem(read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)]), "")
+    system = ExtendedSystem(
+        read_system(root / "ssp" / "gunnerus_open", fmus=[build_stale(root)]), ""
+    )
     return completed(found, log, system, SimulatedLog(log.comparison.errors, {}, False))

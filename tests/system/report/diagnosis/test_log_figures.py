@@ -15,8 +15,17 @@ def log_of(rows=600):
     time = np.arange(rows, dtype=float)
     heading = np.mod(350.0 + 0.1 * time, 360.0)
     units = {"north": "m", "east": "m", "heading": "deg", "port_rpm": "rpm", "tunnel_rpm": "rpm"}
-    values = {"north": time, "east": 2 * time, "heading": heading, "port_rpm": 0 * time + 60, "tunnel_rpm": time + 500}
-    columns = {name: ("time", values[name], {"units": unit, "long_name": name}) for name, unit in units.items()}
+    values = {
+        "north": time,
+        "east": 2 * time,
+        "heading": heading,
+        "port_rpm": 0 * time + 60,
+        "tunnel_rpm": time + 500,
+    }
+    columns = {
+        name: ("time", values[name], {"units": unit, "long_name": name})
+        for name, unit in units.items()
+    }
     return xr.Dataset(columns, {"time": time})
 
 
@@ -51,7 +60,9 @@ def test_repaired_clock_is_drawn_over_the_time_that_was_logged():
 def test_heading_is_interrupted_where_it_passes_north():
     (trace,) = by_title(log_figures(log_of(), log_of(), []))["Heading"].traces
     assert trace["y"].count(None) == 1
-    pairs = [(a, b) for a, b in zip(trace["y"][:-1], trace["y"][1:], strict=True) if None not in (a, b)]
+    pairs = [
+        (a, b) for a, b in zip(trace["y"][:-1], trace["y"][1:], strict=True) if None not in (a, b)
+    ]
     assert max(abs(a - b) for a, b in pairs) < 1.0
 
 

@@ -33,7 +33,9 @@ def test_innovations_are_whiter_with_the_cause_than_without(diagnosis):
 
 def test_cause_that_could_not_show_is_listed_with_what_the_log_has_of_it(diagnosis):
     problem = diagnosis.basis.problem
-    ((name, sentence, why),) = not_testable_rows(["reverse_loss"], diagnosis.causes, log_facts(problem))
+    ((name, sentence, why),) = not_testable_rows(
+        ["reverse_loss"], diagnosis.causes, log_facts(problem)
+    )
     astern = max(np.mean(problem.record.units[unit][0] < 0.0) for unit in problem.model.azimuths)
     assert name == "Reverse loss" and "astern" in sentence and f"{100 * astern:.0f} %" in why
 
@@ -45,11 +47,17 @@ def test_labels_that_could_not_be_judged_are_listed_with_the_reason():
 
 
 def test_form_of_the_loads_is_told_with_what_it_hides(diagnosis):
-    number = FormNumber("vessel.cross_flow_drag", "cross-flow drag coefficient", 1.5, 1.86, 0.07, "1")
+    number = FormNumber(
+        "vessel.cross_flow_drag", "cross-flow drag coefficient", 1.5, 1.86, 0.07, "1"
+    )
     lost = FormNumber("port.form.across", "share of the thrust lost", 0.0, 0.06, 0.01, "1")
-    form = LoadForm(1.0, {"drag across the hull, along her length": 0.14}, (number, lost), ("crossflow",))
+    form = LoadForm(
+        1.0, {"drag across the hull, along her length": 0.14}, (number, lost), ("crossflow",)
+    )
     text = render(replace(diagnosis, form=form, not_testable=("crossflow", "reverse_loss")))
-    assert "The form of her loads" in text and "14 %" in text and "1.86" in text and "± 0.070" in text
+    assert (
+        "The form of her loads" in text and "14 %" in text and "1.86" in text and "± 0.070" in text
+    )
     assert "Port: share of the thrust lost" in text
     assert text.count("would do the same, and hers have another form") == 1
     assert "The form of her loads" not in render(diagnosis)
@@ -62,8 +70,16 @@ def test_ambiguous_log_shows_what_to_sail(diagnosis):
     alike = Candidate("mass", None, 0.6), Candidate("drag", None, 0.4)
     manoeuvre = library(diagnosis.basis.problem.model)[0]
     sail = ExperimentDesign(manoeuvre.name, manoeuvre.minutes, (("mass", "drag"),))
-    said = {"verdict": "ambiguous", "findings": (), "candidates": alike, "indistinguishable": alike, "gain": None}
-    text = render(replace(diagnosis, **said, not_testable=(), prescription=sail, manoeuvre=manoeuvre))
+    said = {
+        "verdict": "ambiguous",
+        "findings": (),
+        "candidates": alike,
+        "indistinguishable": alike,
+        "gain": None,
+    }
+    text = render(
+        replace(diagnosis, **said, not_testable=(), prescription=sail, manoeuvre=manoeuvre)
+    )
     assert f"To sail and log: {manoeuvre.name}" in text and "It tells mass from drag." in text
     assert "hold position and heading" in text
 
@@ -96,7 +112,10 @@ def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(diagno
     assert float(rows[-1][place]) == pytest.approx(float(np.sqrt(squares.mean())), abs=0.06)
     assert rows[-1][-1].endswith(" %")  # a minute of predictions: no interval
     text = render(replace(diagnosis, predictions=summary))
-    assert "free drift, not fitted on" in text and "too little of another quarter of headings for it" in text
+    assert (
+        "free drift, not fitted on" in text
+        and "too little of another quarter of headings for it" in text
+    )
     known = metres(rms(errors, "position", "calibrated"))
     assert f"{known} would be missed over the later part instead of" in text
 
@@ -142,10 +161,14 @@ def shown(shown_at, file):
 def test_page_draws_every_figure_without_error_network_or_sideways_overflow(shown, width, scheme):
     page = shown(width, scheme)
     assert page.errors() == [] and page.requests() == []
-    places, drawn = page.ask("return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)")
+    places, drawn = page.ask(
+        "return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)"
+    )
     assert places == drawn > 20
     assert page.ask("return document.documentElement.scrollWidth") <= width
-    rights = page.ask("return [...document.querySelectorAll('.plot')].map(p => p.getBoundingClientRect().right)")
+    rights = page.ask(
+        "return [...document.querySelectorAll('.plot')].map(p => p.getBoundingClientRect().right)"
+    )
     assert max(rights) <= width
     assert page.collisions() == []
 
@@ -156,10 +179,17 @@ def test_page_is_small(file):
 
 def test_first_screen_holds_verdict_figures_and_what_to_do(shown):
     page = shown(1280, "light")
-    assert "starboard thruster delivers" in page.text("#verdict") and "NAMED" in page.text("#verdict")
+    assert "starboard thruster delivers" in page.text("#verdict") and "NAMED" in page.text(
+        "#verdict"
+    )
     assert "Inspect the starboard thruster" in page.text("#next")
     for place in ("#verdict", "#figures", "#next"):
-        assert page.ask("return document.querySelector(arguments[0]).getBoundingClientRect().bottom", place) < 900
+        assert (
+            page.ask(
+                "return document.querySelector(arguments[0]).getBoundingClientRect().bottom", place
+            )
+            < 900
+        )
 
 
 def test_dark_page_is_dark_and_its_figures_too(shown):
@@ -176,5 +206,9 @@ def test_dark_page_is_dark_and_its_figures_too(shown):
 def brightness(colour):
     """Mean of red, green and blue, 0 to 255."""
     digits = colour.removeprefix("#")
-    rgb = [int(digits[i : i + 2], 16) for i in (0, 2, 4)] if colour[0] == "#" else re.findall(r"\d+", colour)[:3]
+    rgb = (
+        [int(digits[i : i + 2], 16) for i in (0, 2, 4)]
+        if colour[0] == "#"
+        else re.findall(r"\d+", colour)[:3]
+    )
     return sum(map(int, rgb)) / 3

@@ -11,12 +11,18 @@ from shipcosim.report.diagnosis.words import estimate_rows, next_steps, outcome,
 from shipcosim.report.theme.numbers import plain
 
 LOSS = Finding("thrust_loss", "port", parameters={"loss": ParameterEstimate(0.337, 0.0121, "1")})
-GAP = Finding("gap", kind="data", segments=((463.0, 499.0), (912.0, 1001.0)), channels=("north", "east"))
+GAP = Finding(
+    "gap", kind="data", segments=((463.0, 499.0), (912.0, 1001.0)), channels=("north", "east")
+)
 
 
 def pair(cause, north, east, unit, std=0.01):
     return Finding(
-        cause, parameters={"north": ParameterEstimate(north, std, unit), "east": ParameterEstimate(east, std, unit)}
+        cause,
+        parameters={
+            "north": ParameterEstimate(north, std, unit),
+            "east": ParameterEstimate(east, std, unit),
+        },
     )
 
 
@@ -42,10 +48,18 @@ def test_parts_of_a_vector_share_one_unit():
 
 @pytest.mark.parametrize(
     ("north", "east", "direction"),
-    [(1.0, 0.0, "000°"), (0.0, 1.0, "090°"), (-1.0, 0.0, "180°"), (0.0, -1.0, "270°"), (1.0, -1e-4, "000°")],
+    [
+        (1.0, 0.0, "000°"),
+        (0.0, 1.0, "090°"),
+        (-1.0, 0.0, "180°"),
+        (0.0, -1.0, "270°"),
+        (1.0, -1e-4, "000°"),
+    ],
 )
 def test_direction_of_a_vector_is_clockwise_from_north(north, east, direction):
-    assert vector(ParameterEstimate(north, 0.1, "m/s"), ParameterEstimate(east, 0.1, "m/s")).endswith(direction)
+    assert vector(
+        ParameterEstimate(north, 0.1, "m/s"), ParameterEstimate(east, 0.1, "m/s")
+    ).endswith(direction)
 
 
 def test_what_is_not_known_is_a_dash():
@@ -57,23 +71,37 @@ def test_what_is_not_known_is_a_dash():
     [
         (LOSS, "the port thruster delivers 34 ± 1 % less thrust"),
         (pair("current", 0.0, -0.2, "m/s"), "a current of 0.200 ± 0.010 m/s towards 270°"),
-        (Finding("mass", parameters={"scale": ParameterEstimate(0.9, 0.02, "1")}), "10 ± 2 % lighter"),
-        (Finding("drag", parameters={"scale": ParameterEstimate(2.2, 0.1, "1")}), "120 ± 10 % larger"),
+        (
+            Finding("mass", parameters={"scale": ParameterEstimate(0.9, 0.02, "1")}),
+            "10 ± 2 % lighter",
+        ),
+        (
+            Finding("drag", parameters={"scale": ParameterEstimate(2.2, 0.1, "1")}),
+            "120 ± 10 % larger",
+        ),
         (
             Finding("heading_bias", parameters={"offset": ParameterEstimate(-3.0, 0.2, "deg")}),
             "shows 3.0 ± 0.2° too little",
         ),
         (
-            Finding("azimuth_offset", "port", parameters={"offset": ParameterEstimate(5.0, 0.2, "deg")}),
+            Finding(
+                "azimuth_offset", "port", parameters={"offset": ParameterEstimate(5.0, 0.2, "deg")}
+            ),
             "points 5.0 ± 0.2° clockwise of what its feedback says",
         ),
         (
-            Finding("rpm_offset", "port", parameters={"offset": ParameterEstimate(8.0, 0.3, "rpm")}),
+            Finding(
+                "rpm_offset", "port", parameters={"offset": ParameterEstimate(8.0, 0.3, "rpm")}
+            ),
             "logged 8.0 ± 0.3 rpm too high",
         ),
         (
             Finding(
-                "lever_arm", parameters={"x": ParameterEstimate(-4.0, 0.3, "m"), "y": ParameterEstimate(2.0, 0.3, "m")}
+                "lever_arm",
+                parameters={
+                    "x": ParameterEstimate(-4.0, 0.3, "m"),
+                    "y": ParameterEstimate(2.0, 0.3, "m"),
+                },
             ),
             "4.0 ± 0.3 m aft and 2.0 ± 0.3 m to starboard",
         ),
@@ -108,12 +136,31 @@ def test_every_cause_of_the_catalogue_has_advice():
     [
         (Diagnosis("consistent"), "CONSISTENT", ["agree, within noise"]),
         (Diagnosis("named", (LOSS,)), "NAMED", ["One thing is not as modelled", "port thruster"]),
-        (Diagnosis("named", (LOSS, pair("tow", 1.0, 2.0, "N"))), "NAMED", ["2 things are", " and a pull of"]),
-        (Diagnosis("named", (GAP,)), "NAMED", ["The log is faulty", "Apart from that, simulation and log agree"]),
-        (Diagnosis("named", (GAP, LOSS)), "NAMED", ["port thruster", "The log itself is faulty: data was lost"]),
-        (Diagnosis("unknown", (GAP,)), "UNKNOWN", ["none of the known causes explains", "The log itself is faulty"]),
         (
-            Diagnosis("ambiguous", indistinguishable=(Candidate("mass", None, 0.6), Candidate("drag", None, 0.4))),
+            Diagnosis("named", (LOSS, pair("tow", 1.0, 2.0, "N"))),
+            "NAMED",
+            ["2 things are", " and a pull of"],
+        ),
+        (
+            Diagnosis("named", (GAP,)),
+            "NAMED",
+            ["The log is faulty", "Apart from that, simulation and log agree"],
+        ),
+        (
+            Diagnosis("named", (GAP, LOSS)),
+            "NAMED",
+            ["port thruster", "The log itself is faulty: data was lost"],
+        ),
+        (
+            Diagnosis("unknown", (GAP,)),
+            "UNKNOWN",
+            ["none of the known causes explains", "The log itself is faulty"],
+        ),
+        (
+            Diagnosis(
+                "ambiguous",
+                indistinguishable=(Candidate("mass", None, 0.6), Candidate("drag", None, 0.4)),
+            ),
             "AMBIGUOUS",
             ["cannot tell which: mass or drag"],
         ),
@@ -126,7 +173,9 @@ def test_verdict_is_one_sentence_on_model_and_log(diagnosis, word, said):
 
 
 def test_next_steps_name_what_to_inspect_what_to_run_and_what_stays_open():
-    steps = next_steps(Diagnosis("named", (GAP, LOSS), not_testable=("drag", "mass")), "out/extended.ssp")
+    steps = next_steps(
+        Diagnosis("named", (GAP, LOSS), not_testable=("drag", "mass")), "out/extended.ssp"
+    )
     text = "\n".join(steps)
     assert "Inspect the port thruster" in text and "shipcosim simulate out/extended.ssp" in text
     assert "Correct the logging" in text and "says nothing about drag or mass" in text
@@ -139,7 +188,9 @@ def test_ambiguous_log_asks_for_the_prescribed_manoeuvre():
 
 
 def test_log_that_may_be_misread_asks_for_its_channel_file():
-    finding = Finding("frame", None, "data", 0.4, channels=("north",), note="one", alternatives=("two",))
+    finding = Finding(
+        "frame", None, "data", 0.4, channels=("north",), note="one", alternatives=("two",)
+    )
     diagnosis = Diagnosis("ambiguous", (finding,))
     assert "one; or two" in outcome(diagnosis).sentence
     (step,) = next_steps(diagnosis)
@@ -149,7 +200,9 @@ def test_log_that_may_be_misread_asks_for_its_channel_file():
 def test_consistent_log_asks_for_nothing():
     assert next_steps(Diagnosis("consistent")) == ["Nothing needs to be done."]
     lacking = Diagnosis("unknown", not_testable=("drag",), obstacles=("No tunnel_rpm in the log.",))
-    assert next_steps(lacking) == ["Log as the remarks ask and diagnose again: from this log no cause can be named."]
+    assert next_steps(lacking) == [
+        "Log as the remarks ask and diagnose again: from this log no cause can be named."
+    ]
     assert lacking.obstacles[0] in lacking.notes
 
 

@@ -21,15 +21,21 @@ def boat(north=0.0, turn=0.0, start=0.0, stop=100.0, **start_values):
         "bow.thrust": (1000.0 + 10.0 * time, "N"),
         "bow.rpm": (0.0 * time + 50.0, "rpm"),
     }
-    table = xr.Dataset({k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": time})
+    table = xr.Dataset(
+        {k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": time}
+    )
     known = {"boat.length": 20.0, "boat.breadth": 5.0} | start_values
     return table.assign_attrs(start_values=json.dumps(known))
 
 
 def test_two_runs_give_two_outlines_each_in_its_colour(browse, tmp_path):
-    write_comparison((boat(), boat(north=3.0, turn=10.0)), ("calm", "windy"), tmp_path / "report.html")
+    write_comparison(
+        (boat(), boat(north=3.0, turn=10.0)), ("calm", "windy"), tmp_path / "report.html"
+    )
     page = browse(tmp_path / "report.html")
-    items = page.ask("scene.time = 40; scene.paint(); return scene.drawn.filter(item => item.what === 'hull')")
+    items = page.ask(
+        "scene.time = 40; scene.paint(); return scene.drawn.filter(item => item.what === 'hull')"
+    )
     hulls = {item["run"]: item for item in items}
     assert hulls["calm"]["position"] == pytest.approx([40.0, 0.0], abs=0.02)
     assert hulls["windy"]["position"] == pytest.approx([43.0, 0.0], abs=0.02)
@@ -45,7 +51,10 @@ def test_differences_are_those_between_the_runs_and_the_largest_is_found():
     other["boat.y"][120] = 7.0
     found = {one.signal: one for one in differences(lay_over((boat(), other), ("a", "b")))}
     assert set(found) == {"boat.x", "boat.y"}
-    assert (found["boat.x"].rms, found["boat.x"].largest) == (pytest.approx(3.0), pytest.approx(3.0))
+    assert (found["boat.x"].rms, found["boat.x"].largest) == (
+        pytest.approx(3.0),
+        pytest.approx(3.0),
+    )
     assert (found["boat.y"].largest, found["boat.y"].time) == (7.0, 60.0)
 
 
@@ -73,10 +82,14 @@ def test_runs_of_other_lengths_are_compared_where_both_are(tmp_path):
 
 
 def test_runs_without_a_common_time_start_together_and_the_page_says_so(browse, tmp_path):
-    write_comparison((boat(), boat(start=500.0, stop=600.0)), ("first", "later"), tmp_path / "report.html")
+    write_comparison(
+        (boat(), boat(start=500.0, stop=600.0)), ("first", "later"), tmp_path / "report.html"
+    )
     page = browse(tmp_path / "report.html")
     assert "later is moved by -500 s" in page.text("#remarks")
-    hulls = page.ask("scene.time = 20; scene.paint(); return scene.drawn.filter(item => item.what === 'hull')")
+    hulls = page.ask(
+        "scene.time = 20; scene.paint(); return scene.drawn.filter(item => item.what === 'hull')"
+    )
     assert [hull["position"][0] for hull in hulls] == pytest.approx([20.0, 520.0], abs=0.02)
 
 
@@ -94,7 +107,9 @@ def test_ships_of_other_names_are_compared_too(browse, tmp_path):
     write_comparison((boat(), other), ("a", "b"), tmp_path / "report.html")
     page = browse(tmp_path / "report.html")
     page.ask("scene.time = 40; scene.paint()")
-    cells = page.ask("return [...document.getElementById('scene-figures').rows[1].cells].map(c => c.textContent)")
+    cells = page.ask(
+        "return [...document.getElementById('scene-figures').rows[1].cells].map(c => c.textContent)"
+    )
     assert cells == ["North [m]", "40.00", "43.00", "+3.00"]
     assert page.ask("return document.getElementById('scene-vessel').hidden")
 

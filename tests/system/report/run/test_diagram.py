@@ -10,8 +10,16 @@ from shipcosim.report import write_comparison, write_report
 SECTORS = {"port": [[80.0, 280.0]], "starboard": []}
 START = {
     **{"vessel.length": 33.9, "vessel.breadth": 9.6, "port.x": -14.0, "port.y": -2.0},
-    **{"port.thrust_min": -8e3, "port.thrust_max": 8e3, "starboard.thrust_min": -30e3, "starboard.thrust_max": 60e3},
-    **{"allocator.port_azimuth_first": np.radians(-80.0), "allocator.port_azimuth_last": np.radians(80.0)},
+    **{
+        "port.thrust_min": -8e3,
+        "port.thrust_max": 8e3,
+        "starboard.thrust_min": -30e3,
+        "starboard.thrust_max": 60e3,
+    },
+    **{
+        "allocator.port_azimuth_first": np.radians(-80.0),
+        "allocator.port_azimuth_last": np.radians(80.0),
+    },
 }
 
 
@@ -19,9 +27,22 @@ START = {
 def table(four_corner):
     found = four_corner()
     time = found["time"].values
-    for name, unit in (("slack_X", "N"), ("slack_Y", "N"), ("slack_N", "N.m"), ("thruster_power", "W")):
-        found[f"allocator.{name}"] = ("time", 1e3 * np.cos(time / 50.0), {"units": unit, "long_name": name})
-    found["allocator.solve_time"] = ("time", np.zeros(len(time)), {"units": "s", "long_name": "solve time"})
+    for name, unit in (
+        ("slack_X", "N"),
+        ("slack_Y", "N"),
+        ("slack_N", "N.m"),
+        ("thruster_power", "W"),
+    ):
+        found[f"allocator.{name}"] = (
+            "time",
+            1e3 * np.cos(time / 50.0),
+            {"units": unit, "long_name": name},
+        )
+    found["allocator.solve_time"] = (
+        "time",
+        np.zeros(len(time)),
+        {"units": "s", "long_name": "solve time"},
+    )
     found.attrs["start_values"] = json.dumps(START)
     return found
 
@@ -37,7 +58,9 @@ def drawn(page, t):
     """What the diagram draws at a time, by unit."""
     page.ask("document.getElementById('diagram').scrollIntoView()")
     page.wait("scene.paint(); return scene.drawn.some(({ what }) => what === 'diagram')")
-    items = page.ask("scene.pause(); scene.time = arguments[0]; scene.paint(); return scene.drawn", t)
+    items = page.ask(
+        "scene.pause(); scene.time = arguments[0]; scene.paint(); return scene.drawn", t
+    )
     return {item["unit"]: item for item in items if item["what"] == "diagram"}
 
 
@@ -49,7 +72,9 @@ def test_arrow_is_the_force_of_the_unit_bow_up_on_one_scale(browse, file, table)
         thrust, azimuth = float(row[f"{name}.thrust"]) / 1e3, float(row[f"{name}.azimuth"])
         scale = item["radius"] / item["range"]
         right, down = np.subtract(item["to"], item["middle"])
-        assert (right, -down) == pytest.approx(scale * thrust * np.array([np.sin(azimuth), np.cos(azimuth)]), abs=0.3)
+        assert (right, -down) == pytest.approx(
+            scale * thrust * np.array([np.sin(azimuth), np.cos(azimuth)]), abs=0.3
+        )
         assert item["sectors"] == SECTORS[name]
 
 
@@ -88,7 +113,8 @@ def test_forbidden_sectors_are_shaded_and_the_rest_is_not(shown_at, file, scheme
     drawn(page, 700.0)
     ground = painted(page, 0.53, 0.53)
     shaded = [
-        np.abs(painted(page, east, north) - ground).max() for east, north in ((0.7, 0.05), (-0.7, -0.05), (0.3, -0.6))
+        np.abs(painted(page, east, north) - ground).max()
+        for east, north in ((0.7, 0.05), (-0.7, -0.05), (0.3, -0.6))
     ]
     assert min(shaded) > 15
     assert np.abs(painted(page, -0.53, 0.53) - ground).max() <= 3
@@ -115,7 +141,9 @@ def test_limits_of_thrust_and_sectors_are_shaded_in_the_plots(browse, file):
 
 def test_losses_and_power_of_the_allocator_have_their_panels(browse, file):
     titles = browse(file).ask("return report.data.panels.map(p => p.title)")
-    assert "Force missed by the allocator" in titles and "Yaw moment missed by the allocator" in titles
+    assert (
+        "Force missed by the allocator" in titles and "Yaw moment missed by the allocator" in titles
+    )
     assert "Power of the thrusters, estimated by the allocator" in titles
     assert "Time of an allocation" not in titles  # it was not measured
 
@@ -144,7 +172,9 @@ def test_states_of_two_runs_have_a_line_each(shown_at, table, tmp_path, width):
     flags = [f"{unit}.failed" for unit in units] + ["allocator.saturated"]
     failing = table.assign({flag: table["port.saturated"] for flag in flags})
     path = tmp_path / "report.html"
-    write_comparison((failing, failing.isel(time=slice(0, -1))), ("generalised inverse", "optimal"), path)
+    write_comparison(
+        (failing, failing.isel(time=slice(0, -1))), ("generalised inverse", "optimal"), path
+    )
     page = shown_at(path, width)
     page.ask("document.querySelectorAll('.panel').forEach(p => p.scrollIntoView())")
     labels = (
@@ -153,7 +183,9 @@ def test_states_of_two_runs_have_a_line_each(shown_at, table, tmp_path, width):
     )
     page.wait(f"return (() => {{ {labels} }})().length === 14")
     boxes = sorted(page.ask(labels), key=lambda box: box["top"])
-    assert all(box["bottom"] <= below["top"] + 1.0 for box, below in zip(boxes, boxes[1:], strict=False))
+    assert all(
+        box["bottom"] <= below["top"] + 1.0 for box, below in zip(boxes, boxes[1:], strict=False)
+    )
 
 
 @pytest.mark.parametrize("width", [500, 1280])

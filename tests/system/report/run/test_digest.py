@@ -53,7 +53,10 @@ def test_failure_is_said_with_its_time(calm):
 def test_rejected_sensors_and_dead_reckoning_are_said_with_their_times(calm):
     time = calm["time"].values
     calm["controller.position_2_rejected"] = ("time", (time >= 200.0) & (time < 310.0))
-    calm["controller.dead_reckoning_time"] = ("time", np.where((time > 400.0) & (time <= 460.0), time - 400.0, 0.0))
+    calm["controller.dead_reckoning_time"] = (
+        "time",
+        np.where((time > 400.0) & (time <= 460.0), time - 400.0, 0.0),
+    )
     rejected, reckoned = digest(calm)[1]
     assert rejected == "controller rejects position 2 from 200 s on, in 10 % of the run."
     assert reckoned == "controller has no trusted position for up to 60 s, until 460 s."

@@ -16,7 +16,10 @@ from shipcosim.scenario import Scenario, judge
 def file(four_corner, scenario, verdicts, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
     table = four_corner()
-    table.attrs |= {"engine": "fmpy", "start_values": '{"vessel.length": 33.9, "vessel.breadth": 9.6, "seed": 7}'}
+    table.attrs |= {
+        "engine": "fmpy",
+        "start_values": '{"vessel.length": 33.9, "vessel.breadth": 9.6, "seed": 7}',
+    }
     write_report(table, path, scenario=scenario, verdicts=verdicts)
     return path
 
@@ -29,7 +32,9 @@ def page(browse, file):
 def test_page_opens_without_error_and_without_network(page):
     assert page.errors() == []
     assert page.requests() == []
-    assert "http" not in (page.ask("return [...document.querySelectorAll('[src],link')].map(e => e.outerHTML).join()"))
+    assert "http" not in (
+        page.ask("return [...document.querySelectorAll('[src],link')].map(e => e.outerHTML).join()")
+    )
 
 
 def test_header_says_what_it_is_and_how_it_went(page):
@@ -48,7 +53,11 @@ def test_expectations_are_listed_in_degrees_with_pass_or_fail(page):
 def test_expectations_with_long_names_are_not_cut_off(browse, chromium, four_corner, tmp_path):
     table = four_corner()
     table["controller.dead_reckoning_time_since_then"] = table["vessel.psi"]
-    expected = {"signal": "controller.dead_reckoning_time_since_then", "at_least": -59.0, "statistic": "max"}
+    expected = {
+        "signal": "controller.dead_reckoning_time_since_then",
+        "at_least": -59.0,
+        "statistic": "max",
+    }
     told = Scenario(system="gunnerus_dp", stop_time=1100.0, step_size=0.05, expect=[expected])
     write_report(table, tmp_path / "long.html", scenario=told, verdicts=judge(table, told))
     size = {"width": 1280, "height": 900, "deviceScaleFactor": 1, "mobile": False}
@@ -72,7 +81,9 @@ def test_every_section_draws_its_curves(page):
     assert panels["Shaft speed, tunnel [rpm]"] == ["tunnel"]
     assert panels["Power [kW]"] == ["port", "starboard", "tunnel"]
     assert panels["Wind speed [m/s]"] == ["with gusts", "mean"]
-    assert {"Current speed [m/s]", "Current to [deg]", "Waves [m]", "At a limit, failed"} <= set(panels)
+    assert {"Current speed [m/s]", "Current to [deg]", "Waves [m]", "At a limit, failed"} <= set(
+        panels
+    )
 
 
 def test_limits_are_drawn_in_their_windows_and_tell_pass_from_fail(page):
@@ -88,13 +99,19 @@ def test_limits_are_drawn_in_their_windows_and_tell_pass_from_fail(page):
 
 
 def test_zoom_in_one_panel_shows_the_same_time_in_all(page):
-    page.ask("Plotly.relayout(document.getElementById('panel-0'), {'xaxis.range[0]': 200, 'xaxis.range[1]': 300})")
+    page.ask(
+        "Plotly.relayout(document.getElementById('panel-0'), {'xaxis.range[0]': 200, 'xaxis.range[1]': 300})"
+    )
     page.wait("return document.body.dataset.drawn === 'all'")
-    ranges = page.ask("return [...document.querySelectorAll('.panel')].map(p => p._fullLayout.xaxis.range)")
+    ranges = page.ask(
+        "return [...document.querySelectorAll('.panel')].map(p => p._fullLayout.xaxis.range)"
+    )
     assert ranges == [[200, 300]] * len(ranges) and len(ranges) > 15
     page.driver.find_element(By.ID, "reset").click()
     page.wait("return document.body.dataset.drawn === 'all'")
-    ranges = page.ask("return [...document.querySelectorAll('.panel')].map(p => p._fullLayout.xaxis.range)")
+    ranges = page.ask(
+        "return [...document.querySelectorAll('.panel')].map(p => p._fullLayout.xaxis.range)"
+    )
     assert ranges == [[0, 1100]] * len(ranges)
 
 
@@ -112,11 +129,17 @@ def test_pointer_over_a_panel_names_all_its_values_and_shows_where_she_was(page)
 
 def test_any_signal_can_be_chosen_and_found_by_its_name(page):
     page.driver.find_element(By.ID, "filter").send_keys("tau_wind")
-    visible = [label.text for label in page.driver.find_elements(By.CSS_SELECTOR, "#choices label") if label.text]
+    visible = [
+        label.text
+        for label in page.driver.find_elements(By.CSS_SELECTOR, "#choices label")
+        if label.text
+    ]
     assert len(visible) == 3 and all("tau_wind" in label for label in visible)
     for name in ("vessel.tau_wind_X", "vessel.tau_wind_Y", "vessel.tau_wind_N"):
         page.driver.find_element(By.CSS_SELECTOR, f"#choices input[value='{name}']").click()
-    drawn = page.ask("return [...document.querySelectorAll('#chosen .panel')].map(p => p.data.map(t => t.name))")
+    drawn = page.ask(
+        "return [...document.querySelectorAll('#chosen .panel')].map(p => p.data.map(t => t.name))"
+    )
     assert drawn == [["vessel.tau_wind_X", "vessel.tau_wind_Y"], ["vessel.tau_wind_N"]]
 
 
@@ -132,7 +155,10 @@ def test_interrupted_run_is_marked_as_partial(browse, four_corner, tmp_path):
 def test_system_without_a_ship_shows_its_first_signals(browse, tmp_path):
     time = np.linspace(0.0, 10.0, 101)
     table = xr.Dataset(
-        {"mass.position": ("time", np.cos(time), {"units": "m"}), "on": ("time", time > 5.0, {"units": ""})},
+        {
+            "mass.position": ("time", np.cos(time), {"units": "m"}),
+            "on": ("time", time > 5.0, {"units": ""}),
+        },
         coords={"time": time},
     )
     write_report(table, tmp_path / "spring.html")
@@ -153,7 +179,11 @@ def test_texts_from_files_stay_texts(browse, four_corner, tmp_path):
     table = four_corner().isel(time=slice(None, None, 20)).rename({"vessel.u": f"vessel.{evil}"})
     table.attrs["remark"] = evil
     table[f"vessel.{evil}"].attrs |= {"units": evil, "long_name": evil}
-    write_report(table, tmp_path / "evil.html", scenario=Scenario(description=evil, stop_time=1.0, step_size=0.5))
+    write_report(
+        table,
+        tmp_path / "evil.html",
+        scenario=Scenario(description=evil, stop_time=1.0, step_size=0.5),
+    )
     page = browse(tmp_path / "evil.html")
     assert page.text("h1") == evil
     page.driver.find_element(By.CSS_SELECTOR, "#choices input[value*='script']").click()
@@ -175,7 +205,9 @@ def test_short_run_is_drawn_row_by_row(page):
 
 def test_page_that_cannot_be_written_leaves_nothing(four_corner, tmp_path):
     with pytest.raises(ShipcosimError, match="page.html"):
-        write_report(four_corner().isel(time=slice(None, None, 20)), tmp_path / "missing" / "page.html")
+        write_report(
+            four_corner().isel(time=slice(None, None, 20)), tmp_path / "missing" / "page.html"
+        )
     assert list(tmp_path.iterdir()) == []
 
 
@@ -190,7 +222,8 @@ def test_names_are_drawn_as_they_are_written(browse, tmp_path):
     time = np.linspace(0.0, 10.0, 101)
     name = "mass.<b>x</b> & y"
     write_report(
-        xr.Dataset({name: ("time", np.cos(time), {"units": "<m>"})}, coords={"time": time}), tmp_path / "page.html"
+        xr.Dataset({name: ("time", np.cos(time), {"units": "<m>"})}, coords={"time": time}),
+        tmp_path / "page.html",
     )
     page = browse(tmp_path / "page.html")
     title = page.ask("return document.querySelector('#chosen .panel .gtitle').textContent")
@@ -215,15 +248,21 @@ def test_dark_page_is_dark_and_its_figures_too(browse, chromium, file):
 
 def test_open_page_follows_when_the_browser_turns_dark(browse, chromium, file):
     set_scheme = lambda scheme: chromium.execute_cdp_cmd(  # noqa: E731
-        "Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]}
+        "Emulation.setEmulatedMedia",
+        {"features": [{"name": "prefers-color-scheme", "value": scheme}]},
     )
     set_scheme("light")
     page = browse(file)
-    page.ask("Plotly.relayout(document.getElementById('panel-0'), {'xaxis.range[0]': 200, 'xaxis.range[1]': 300})")
+    page.ask(
+        "Plotly.relayout(document.getElementById('panel-0'), {'xaxis.range[0]': 200, 'xaxis.range[1]': 300})"
+    )
     set_scheme("dark")
     page.wait("return document.getElementById('panel-0')._fullLayout.paper_bgcolor === '#182028'")
     page.wait("return document.body.dataset.drawn === 'all'")
-    assert page.ask("return document.getElementById('panel-0')._fullLayout.xaxis.range") == [200, 300]
+    assert page.ask("return document.getElementById('panel-0')._fullLayout.xaxis.range") == [
+        200,
+        300,
+    ]
     set_scheme("light")
 
 

@@ -7,7 +7,13 @@ import pytest
 import xarray as xr
 
 from shipcosim.report import write_report
-from shipcosim.report.run.predictions import UNITS, make_predictions, summarise, texts, write_predictions
+from shipcosim.report.run.predictions import (
+    UNITS,
+    make_predictions,
+    summarise,
+    texts,
+    write_predictions,
+)
 
 SPEED = (0.5, -0.25)  # m/s, north and east
 TURN = np.radians(1.5)  # rad/s, through south within the run
@@ -21,9 +27,15 @@ def table():
     units = {"x": "m", "y": "m", "psi": "rad"}
 
     def pose(t):
-        return {"x": SPEED[0] * t, "y": SPEED[1] * t, "psi": (2.0 + TURN * t + np.pi) % (2 * np.pi) - np.pi}
+        return {
+            "x": SPEED[0] * t,
+            "y": SPEED[1] * t,
+            "psi": (2.0 + TURN * t + np.pi) % (2 * np.pi) - np.pi,
+        }
 
-    found = {f"vessel.{axis}": ("time", v, {"units": units[axis]}) for axis, v in pose(time).items()}
+    found = {
+        f"vessel.{axis}": ("time", v, {"units": units[axis]}) for axis, v in pose(time).items()
+    }
     found["predictor.predicted_at"] = ("time", made, {"units": "s"})
     found["predictor.learned"] = ("time", np.where(made < 40.0, 1.0, 0.25), {"units": "1"})
     for ahead, off in ((10, (0.0, 0.0, 0.0)), (30, (3.0, 0.0, 0.1))):
@@ -48,16 +60,26 @@ def test_each_prediction_has_a_row_a_horizon_beside_what_became_of_the_ship(tabl
 def test_what_lies_beyond_the_run_has_no_truth(table):
     found = make_predictions(table)
     beyond = found["time"] + found["horizon"] > 120.0
-    assert beyond.any() and (found["true_x"].isna() == beyond).all() and (found["error_heading"].isna() == beyond).all()
+    assert (
+        beyond.any()
+        and (found["true_x"].isna() == beyond).all()
+        and (found["error_heading"].isna() == beyond).all()
+    )
 
 
 def test_the_share_within_the_regions_is_counted_where_there_are_regions(table):
     near, far = summarise(make_predictions(table))
-    assert (near.horizon, near.count, near.position, near.in_position_region) == pytest.approx((10.0, 56, 0.0, 1.0))
-    assert (far.horizon, far.count, far.position, far.heading) == pytest.approx((30.0, 46, 3.0, 0.1))
+    assert (near.horizon, near.count, near.position, near.in_position_region) == pytest.approx(
+        (10.0, 56, 0.0, 1.0)
+    )
+    assert (far.horizon, far.count, far.position, far.heading) == pytest.approx(
+        (30.0, 46, 3.0, 0.1)
+    )
     assert far.in_position_region == pytest.approx(10 / 46)
     assert np.isnan(far.in_heading_region)
-    assert texts([far]) == [("predictor, 30 s ahead", "3.00 m rms", "5.7 deg rms", "22 % of places within the regions")]
+    assert texts([far]) == [
+        ("predictor, 30 s ahead", "3.00 m rms", "5.7 deg rms", "22 % of places within the regions")
+    ]
 
 
 def test_truth_between_two_rows_is_on_the_straight_line(table):
@@ -76,8 +98,16 @@ def test_the_file_says_units_and_leaves_unknown_cells_empty(table, tmp_path):
     write_predictions(make_predictions(table), tmp_path / "predictions.csv")
     with open(tmp_path / "predictions.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert rows[0]["time [s]"] == "0.0" and rows[0]["component"] == "predictor" and rows[0]["true_psi [rad]"]
-    assert rows[-1]["true_x [m]"] == "" and rows[-1]["in_position_region"] == "" and rows[0]["in_heading_region"] == ""
+    assert (
+        rows[0]["time [s]"] == "0.0"
+        and rows[0]["component"] == "predictor"
+        and rows[0]["true_psi [rad]"]
+    )
+    assert (
+        rows[-1]["true_x [m]"] == ""
+        and rows[-1]["in_position_region"] == ""
+        and rows[0]["in_heading_region"] == ""
+    )
 
 
 def test_the_scene_draws_places_regions_and_where_she_came_to_be(table, browse, tmp_path):
@@ -86,7 +116,15 @@ def test_the_scene_draws_places_regions_and_where_she_came_to_be(table, browse, 
     script = "scene.pause(); scene.time = arguments[0]; scene.paint(); return scene.drawn"
     near, far = [item for item in page.ask(script, 41.2) if item["what"] == "predicted"]
     assert (near["seconds"], far["seconds"]) == (10, 30)
-    assert (far["north"], far["east"], far["radius"]) == pytest.approx((38.0, -17.5, 2.5), abs=0.02)  # made at 40 s
+    assert (far["north"], far["east"], far["radius"]) == pytest.approx(
+        (38.0, -17.5, 2.5), abs=0.02
+    )  # made at 40 s
     assert far["true"] == pytest.approx([35.0, -17.5], abs=0.02)
-    assert page.ask("return document.getElementById('scene-key').textContent").count("region of 90 %") == 1
-    assert [item["true"] for item in page.ask(script, 119.0) if item["what"] == "predicted"] == [None, None]
+    assert (
+        page.ask("return document.getElementById('scene-key').textContent").count("region of 90 %")
+        == 1
+    )
+    assert [item["true"] for item in page.ask(script, 119.0) if item["what"] == "predicted"] == [
+        None,
+        None,
+    ]

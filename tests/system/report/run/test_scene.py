@@ -14,7 +14,13 @@ from shipcosim.report.run.scene import make_run
 from shipcosim.report.run.track import hull_outline
 
 SIZE = {"vessel.length": 33.9, "vessel.breadth": 9.6}
-PLACES = {"port.x": -14.0, "port.y": -2.0, "starboard.x": -14.0, "starboard.y": 2.0, "tunnel.x": 14.5}
+PLACES = {
+    "port.x": -14.0,
+    "port.y": -2.0,
+    "starboard.x": -14.0,
+    "starboard.y": 2.0,
+    "tunnel.x": 14.5,
+}
 LIMITS = {"port.thrust_max": 10000.0, "port.thrust_min": -8000.0}
 
 
@@ -22,7 +28,9 @@ LIMITS = {"port.thrust_max": 10000.0, "port.thrust_min": -8000.0}
 def table(four_corner):
     found = four_corner()
     found["monitor.position_alarm"] = ("time", np.zeros(found.sizes["time"], bool))
-    found.attrs["start_values"] = json.dumps({**SIZE, **PLACES, **LIMITS, "monitor.position_limit": 3.0})
+    found.attrs["start_values"] = json.dumps(
+        {**SIZE, **PLACES, **LIMITS, "monitor.position_limit": 3.0}
+    )
     return found
 
 
@@ -49,7 +57,9 @@ def page(browse, chromium, file, opened):
 
 def drawn(page, t, **wanted):
     """What the scene draws at a time, of those items that have these values."""
-    items = page.ask("scene.pause(); scene.time = arguments[0]; scene.paint(); return scene.drawn", t)
+    items = page.ask(
+        "scene.pause(); scene.time = arguments[0]; scene.paint(); return scene.drawn", t
+    )
     return [item for item in items if all(item.get(key) == value for key, value in wanted.items())]
 
 
@@ -63,9 +73,13 @@ def corners(length, breadth, north, east, heading):
 @pytest.mark.parametrize("t", [0.0, 300.25, 480.0, 1100.0])
 def test_outline_stands_where_the_table_says(page, table, t):
     (hull,) = drawn(page, t, what="hull")
-    pose = [float(np.interp(t, table["time"], table[f"vessel.{axis}"])) for axis in ("x", "y", "psi")]
+    pose = [
+        float(np.interp(t, table["time"], table[f"vessel.{axis}"])) for axis in ("x", "y", "psi")
+    ]
     north, east = corners(33.9, 9.6, *pose)
-    assert hull["north"] == pytest.approx(north, abs=0.03) and hull["east"] == pytest.approx(east, abs=0.03)
+    assert hull["north"] == pytest.approx(north, abs=0.03) and hull["east"] == pytest.approx(
+        east, abs=0.03
+    )
 
 
 def test_outline_is_painted_there_in_the_colour_of_the_ship(page):
@@ -76,8 +90,14 @@ def test_outline_is_painted_there_in_the_colour_of_the_ship(page):
         "const [x, y] = scene.pixel(arguments[0], arguments[1]), c = document.getElementById('scene-chart');"
         "const r = devicePixelRatio; return [...c.getContext('2d').getImageData(x * r, y * r, 1, 1).data]"
     )
-    on_board, water = page.ask(read, east + 3.6, north - 8.0), page.ask(read, east + 9.5, north - 8.0)
-    assert on_board[3] == water[3] == 255 and max(abs(a - b) for a, b in zip(on_board, water, strict=True)) > 20
+    on_board, water = (
+        page.ask(read, east + 3.6, north - 8.0),
+        page.ask(read, east + 9.5, north - 8.0),
+    )
+    assert (
+        on_board[3] == water[3] == 255
+        and max(abs(a - b) for a, b in zip(on_board, water, strict=True)) > 20
+    )
 
 
 def test_metre_is_as_long_north_as_east_and_the_ship_to_scale(page):
@@ -97,7 +117,9 @@ def test_force_vector_has_length_and_direction_of_the_thrust(page, table, t):
         item = forces[unit]
         thrust, azimuth = float(row[f"{unit}.thrust"]) / 1000.0, float(row[f"{unit}.azimuth"])
         vector = np.subtract(item["to"], item["from"])
-        assert np.hypot(*vector) == pytest.approx(abs(thrust) * item["metresPerKilonewton"], rel=1e-3)
+        assert np.hypot(*vector) == pytest.approx(
+            abs(thrust) * item["metresPerKilonewton"], rel=1e-3
+        )
         along = heading + azimuth + (np.pi if thrust < 0 else 0.0)
         assert vector / np.hypot(*vector) == pytest.approx([np.cos(along), np.sin(along)], abs=0.01)
         north = hull["position"][0] + np.cos(heading) * forward - np.sin(heading) * starboard
@@ -115,15 +137,25 @@ def test_load_bar_is_the_share_of_the_largest_thrust(page, table):
 
 def test_wind_and_current_point_as_the_table_says(page, table):
     flows = {item["of"]: item for item in drawn(page, 400.0, what="flow")}
-    north, east = (float(table[f"environment.wind_{way}"].sel(time=400.0)) for way in ("north", "east"))
-    assert flows["wind"]["degrees"] == pytest.approx(np.degrees(np.arctan2(-east, -north)) % 360, abs=0.2)
+    north, east = (
+        float(table[f"environment.wind_{way}"].sel(time=400.0)) for way in ("north", "east")
+    )
+    assert flows["wind"]["degrees"] == pytest.approx(
+        np.degrees(np.arctan2(-east, -north)) % 360, abs=0.2
+    )
     assert flows["wind"]["size"] == pytest.approx(np.hypot(north, east), abs=0.01)
-    assert flows["current"]["degrees"] == pytest.approx(180.0, abs=0.1) and flows["waves"]["size"] == 0.3
+    assert (
+        flows["current"]["degrees"] == pytest.approx(180.0, abs=0.1)
+        and flows["waves"]["size"] == 0.3
+    )
 
 
 def test_limits_and_watch_circle_are_drawn_about_their_points(page, table):
     circles = drawn(page, 240.0, what="circle", of="expectation")
-    assert [(c["north"], c["east"], c["now"]) for c in circles][:2] == [(20, 0, True), (20, -20, False)]
+    assert [(c["north"], c["east"], c["now"]) for c in circles][:2] == [
+        (20, 0, True),
+        (20, -20, False),
+    ]
     (watch,) = drawn(page, 240.0, what="circle", of="watch")
     assert watch["radius"] == 3.0 and watch["beyond"] is False
     assert watch["north"] == pytest.approx(float(table["reference.x_d"].sel(time=240.0)), abs=0.02)
@@ -132,9 +164,13 @@ def test_limits_and_watch_circle_are_drawn_about_their_points(page, table):
 def test_figures_say_position_reference_and_error(page, table):
     drawn(page, 700.0)
     north, wanted = (float(table[name].sel(time=700.0)) for name in ("vessel.x", "reference.x_d"))
-    cells = page.ask("return [...document.getElementById('scene-figures').rows[1].cells].map(c => c.textContent)")
+    cells = page.ask(
+        "return [...document.getElementById('scene-figures').rows[1].cells].map(c => c.textContent)"
+    )
     shown = [float(text.replace("−", "-")) for text in cells[1:]]
-    assert cells[0] == "North [m]" and shown == pytest.approx([north, wanted, north - wanted], abs=0.012)
+    assert cells[0] == "North [m]" and shown == pytest.approx(
+        [north, wanted, north - wanted], abs=0.012
+    )
 
 
 def test_play_advances_at_the_chosen_speed_and_pause_stops(page):
@@ -154,7 +190,9 @@ def test_keys_play_and_move(page):
     body = page.driver.find_element(By.TAG_NAME, "body")
     body.send_keys(Keys.ARROW_RIGHT)
     assert page.ask("return scene.time") == pytest.approx(104.0)
-    ActionChains(page.driver).key_down(Keys.SHIFT).send_keys(Keys.ARROW_LEFT).key_up(Keys.SHIFT).perform()
+    ActionChains(page.driver).key_down(Keys.SHIFT).send_keys(Keys.ARROW_LEFT).key_up(
+        Keys.SHIFT
+    ).perform()
     assert page.ask("return scene.time") == pytest.approx(64.0)
     body.send_keys(Keys.SPACE)
     assert page.ask("return scene.playing") is True
@@ -186,7 +224,9 @@ def test_plots_have_a_cursor_and_a_click_in_one_moves_the_scene(page):
         "return Math.abs((line.left - area.left) / area.width - 0.5) < 0.01"
     )
     plot = page.driver.find_element(By.CSS_SELECTOR, "#panel-0 .nsewdrag")
-    ActionChains(page.driver).move_to_element_with_offset(plot, int(plot.size["width"] * 0.25), 0).click().perform()
+    ActionChains(page.driver).move_to_element_with_offset(
+        plot, int(plot.size["width"] * 0.25), 0
+    ).click().perform()
     page.wait("return Math.abs(scene.time - 825) < 10")
 
 
@@ -224,7 +264,9 @@ def two_ships():
         "tug.bow.azimuth": (45.0 + 0.0 * time, "deg"),
         "tug.bow.rpm": (100.0 + 0.0 * time, "rpm"),
     }
-    table = xr.Dataset({k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": time})
+    table = xr.Dataset(
+        {k: ("time", v, {"units": u}) for k, (v, u) in signals.items()}, {"time": time}
+    )
     sizes = {"tanker.vessel.length": 200.0, "tanker.vessel.breadth": 30.0}
     own = {"tug.boat.length": 30.0, "tug.boat.breadth": 10.0, "tug.bow.x": 8.0}
     table.attrs["start_values"] = json.dumps(sizes | own)
@@ -258,7 +300,11 @@ def test_what_is_missing_is_left_out():
     table = two_ships()[["tug.boat.north", "tug.boat.east", "tug.boat.heading"]]
     run = make_run(table.assign_attrs(start_values="{}"))
     assert run is not None and len(run.vessels) == 1
-    assert run.vessels[0]["units"] == [] and run.vessels[0]["aims"] == {} and not run.vessels[0]["to_scale"]
+    assert (
+        run.vessels[0]["units"] == []
+        and run.vessels[0]["aims"] == {}
+        and not run.vessels[0]["to_scale"]
+    )
     assert run.flows == [] and run.circles == [] and run.watch == {}
 
 
@@ -297,7 +343,9 @@ def test_signals_without_a_unit_are_said():
     table = two_ships()[["tanker.vessel.x", "tanker.vessel.y", "tanker.vessel.psi"]]
     del table["tanker.vessel.psi"].attrs["units"]
     run = make_run(table)
-    assert run is not None and any("without a unit" in said and "tanker.vessel.psi" in said for said in run.read_as)
+    assert run is not None and any(
+        "without a unit" in said and "tanker.vessel.psi" in said for said in run.read_as
+    )
 
 
 def test_frame_takes_less_than_half_of_a_thirtieth_of_a_second(page):

@@ -32,7 +32,9 @@ def test_starboard_is_right_of_the_heading():
 
 
 def test_outline_keeps_its_size_whatever_the_heading():
-    areas = [area(*placed(hull_outline(33.9, 9.6), 7.0, -3.0, psi)) for psi in (0.0, 33.0, 180.0, 271.0)]
+    areas = [
+        area(*placed(hull_outline(33.9, 9.6), 7.0, -3.0, psi)) for psi in (0.0, 33.0, 180.0, 271.0)
+    ]
     assert areas == pytest.approx([areas[0]] * 4)
 
 

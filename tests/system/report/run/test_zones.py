@@ -9,7 +9,9 @@ from shipcosim.report.run.zones import Zone, angle_zones, thrust_zones
 
 def shown(values, unit="kN", factor=1e-3):
     time = np.arange(len(values), dtype=float)
-    return xr.Dataset({"a": ("time", np.array(values, float), {"units": unit, "factor": factor})}, {"time": time})
+    return xr.Dataset(
+        {"a": ("time", np.array(values, float), {"units": unit, "factor": factor})}, {"time": time}
+    )
 
 
 def test_limit_that_is_far_away_is_not_drawn():
@@ -43,7 +45,11 @@ def test_nothing_is_drawn_of_a_unit_without_limits():
         ([350.0, 420.0], [Zone(440.0, 460.0)]),
     ],
 )
-def test_sectors_are_drawn_beside_the_angles_that_come_near_however_often_they_turned(angles, zones):
+def test_sectors_are_drawn_beside_the_angles_that_come_near_however_often_they_turned(
+    angles, zones
+):
     sectors = [tuple(np.radians(sector)) for sector in ((80.0, 100.0), (-100.0, -80.0))]
     found = angle_zones(shown(angles, "deg", 180.0 / np.pi), ["a"], sectors)
-    assert [(zone.lower, zone.upper) for zone in found] == [pytest.approx((z.lower, z.upper)) for z in zones]
+    assert [(zone.lower, zone.upper) for zone in found] == [
+        pytest.approx((z.lower, z.upper)) for z in zones
+    ]

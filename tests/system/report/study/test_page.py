@@ -46,7 +46,9 @@ def drag(page, element, start, end):
     """Drag over a canvas from one place to another. [px]"""
     page.ask("arguments[0].scrollIntoView({block: 'center'})", element)
     half = [element.size["width"] / 2, element.size["height"] / 2]
-    first, last = ([int(at - h) for at, h in zip(place, half, strict=True)] for place in (start, end))
+    first, last = (
+        [int(at - h) for at, h in zip(place, half, strict=True)] for place in (start, end)
+    )
     moves = ActionChains(page.driver).move_to_element_with_offset(element, *first).click_and_hold()
     moves.move_to_element_with_offset(element, *last).release().perform()
 
@@ -85,7 +87,10 @@ def test_polar_is_the_table_with_bow_up_and_closed(shown, tables):
     assert curve["theta"] == [*range(0, 360, 30), 0]
     assert curve["r"][:-1] == pytest.approx(expected["excursion_90"].tolist(), rel=1e-4)
     static = next(trace for trace in polar.traces if trace["name"] == "static")
-    assert static["line"]["color"] == next(t for t in polar.traces if t["name"] == "intact")["line"]["color"]
+    assert (
+        static["line"]["color"]
+        == next(t for t in polar.traces if t["name"] == "intact")["line"]["color"]
+    )
 
 
 def test_distribution_counts_runs_that_never_get_there_and_leaves_failed_ones_out(shown, tables):
@@ -99,7 +104,9 @@ def test_bars_have_the_intervals_of_their_table(shown):
     figure = next(figure for figure in shown.plots if figure.traces[0]["type"] == "bar")
     first, total = figure.traces
     assert (first["name"], total["name"]) == ("first_order", "total")
-    assert first["x"] == [0.42, 0.2, 0.11, 0.02] and first["error_x"]["array"] == pytest.approx([0.05] * 4)
+    assert first["x"] == [0.42, 0.2, 0.11, 0.02] and first["error_x"]["array"] == pytest.approx(
+        [0.05] * 4
+    )
 
 
 def test_means_of_runs_have_a_named_interval(tables):
@@ -122,7 +129,9 @@ def test_tracks_are_counted_beyond_their_circles(shown, tables):
     intact = tables.runs.query("lost == 'intact'")["run"]
     tracks = tables.tracks[tables.tracks["run"].isin(intact)]
     start = tracks.groupby("run")[["vessel.x", "vessel.y"]].transform("first")
-    distance = np.hypot(tracks["vessel.x"] - start["vessel.x"], tracks["vessel.y"] - start["vessel.y"])
+    distance = np.hypot(
+        tracks["vessel.x"] - start["vessel.x"], tracks["vessel.y"] - start["vessel.y"]
+    )
     farthest = distance.groupby(tracks["run"]).max()
     found = view.data["series"][0]
     assert found["label"] == "intact" and found["count"] == tracks["run"].nunique()
@@ -166,9 +175,13 @@ def test_same_study_makes_the_same_page(study_of, file, tmp_path):
 def test_everything_is_drawn_and_no_text_lies_over_another(shown_at, file, width, scheme):
     page = shown_at(file, width, scheme)
     assert page.errors() == [] and page.requests() == []
-    places, drawn = page.ask("return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)")
+    places, drawn = page.ask(
+        "return ['.plot', '.plot.js-plotly-plot'].map(s => document.querySelectorAll(s).length)"
+    )
     assert places == drawn == 6
-    assert page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
+    assert (
+        page.collisions() == [] and page.ask("return document.documentElement.scrollWidth") <= width
+    )
     assert page.ask(CANVAS_COLLISIONS) == []
 
 
@@ -208,13 +221,22 @@ def test_texts_from_files_stay_texts(tables, browse, tmp_path):
     runs["error"] = runs["error"].where(runs["error"] == "", evil)
     study = {**tables.study, "description": evil, "factor": [{"name": evil, "values": [evil]}]}
     hostile = StudyTables(
-        **vars(tables) | {"runs": runs, "about": {**tables.about, "study": study}, "command": f"shipcosim sweep {evil}"}
+        **vars(tables)
+        | {
+            "runs": runs,
+            "about": {**tables.about, "study": study},
+            "command": f"shipcosim sweep {evil}",
+        }
     )
     write_study(hostile, tmp_path / "evil.html")
     page = browse(tmp_path / "evil.html")
     page.ask("study.show(0)")
     assert page.errors() == [] and page.ask("return document.images.length") == 0
-    assert page.text("h1") == evil and evil in page.text("#run") and "owned" != page.ask("return document.title")
+    assert (
+        page.text("h1") == evil
+        and evil in page.text("#run")
+        and "owned" != page.ask("return document.title")
+    )
 
 
 # ---- choosing runs
@@ -229,7 +251,9 @@ def test_drag_along_an_axis_chooses_a_range_in_table_lines_and_dots(page, tables
     expected = set(tables.runs["run"][tables.runs["excursion"] >= low])
     assert chosen(page) == expected and 0 < len(expected) < 100
     assert page.text("#count") == f"{len(expected)} of 648 runs are chosen"
-    assert page.ask("return +document.getElementById('rows').getAttribute('aria-rowcount')") == len(expected)
+    assert page.ask("return +document.getElementById('rows').getAttribute('aria-rowcount')") == len(
+        expected
+    )
     ActionChains(page.driver).move_to_element_with_offset(
         canvas, int(axis["x"] - canvas.size["width"] / 2), 0
     ).click().perform()
@@ -248,7 +272,9 @@ def test_drag_over_dots_chooses_on_both_axes(page, tables):
     c, d = (1e3 * end for end in ranges["power"])
     expected = set(tables.runs.query("@a <= current <= @b and @c <= power <= @d")["run"])
     found = chosen(page)
-    assert 0 < len(expected) < 648 and len(found ^ expected) <= 2  # the page holds powers to a ten-thousandth
+    assert (
+        0 < len(expected) < 648 and len(found ^ expected) <= 2
+    )  # the page holds powers to a ten-thousandth
     page.driver.find_element(By.ID, "all").click()
     assert len(chosen(page)) == 648
 
@@ -269,30 +295,41 @@ def test_levels_filter_and_the_quantities_follow(page, tables):
 
 
 def test_table_sorts_both_ways_with_what_has_no_value_last(page, tables):
-    head = page.driver.find_element(By.XPATH, "//table[@id='rows']//th/button[starts-with(text(), 'time_to_3_m')]")
+    head = page.driver.find_element(
+        By.XPATH, "//table[@id='rows']//th/button[starts-with(text(), 'time_to_3_m')]"
+    )
     first = "return document.querySelector('#rows tr[data-row] button').innerText"
     page.ask("arguments[0].scrollIntoView({block: 'center'})", head)
     head.click()
     assert int(page.ask(first)) == tables.runs.loc[tables.runs["time_to_3_m"].idxmin(), "run"]
-    head = page.driver.find_element(By.XPATH, "//table[@id='rows']//th/button[starts-with(text(), 'time_to_3_m')]")
+    head = page.driver.find_element(
+        By.XPATH, "//table[@id='rows']//th/button[starts-with(text(), 'time_to_3_m')]"
+    )
     head.click()
     assert int(page.ask(first)) == tables.runs.loc[tables.runs["time_to_3_m"].idxmax(), "run"]
 
 
 def test_row_shows_its_command_which_can_be_copied_and_its_page_where_there_is_one(page):
     page.ask("document.querySelectorAll('#rows tr[data-row]')[2].children[1].click()")
-    assert "shipcosim sweep dp_weather --run 3" in page.text("#run") and "Run 3" in page.text("#run")
+    assert "shipcosim sweep dp_weather --run 3" in page.text("#run") and "Run 3" in page.text(
+        "#run"
+    )
     assert page.ask("return document.querySelector('#run a')") is None
     page.ask("navigator.clipboard.writeText = async (text) => { window.copied = text; }")
     page.driver.find_element(By.XPATH, "//div[@id='run']//button[text()='Copy']").click()
     page.wait("return window.copied === 'shipcosim sweep dp_weather --run 3'")
     page.ask("document.querySelectorAll('#rows tr[data-row]')[3].children[1].click()")
-    assert page.ask("return document.querySelector('#run a').getAttribute('href')") == "run-4/report.html"
+    assert (
+        page.ask("return document.querySelector('#run a').getAttribute('href')")
+        == "run-4/report.html"
+    )
 
 
 def test_failed_run_shows_its_error(page, shown):
     page.driver.find_element(By.CSS_SELECTOR, "#failed button[data-run]").click()
-    assert shown.errors[0].text in page.text("#run") and f"Run {shown.errors[0].runs[0]}" in page.text("#run")
+    assert shown.errors[0].text in page.text(
+        "#run"
+    ) and f"Run {shown.errors[0].runs[0]}" in page.text("#run")
 
 
 # ---- many runs
@@ -313,19 +350,23 @@ def test_tens_of_thousands_of_runs_do_not_freeze_the_page(large, shown_at):
     page.wait("return !study.moving && study.lines === 3000")
     page.ask("document.querySelector('.rows-scroll').scrollTop = 1e9")
     page.ask("return new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
-    assert page.ask("return [...document.querySelectorAll('#rows tr[data-row]')].pop().dataset.row") == str(
-        page.ask("return study.count - 1")
-    )
+    assert page.ask(
+        "return [...document.querySelectorAll('#rows tr[data-row]')].pop().dataset.row"
+    ) == str(page.ask("return study.count - 1"))
 
 
-def test_page_without_room_for_all_keeps_failed_runs_and_says_what_it_lacks(tables, tmp_path, browse, monkeypatch):
+def test_page_without_room_for_all_keeps_failed_runs_and_says_what_it_lacks(
+    tables, tmp_path, browse, monkeypatch
+):
     monkeypatch.setattr("shipcosim.report.study.page.BYTES_FOR_RUNS", 4000)
     write_study(tables, tmp_path / "thin.html")
     page = browse(tmp_path / "thin.html")
     assert "holds 500 of 648 runs" in page.text("#thinning")
     failed = tables.runs["run"][tables.runs["error"] != ""].tolist()
     assert page.ask("return report.data.failed.map((row) => study.runs[row])") == failed
-    assert page.text(".rows tbody tr:nth-child(2)").split()[:4] == ["power", "kW", "52.6", "100"], "of all runs"
+    assert page.text(".rows tbody tr:nth-child(2)").split()[:4] == ["power", "kW", "52.6", "100"], (
+        "of all runs"
+    )
 
 
 # ---- odd studies
@@ -334,7 +375,12 @@ def test_page_without_room_for_all_keeps_failed_runs_and_says_what_it_lacks(tabl
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_studies_of_hardly_any_run_have_a_page(study_of, browse, tmp_path, count):
     tables = study_of(1)
-    few = {"runs": tables.runs.head(count), "summary": tables.summary.head(0), "tracks": None, "tables": {}}
+    few = {
+        "runs": tables.runs.head(count),
+        "summary": tables.summary.head(0),
+        "tracks": None,
+        "tables": {},
+    }
     write_study(with_views(tables, *tables.study["view"], **few), tmp_path / "few.html")
     page = browse(tmp_path / "few.html")
     assert page.errors() == [] and page.text("#count") == f"{count} of {count} runs are chosen"
@@ -342,7 +388,9 @@ def test_studies_of_hardly_any_run_have_a_page(study_of, browse, tmp_path, count
 
 def test_study_whose_runs_all_failed_has_a_page(study_of, browse, tmp_path):
     tables = study_of(1)
-    runs = tables.runs.assign(error="vessel: no", excursion=np.nan, power=np.nan, time_to_3_m=np.nan, held=None)
+    runs = tables.runs.assign(
+        error="vessel: no", excursion=np.nan, power=np.nan, time_to_3_m=np.nan, held=None
+    )
     write_study(with_views(tables, runs=runs, summary=pd.DataFrame()), tmp_path / "failed.html")
     page = browse(tmp_path / "failed.html")
     assert page.errors() == [] and "108 of 108 runs failed" in page.text("#verdict")
@@ -357,7 +405,9 @@ def served(file):
 
     def simulate(run):
         if run == 2:
-            raise ShipcosimError(Problem("vessel", "step to 312.4 s failed.", "Choose a shorter step."))
+            raise ShipcosimError(
+                Problem("vessel", "step to 312.4 s failed.", "Choose a shorter step.")
+            )
         folder = file.parent / f"run-{run}"
         folder.mkdir(exist_ok=True)
         (folder / "report.html").write_text(f"<title>Page of run {run}</title>")
@@ -384,9 +434,13 @@ def test_one_click_simulates_a_run_and_opens_its_page(chromium, served):
     chromium.close()
     chromium.switch_to.window(here)
     chromium.find_element(By.CSS_SELECTOR, "#rows button[data-run='2']").click()
-    page.wait("return document.querySelector('#run .state').innerText.includes('step to 312.4 s failed')")
+    page.wait(
+        "return document.querySelector('#run .state').innerText.includes('step to 312.4 s failed')"
+    )
     assert chromium.window_handles == [here]
-    severe = [entry["message"] for entry in chromium.get_log("browser") if entry["level"] == "SEVERE"]
+    severe = [
+        entry["message"] for entry in chromium.get_log("browser") if entry["level"] == "SEVERE"
+    ]
     assert all("run/2" in message for message in severe), "nothing but the run that failed"
 
 

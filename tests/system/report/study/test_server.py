@@ -23,7 +23,9 @@ class Simulations:
     def __call__(self, run):
         self.asked.append(run)
         if run == 2:
-            raise ShipcosimError(Problem("vessel", "step to 312.4 s failed.", "Choose a shorter step."))
+            raise ShipcosimError(
+                Problem("vessel", "step to 312.4 s failed.", "Choose a shorter step.")
+            )
         if run == 3:
             self.begun.set()
             assert self.may_end.wait(120.0)
@@ -143,7 +145,12 @@ def test_one_simulation_at_a_time_while_files_are_served(ask, simulations):
 )
 def test_nothing_outside_of_the_folder_and_no_other_kind_of_file_is_served(ask, path):
     status, body = ask("GET", path)
-    assert status in (403, 404) and "outside" not in body and "hidden" not in body and "secret" not in body
+    assert (
+        status in (403, 404)
+        and "outside" not in body
+        and "hidden" not in body
+        and "secret" not in body
+    )
 
 
 @pytest.mark.parametrize(
@@ -183,13 +190,23 @@ def test_page_of_this_server_can(ask, server):
 
 
 def test_a_browser_that_asks_first_is_not_told_that_others_may(ask):
-    status, body = ask("OPTIONS", "/run/1", {"Origin": "http://evil.example", "Access-Control-Request-Method": "POST"})
+    status, body = ask(
+        "OPTIONS",
+        "/run/1",
+        {"Origin": "http://evil.example", "Access-Control-Request-Method": "POST"},
+    )
     assert status == 501 and "Access-Control-Allow" not in body
 
 
-@pytest.mark.parametrize("host", ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1:1", ""])
-@pytest.mark.parametrize(("method", "path"), [("GET", "/"), ("GET", "/study-server"), ("POST", "/run/1")])
-def test_names_of_other_sites_that_point_here_are_refused(ask, server, simulations, host, method, path):
+@pytest.mark.parametrize(
+    "host", ["evil.example", "evil.example:{port}", "127.0.0.1", "127.0.0.1:1", ""]
+)
+@pytest.mark.parametrize(
+    ("method", "path"), [("GET", "/"), ("GET", "/study-server"), ("POST", "/run/1")]
+)
+def test_names_of_other_sites_that_point_here_are_refused(
+    ask, server, simulations, host, method, path
+):
     headers = {"Host": host.format(port=server.server_port), **OURS}
     assert ask(method, path, headers)[0] == 403 and simulations.asked == []
 

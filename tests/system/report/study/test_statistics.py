@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from shipcosim.report.study.statistics import distribution, explained, mean_interval, pareto_front, wilson
+from shipcosim.report.study.statistics import (
+    distribution,
+    explained,
+    mean_interval,
+    pareto_front,
+    wilson,
+)
 
 
 @pytest.mark.parametrize(("count", "of"), [(0, 10), (3, 10), (10, 10), (57, 64)])
@@ -23,7 +29,9 @@ def test_band_holds_the_whole_distribution_in_at_least_95_of_100_samples():
     generator, inside = np.random.default_rng(2), []
     for _ in range(1500):
         reached, share, half = distribution(generator.uniform(size=40))
-        inside.append(max(np.abs(share - reached).max(), np.abs(share - 1 / 40 - reached).max()) <= half)
+        inside.append(
+            max(np.abs(share - reached).max(), np.abs(share - 1 / 40 - reached).max()) <= half
+        )
     assert np.mean(inside) >= 0.94
 
 
@@ -37,8 +45,12 @@ def test_explained_share_of_a_known_mixture_and_of_chance():
     level = generator.integers(0, 4, 20_000).astype(float)
     values = level + generator.normal(0, np.sqrt(level.var()), len(level))
     assert explained(values, level, True) == pytest.approx(0.5, abs=0.02)
-    assert explained(values, level + generator.normal(0, 1e-6, len(level)), False) == pytest.approx(0.5, abs=0.04)
-    chance = [explained(generator.normal(size=60), generator.integers(0, 6, 60), True) for _ in range(400)]
+    assert explained(values, level + generator.normal(0, 1e-6, len(level)), False) == pytest.approx(
+        0.5, abs=0.04
+    )
+    chance = [
+        explained(generator.normal(size=60), generator.integers(0, 6, 60), True) for _ in range(400)
+    ]
     assert np.mean([share > 0.0 for share in chance]) < 0.1
 
 
@@ -51,6 +63,8 @@ def test_too_few_runs_explain_nothing():
 def test_front_is_that_of_comparing_every_point_with_every_other(dimensions):
     points = np.random.default_rng(4).integers(0, 12, (300, dimensions)).astype(float)
     points[::50] = np.nan
-    beaten = [any((other <= one).all() and (other < one).any() for other in points) for one in points]
+    beaten = [
+        any((other <= one).all() and (other < one).any() for other in points) for one in points
+    ]
     known = np.isfinite(points).all(axis=1)
     assert pareto_front(list(points.T)).tolist() == (~np.array(beaten) & known).tolist()

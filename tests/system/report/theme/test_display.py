@@ -15,14 +15,19 @@ FLOWS = ("environment", 3.0), ("harbour", 1.0), ("predictor", 2.0)
 def table_of(time=None, **signals):
     """Table of (values, unit), with two underscores for the dot of a signal's name."""
     time = np.arange(len(next(iter(signals.values()))[0])) * 1.0 if time is None else time
-    variables = {k.replace("__", "."): ("time", np.asarray(v), {"units": unit}) for k, (v, unit) in signals.items()}
+    variables = {
+        k.replace("__", "."): ("time", np.asarray(v), {"units": unit})
+        for k, (v, unit) in signals.items()
+    }
     return xr.Dataset(variables, coords={"time": time})
 
 
 def shown(table, verdicts=()):
     """As the page has it."""
     roles = find_roles(table.data_vars)
-    return add_derived(display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts)
+    return add_derived(
+        display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts
+    )
 
 
 def test_angles_are_in_degrees_and_do_not_jump_at_the_half_turn():
@@ -53,7 +58,11 @@ def test_reference_lies_beside_the_ship_whatever_turn_it_counts():
 
 
 def test_one_unit_serves_the_whole_page():
-    loads = {"port__thrust": ([20e3, 0.0], "N"), "line__force": ([5.0, 0.0], "N"), "shaft__torque": ([9.0, 0.0], "N.m")}
+    loads = {
+        "port__thrust": ([20e3, 0.0], "N"),
+        "line__force": ([5.0, 0.0], "N"),
+        "shaft__torque": ([9.0, 0.0], "N.m"),
+    }
     drawn = shown(table_of(**loads))
     assert drawn["port.thrust"].attrs["units"] == drawn["line.force"].attrs["units"] == "kN"
     assert float(drawn["port.thrust"][0]) == 20.0
@@ -68,10 +77,18 @@ def test_wind_that_blows_to_the_south_west_comes_from_the_north_east():
 
 def test_wind_and_current_are_those_at_the_ship_where_a_harbour_changes_them():
     flow = ("wind_north", "wind_east", "current_north", "current_east")
-    at_sea, inside, guessed = ({f"{who}__{name}": ([-value], "m/s") for name in flow} for who, value in FLOWS)
+    at_sea, inside, guessed = (
+        {f"{who}__{name}": ([-value], "m/s") for name in flow} for who, value in FLOWS
+    )
     guessed["predictor__predicted_at"] = ([0.0], "s")
-    drawn = shown(table_of(environment__wind_speed_mean=([9.0], "m/s"), **at_sea, **guessed, **inside))
-    assert float(drawn["wind speed"][0]) == float(drawn["current speed"][0]) == pytest.approx(np.sqrt(2.0))
+    drawn = shown(
+        table_of(environment__wind_speed_mean=([9.0], "m/s"), **at_sea, **guessed, **inside)
+    )
+    assert (
+        float(drawn["wind speed"][0])
+        == float(drawn["current speed"][0])
+        == pytest.approx(np.sqrt(2.0))
+    )
 
 
 def test_thinning_keeps_the_peaks_the_order_of_time_and_both_ends():

@@ -11,7 +11,12 @@ def test_a_thinned_track_keeps_its_extremes_both_ways_its_ends_and_its_order():
     x, y = thinned_curve(east, north, 2000)
     assert len(x) <= 2000
     for thin, full in ((x, east), (y, north)):
-        assert (thin.min(), thin.max(), thin[0], thin[-1]) == (full.min(), full.max(), full[0], full[-1])
+        assert (thin.min(), thin.max(), thin[0], thin[-1]) == (
+            full.min(),
+            full.max(),
+            full[0],
+            full[-1],
+        )
     assert (np.diff(np.hypot(x, y)) > 0).all()
 
 

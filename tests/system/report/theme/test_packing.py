@@ -21,12 +21,18 @@ def unpacked(packed):
 def test_series_is_true_to_a_ten_thousandth_of_its_range(offset):
     values = offset + np.random.default_rng(1).normal(size=500).cumsum()
     packed = packed_series(values)
-    assert np.abs(unpacked(packed) - values).max() <= 0.5 * packed["step"] * 1.001 <= np.ptp(values) / 10_000
+    assert (
+        np.abs(unpacked(packed) - values).max()
+        <= 0.5 * packed["step"] * 1.001
+        <= np.ptp(values) / 10_000
+    )
 
 
 def test_gaps_and_what_is_not_finite_stay_gaps():
     values = np.array([np.nan, 1.0, np.inf, 3.0, 1e300, -np.inf, 2.0])
-    np.testing.assert_allclose(unpacked(packed_series(values)), [np.nan, 1.0, np.nan, 3.0, np.nan, np.nan, 2.0])
+    np.testing.assert_allclose(
+        unpacked(packed_series(values)), [np.nan, 1.0, np.nan, 3.0, np.nan, np.nan, 2.0]
+    )
 
 
 def test_a_spike_does_not_coarsen_the_rest():

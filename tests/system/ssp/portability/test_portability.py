@@ -35,7 +35,12 @@ VERDICTS |= {CRASHES: {hosts.CRASHES, hosts.TOLD}, RIGHT: {hosts.TOLD}}
 def verdicts_of(host, path):
     """What the table says of a system, as a set."""
     found = check_for(host, path)
-    return {v for f in FEATURES for v in f.becomes.values() if any(f": {host} {v}." in p.found for p in found)}
+    return {
+        v
+        for f in FEATURES
+        for v in f.becomes.values()
+        if any(f": {host} {v}." in p.found for p in found)
+    }
 
 
 def assert_foretold(host, path, recorded):
@@ -54,7 +59,9 @@ def interface_type_of(case):
 @pytest.fixture(scope="module")
 def page(root):
     """Verdicts that docs/interoperability.md states, by column and feature."""
-    spec = importlib.util.spec_from_file_location("page", root / "docs" / "generators" / "write_interoperability.py")
+    spec = importlib.util.spec_from_file_location(
+        "page", root / "docs" / "generators" / "write_interoperability.py"
+    )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module.recorded(module.PAGE.read_text(encoding="utf-8"))
@@ -63,9 +70,13 @@ def page(root):
 @pytest.mark.parametrize("name", recording.rows())
 def test_what_a_tool_did_with_a_feature_is_foretold(name, page, tmp_path):
     case = conformance.cases()["connection" if name in FORMED else name]
-    path = conformance.write(case, tmp_path, FORMED[name][2] if name in FORMED else interface_type_of(case))
+    path = conformance.write(
+        case, tmp_path, FORMED[name][2] if name in FORMED else interface_type_of(case)
+    )
     if any(problem.severity == "error" for problem in check_file(path)):
-        assert page["shipcosim"].get(recording.rows()[name][1]) != RIGHT  # nothing is foretold of what cannot be read
+        assert (
+            page["shipcosim"].get(recording.rows()[name][1]) != RIGHT
+        )  # nothing is foretold of what cannot be read
         return
     for host in HOSTS:
         recorded = page[host].get(recording.rows()[name][1])
@@ -100,7 +111,9 @@ def tried(host, tmp_path_factory):
     while left:
         folder = tmp_path_factory.mktemp(host)
         command = [sys.executable, "-c", code, host, str(folder), *left]
-        process = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=600)
+        process = subprocess.run(
+            command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=600
+        )
         for line in process.stdout.splitlines():
             if line.startswith('["'):
                 name, verdict, _ = json.loads(line)
@@ -113,16 +126,33 @@ def tried(host, tmp_path_factory):
 
 @pytest.mark.parametrize("name", OWN)
 def test_what_a_tool_does_with_a_feature_is_foretold(name, host, tried, tmp_path):
-    assert_foretold(host, conformance.write(OWN[name], tmp_path, interface_type_of(OWN[name])), tried[name])
+    assert_foretold(
+        host, conformance.write(OWN[name], tmp_path, interface_type_of(OWN[name])), tried[name]
+    )
 
 
 def test_every_feature_is_in_some_system_that_was_tried(tmp_path):
     cases = [*OWN.values(), *conformance.cases().values()]
-    paths = [conformance.write(case, tmp_path / str(k), interface_type_of(case)) for k, case in enumerate(cases)]
-    paths += [conformance.write(conformance.cases()["connection"], tmp_path / n, f[2]) for n, f in FORMED.items()]
-    remedies = {problem.remedy for path in paths for host in HOSTS for problem in check_for(host, path)}
+    paths = [
+        conformance.write(case, tmp_path / str(k), interface_type_of(case))
+        for k, case in enumerate(cases)
+    ]
+    paths += [
+        conformance.write(conformance.cases()["connection"], tmp_path / n, f[2])
+        for n, f in FORMED.items()
+    ]
+    remedies = {
+        problem.remedy for path in paths for host in HOSTS for problem in check_for(host, path)
+    }
     seen = {feature.name for feature in FEATURES if feature.remedy in remedies}
-    elsewhere = {"fmi_3", "form_asked", "model_exchange", "model_exchange_1", "same_guid", "set_fmi_1"}
+    elsewhere = {
+        "fmi_3",
+        "form_asked",
+        "model_exchange",
+        "model_exchange_1",
+        "same_guid",
+        "set_fmi_1",
+    }
     elsewhere |= {"osp_algorithm", "osp_second_target", "osp_group_file"}
     assert {feature.name for feature in FEATURES} - seen <= elsewhere
 
@@ -168,14 +198,18 @@ END = "print('value', value, flush=True)\nos._exit(0 if value == 7.0 else 3)\n"
 def outcome(host, path):
     """Verdict of a tool on an SSP of one FMU whose output is 7."""
     code = f"import os, sys\n{STEP[host]}{END}"
-    process = subprocess.run([sys.executable, "-c", code, str(path)], capture_output=True, timeout=600)
+    process = subprocess.run(
+        [sys.executable, "-c", code, str(path)], capture_output=True, timeout=600
+    )
     return {0: RIGHT, 1: REFUSED, 3: WRONG}.get(process.returncode, CRASHES)
 
 
 @pytest.mark.skipif(c_fmus.compiler() is None, reason="needs a C compiler")
 @pytest.mark.parametrize("form", ["CoSimulation", "ModelExchange"])
 @pytest.mark.parametrize("version", ["1.0", "2.0", "3.0"])
-def test_what_a_tool_does_with_an_fmu_of_a_version_and_form_is_foretold(host, version, form, tmp_path):
+def test_what_a_tool_does_with_an_fmu_of_a_version_and_form_is_foretold(
+    host, version, form, tmp_path
+):
     name = f"still_{version[0]}_{form}"
     description = c_fmus.describe(name, version, [("y", 0, "output", "Real", None)], (form,))
     fmu = c_fmus.build(tmp_path, name, version, STILL, description, form)
@@ -198,25 +232,39 @@ def test_two_fmus_of_one_guid_are_one_to_libcosim(tmp_path, needs):
         guid = re.search(rb'guid="[^"]*"', archive.read("modelDescription.xml"))[0]
     with zipfile.ZipFile(second) as archive:
         contents = {entry: archive.read(entry) for entry in archive.namelist()}
-    contents["modelDescription.xml"] = re.sub(rb'guid="[^"]*"', guid, contents["modelDescription.xml"])
+    contents["modelDescription.xml"] = re.sub(
+        rb'guid="[^"]*"', guid, contents["modelDescription.xml"]
+    )
     with zipfile.ZipFile(second, "w") as archive:
         for name, data in contents.items():
             archive.writestr(name, data)
     assert recording.in_libcosim(case, folder)["gain.y"] != case.closed_form("gain.y")[-1]
     (problem,) = [p for p in check_for("libcosim", folder) if p.severity == "error"]
-    assert problem.where == "gain" and problem.found.startswith("gain.fmu has the GUID of ramp.fmu: libcosim takes")
+    assert problem.where == "gain" and problem.found.startswith(
+        "gain.fmu has the GUID of ramp.fmu: libcosim takes"
+    )
     assert [p for p in check_for("ecos", folder) if p.severity == "error"] == []
 
 
 def test_the_form_that_is_asked_for_is_no_matter_to_the_tools(tmp_path, root):
     """The page on forms states what they did, and its own tests measure it."""
     page = (root / "docs" / "fmi-versions.md").read_text(encoding="utf-8")
-    row = next(line for line in page.splitlines() if line.startswith("| both forms, model exchange asked for"))
+    row = next(
+        line
+        for line in page.splitlines()
+        if line.startswith("| both forms, model exchange asked for")
+    )
     assert row.split(" | ")[2:4] == [WRONG, WRONG]
-    description = c_fmus.describe("both", "2.0", [("y", 0, "output", "Real", None)], ("CoSimulation", "ModelExchange"))
+    description = c_fmus.describe(
+        "both", "2.0", [("y", 0, "output", "Real", None)], ("CoSimulation", "ModelExchange")
+    )
     with zipfile.ZipFile(tmp_path / "both.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", description)
-    text = SSD.format("both").replace("resources/", "").replace("<ssd:Component ", "<ssd:Component {} ")
+    text = (
+        SSD.format("both")
+        .replace("resources/", "")
+        .replace("<ssd:Component ", "<ssd:Component {} ")
+    )
     for form, said in (("any", set()), ("CoSimulation", set()), ("ModelExchange", {hosts.IGNORED})):
         (tmp_path / "SystemStructure.ssd").write_text(text.format(f'implementation="{form}"'))
         for host in HOSTS:
@@ -247,5 +295,7 @@ def test_ecos_reads_no_osp_structure_and_an_unknown_tool_is_refused(tmp_path):
     path = tmp_path / "OspSystemStructure.xml"
     path.write_text("<a/>")
     assert "does not read" in check_for("ecos", path)[0].found
-    with pytest.raises(ShipcosimError, match="Nothing is known of this tool. There is: ecos, libcosim."):
+    with pytest.raises(
+        ShipcosimError, match="Nothing is known of this tool. There is: ecos, libcosim."
+    ):
         check_for("vico", path)

@@ -12,13 +12,25 @@ def programs(number, size, seed=1):
     """Random programs; in some a command has no room, or 0 is not within its bounds."""
     draw = np.random.default_rng(seed)
     for _ in range(number):
-        effects, ease = draw.normal(size=(size, 3)) * [1.0, 1.0, 10.0], np.exp(draw.normal(size=size))
+        effects, ease = (
+            draw.normal(size=(size, 3)) * [1.0, 1.0, 10.0],
+            np.exp(draw.normal(size=size)),
+        )
         ends = np.sort(draw.normal(size=(size, 2)), axis=1)
         still = draw.random(size) < 0.1
         ends[still, 0] = ends[still, 1]
-        rows = zip(effects.tolist(), ease.tolist(), draw.normal(size=size).tolist(), ends.tolist(), strict=True)
+        rows = zip(
+            effects.tolist(),
+            ease.tolist(),
+            draw.normal(size=size).tolist(),
+            ends.tolist(),
+            strict=True,
+        )
         commands = [Command(*effect, e, wanted, *bounds) for effect, e, wanted, bounds in rows]
-        yield tuple((draw.normal(size=3) * [1.0, 1.0, 10.0] * 10.0 ** draw.uniform(-1, 1)).tolist()), commands
+        yield (
+            tuple((draw.normal(size=3) * [1.0, 1.0, 10.0] * 10.0 ** draw.uniform(-1, 1)).tolist()),
+            commands,
+        )
 
 
 def price(x, request, commands):

@@ -22,12 +22,19 @@ def allocate(tau, available=ALL, parameters=PARAMETERS, h=LONG, state=None):
 
 
 def requests(number, X, Y, N, seed=1):
-    return [tuple(row) for row in (np.random.default_rng(seed).uniform(-1.0, 1.0, (number, 3)) * [X, Y, N]).tolist()]
+    return [
+        tuple(row)
+        for row in (
+            np.random.default_rng(seed).uniform(-1.0, 1.0, (number, 3)) * [X, Y, N]
+        ).tolist()
+    ]
 
 
 def load_of(state, parameters=PARAMETERS):
     """Load of thrusts at their angles, by the configuration matrix of the fixed angles."""
-    turned = replace(parameters, port_azimuth=state.azimuths[0], starboard_azimuth=state.azimuths[1])
+    turned = replace(
+        parameters, port_azimuth=state.azimuths[0], starboard_azimuth=state.azimuths[1]
+    )
     return np.array(effect(turned)).T @ state.thrusts
 
 
@@ -41,7 +48,10 @@ def test_commands_give_what_was_asked_within_the_limits():
 
 
 def forces_of(state):
-    return [(f * math.cos(a), f * math.sin(a)) for f, a in zip(state.thrusts[:2], state.azimuths[:2], strict=True)]
+    return [
+        (f * math.cos(a), f * math.sin(a))
+        for f, a in zip(state.thrusts[:2], state.azimuths[:2], strict=True)
+    ]
 
 
 def test_no_other_thrusts_give_the_load_at_a_lower_price():
@@ -54,7 +64,9 @@ def test_no_other_thrusts_give_the_load_at_a_lower_price():
 
 def test_starboard_mirrors_port():
     ahead, mirrored = allocate((4e3, 7e3, 50e3)), allocate((4e3, -7e3, -50e3))
-    assert mirrored.thrusts == pytest.approx((ahead.thrusts[1], ahead.thrusts[0], -ahead.thrusts[2]))
+    assert mirrored.thrusts == pytest.approx(
+        (ahead.thrusts[1], ahead.thrusts[0], -ahead.thrusts[2])
+    )
     assert mirrored.azimuths[:2] == pytest.approx((-ahead.azimuths[1], -ahead.azimuths[0]))
 
 
@@ -92,7 +104,9 @@ def test_a_missing_unit_gives_nothing_and_the_others_hold_her_in_place(missing):
 
 def test_a_small_force_turns_no_unit():
     state = allocate((100.0, -100.0, 0.0))
-    assert state.azimuths[:2] == pytest.approx((PARAMETERS.port_azimuth, PARAMETERS.starboard_azimuth))
+    assert state.azimuths[:2] == pytest.approx(
+        (PARAMETERS.port_azimuth, PARAMETERS.starboard_azimuth)
+    )
 
 
 def test_many_at_once_get_what_each_gets():
@@ -102,7 +116,9 @@ def test_many_at_once_get_what_each_gets():
     for i, row in enumerate(rows):
         alone = allocate(row, (True, True, bool(tunnel[i])))
         found = [part[i] for part in (*together.thrusts, *together.azimuths[:2], *together[2:])]
-        np.testing.assert_allclose(found, (*alone.thrusts, *alone.azimuths[:2], *alone[2:]), rtol=1e-9, atol=1e-6)
+        np.testing.assert_allclose(
+            found, (*alone.thrusts, *alone.azimuths[:2], *alone[2:]), rtol=1e-9, atol=1e-6
+        )
 
 
 def test_the_sides_price_is_what_it_says():

@@ -29,8 +29,12 @@ def after(tau, steps, allocator, signals=6, available=ALL):
 
 
 @pytest.mark.parametrize("variant", ["paper-i", "paper-i-cutoff"])
-@pytest.mark.parametrize(("allocator", "signals", "inputs"), [(1, 6, 3), (1, 5, 3), (2, 6, 9), (2, 5, 8)])
-def test_network_has_the_papers_structure_and_gives_its_matrix_form(variant, allocator, signals, inputs):
+@pytest.mark.parametrize(
+    ("allocator", "signals", "inputs"), [(1, 6, 3), (1, 5, 3), (2, 6, 9), (2, 5, 8)]
+)
+def test_network_has_the_papers_structure_and_gives_its_matrix_form(
+    variant, allocator, signals, inputs
+):
     _, found = network(allocator, signals, variant)
     x = np.linspace(-0.7, 0.9, inputs) * np.array(found.scale)
     W, beta = np.array(found.hidden), np.array(found.output)
@@ -59,14 +63,22 @@ def test_load_is_that_of_the_thrusts():
     bow, stern, main = state.thrusts[:2], state.thrusts[2:4], state.thrusts[4:]
     assert state.tau_X == pytest.approx(sum(main))
     assert state.tau_Y == pytest.approx(sum(bow) + sum(stern))
-    moment = 37.0 * bow[0] + 35.0 * bow[1] - 31.0 * stern[0] - 33.0 * stern[1] + 6.0 * (main[0] - main[1])
+    moment = (
+        37.0 * bow[0]
+        + 35.0 * bow[1]
+        - 31.0 * stern[0]
+        - 33.0 * stern[1]
+        + 6.0 * (main[0] - main[1])
+    )
     assert state.tau_N == pytest.approx(moment)
 
 
 def test_main_propellers_get_one_command_with_either_number_of_signals():
     """Of allocator 1 both are one network: each output has weights of its own, and the targets are the same."""
     six, five = after((1e5, 2e4, 0.0), 1, 1, 6), after((1e5, 2e4, 0.0), 1, 1, 5)
-    assert six.commands == pytest.approx(five.commands) and six.commands[4] == pytest.approx(six.commands[5])
+    assert six.commands == pytest.approx(five.commands) and six.commands[4] == pytest.approx(
+        six.commands[5]
+    )
     *_, port, starboard = after((1e5, 2e4, 0.0), 3, 2, 5).commands
     assert port == starboard
 
@@ -86,7 +98,10 @@ def test_nothing_holds_either_allocator_to_the_rates(allocator):
 
 
 def test_a_missing_unit_gets_nothing_and_nobody_takes_over():
-    whole, without = after((0.0, 1e5, 3e6), 1, 1), after((0.0, 1e5, 3e6), 1, 1, available=(False, *ALL[1:]))
+    whole, without = (
+        after((0.0, 1e5, 3e6), 1, 1),
+        after((0.0, 1e5, 3e6), 1, 1, available=(False, *ALL[1:])),
+    )
     assert without.commands[0] == without.thrusts[0] == 0.0 and without.saturated
     assert without.commands[1:] == whole.commands[1:]
 

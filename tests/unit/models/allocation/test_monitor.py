@@ -26,7 +26,9 @@ def said(state):
 
 
 def test_a_difference_within_the_tolerance_is_no_fault():
-    assert said(watched(600.0, {"thrusts": (10e3, 12.9e3), "azimuths": (0.0, 9.0 * pi / 180.0)})) == []
+    assert (
+        said(watched(600.0, {"thrusts": (10e3, 12.9e3), "azimuths": (0.0, 9.0 * pi / 180.0)})) == []
+    )
 
 
 def test_a_unit_off_its_command_is_faulty_after_the_delay_and_stays_so():

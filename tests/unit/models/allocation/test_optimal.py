@@ -42,7 +42,10 @@ def many(number, tau=0.0):
     """States of many runs, each at rest at admissible angles of its own."""
     draw = np.random.default_rng(number)
     port, starboard = draw.uniform(-80, 80, number), draw.uniform(100, 260, number)
-    return start((np.zeros(number),) * 3, (np.radians(port), np.radians(starboard), np.full(number, 0.5 * pi)))
+    return start(
+        (np.zeros(number),) * 3,
+        (np.radians(port), np.radians(starboard), np.full(number, 0.5 * pi)),
+    )
 
 
 def violations(old, new, h=H, available=ALL):
@@ -128,15 +131,21 @@ def test_a_unit_gives_no_thrust_until_it_is_within_its_angles_and_turns_there():
 def test_many_at_once_get_what_each_gets():
     draw = np.random.default_rng(4)
     together, tunnel = many(20), np.arange(20) % 3 > 0
-    alone = [sqp.resting((0.0,) * 3, tuple(float(a[i]) for a in together.azimuths)) for i in range(20)]
+    alone = [
+        sqp.resting((0.0,) * 3, tuple(float(a[i]) for a in together.azimuths)) for i in range(20)
+    ]
     for _ in range(5):
         tau = extremes(draw, 20)
         together = step(together, tau, (True, True, tunnel), 1.0)
         for i in range(20):
             row = tuple(float(load[i]) for load in tau)
             alone[i] = step(alone[i], row, (True, True, bool(tunnel[i])), 1.0)
-            np.testing.assert_allclose([f[i] for f in together.thrusts], alone[i].thrusts, rtol=1e-6, atol=1e-3)
-            np.testing.assert_allclose([a[i] for a in together.azimuths], alone[i].azimuths, rtol=1e-6, atol=1e-6)
+            np.testing.assert_allclose(
+                [f[i] for f in together.thrusts], alone[i].thrusts, rtol=1e-6, atol=1e-3
+            )
+            np.testing.assert_allclose(
+                [a[i] for a in together.azimuths], alone[i].azimuths, rtol=1e-6, atol=1e-6
+            )
 
 
 def test_loads_that_a_step_can_reach_are_met():
@@ -149,7 +158,11 @@ def test_loads_that_a_step_can_reach_are_met():
             for unit, f, a in zip(DESIGN.units, state.thrusts, state.azimuths, strict=True):
                 f = np.clip(f + draw.uniform(-1, 1) * unit.thrust_rate * H, unit.least, unit.most)
                 a = np.clip(a + draw.uniform(-1, 1) * unit.azimuth_rate * H, unit.first, unit.last)
-                X, Y, N = X + f * np.cos(a), Y + f * np.sin(a), N + f * (unit.x * np.sin(a) - unit.y * np.cos(a))
+                X, Y, N = (
+                    X + f * np.cos(a),
+                    Y + f * np.sin(a),
+                    N + f * (unit.x * np.sin(a) - unit.y * np.cos(a)),
+                )
             new = step(state, (float(X), float(Y), float(N)))
             errors.append([abs(X - new.tau_X), abs(Y - new.tau_Y), abs(N - new.tau_N)])
     assert (np.mean(errors, axis=0) < [5.0, 5.0, 10.0]).all()
@@ -162,9 +175,13 @@ def test_a_request_that_stays_costs_what_the_static_optimum_with_these_cones_cos
     for tau in draw.normal(size=(12, 3)) * [4e3, 8e3, 6e4]:
         state = start()
         for _ in range(1500):
-            state = optimal.step(state, tuple(tau.tolist()), ALL, H, parameters=PARAMETERS, design=bold)
+            state = optimal.step(
+                state, tuple(tau.tolist()), ALL, H, parameters=PARAMETERS, design=bold
+            )
         best = static_optimum(tau[None], bold.units, own, yaw_lever=14.0)
-        power = sum(unit.price * abs(f) ** 1.5 for unit, f in zip(bold.units, state.thrusts, strict=True))
+        power = sum(
+            unit.price * abs(f) ** 1.5 for unit, f in zip(bold.units, state.thrusts, strict=True)
+        )
         assert abs(best.missed).max() < 1.0
         assert power == pytest.approx(float(best.power[0]), rel=0.01)
 
@@ -189,11 +206,18 @@ def test_recorded_requests_are_met_at_nearly_the_least_power_without_a_reversal(
         state = new
         if k % 1200 < 400:  # settles after a jump from one part to the next
             continue
-        used.append(sum(unit.price * abs(f) ** 1.5 for unit, f in zip(DESIGN.units, state.thrusts, strict=True)))
+        used.append(
+            sum(
+                unit.price * abs(f) ** 1.5
+                for unit, f in zip(DESIGN.units, state.thrusts, strict=True)
+            )
+        )
         missed.append(np.abs(np.array(tau) - state[2:5]))
         thrusts.append(state.thrusts)
     chosen = [tau for k, tau in enumerate(requests) if k % 1200 >= 400]
-    best = static_optimum(np.array(chosen)[::10], DESIGN.units, CONES, yaw_lever=PARAMETERS.yaw_lever).power
+    best = static_optimum(
+        np.array(chosen)[::10], DESIGN.units, CONES, yaw_lever=PARAMETERS.yaw_lever
+    ).power
     assert np.mean(used) / np.mean(best) < 1.035
     assert (np.median(missed, axis=0) < [0.1, 0.1, 1.0]).all()
     assert np.min(np.array(thrusts)[:, :2]) >= PARAMETERS.azimuth_thrust_least
@@ -209,7 +233,9 @@ def test_starboard_mirrors_port_where_their_cones_are_exchanged():
     mirrored = mirrored._replace(azimuths=(radians(225), radians(-45), 0.5 * pi))
     for _ in range(200):
         one = step(one, (2e3, 7e3, 5e4))
-        mirrored = optimal.step(mirrored, (2e3, -7e3, -5e4), ALL, H, parameters=other, design=optimal.design(other))
+        mirrored = optimal.step(
+            mirrored, (2e3, -7e3, -5e4), ALL, H, parameters=other, design=optimal.design(other)
+        )
     port, starboard, tunnel = one.thrusts
     assert mirrored.thrusts == pytest.approx((starboard, port, -tunnel), rel=1e-6)
 
@@ -276,7 +302,9 @@ def test_nearest_takes_admissible_proposals_and_brings_others_within_the_limits(
     np.testing.assert_allclose(taken.thrusts, thrusts, atol=10.0)
     np.testing.assert_allclose(taken.azimuths, azimuths, atol=2e-4)
     np.testing.assert_allclose(taken[2:5], tau, atol=0.1)
-    wild = sqp.nearest_step(state, (-9e9, 9e9, 1e3), (9.0, -9.0, 1.0), (3e3, 6e3, 5e4), ALL, H, design=DESIGN)
+    wild = sqp.nearest_step(
+        state, (-9e9, 9e9, 1e3), (9.0, -9.0, 1.0), (3e3, 6e3, 5e4), ALL, H, design=DESIGN
+    )
     assert violations(state, wild) == 0
     np.testing.assert_allclose(wild[2:5], (3e3, 6e3, 5e4), atol=1.0)
 
@@ -284,35 +312,73 @@ def test_nearest_takes_admissible_proposals_and_brings_others_within_the_limits(
 def test_numbered_units_give_what_named_ones_give():
     p = PARAMETERS
     numbered = optimal_units.OptimalUnitsParameters(
-        **{"x_1": p.port_x, "y_1": p.port_y, "azimuth_1": SETTLED[0], "x_2": p.starboard_x, "y_2": p.starboard_y},
-        **{"azimuth_2": SETTLED[1], "x_3": p.tunnel_x, "azimuth_3": 0.5 * pi, "thrust_min_3": -21.6e3},
-        **{"thrust_max_1": 60e3, "thrust_max_2": 60e3, "thrust_max_3": 21.6e3, "thrust_rate_1": 1e3},
-        **{"thrust_rate_2": 1e3, "thrust_rate_3": 1e3, "azimuth_rate_1": radians(10), "azimuth_rate_2": radians(10)},
+        **{
+            "x_1": p.port_x,
+            "y_1": p.port_y,
+            "azimuth_1": SETTLED[0],
+            "x_2": p.starboard_x,
+            "y_2": p.starboard_y,
+        },
+        **{
+            "azimuth_2": SETTLED[1],
+            "x_3": p.tunnel_x,
+            "azimuth_3": 0.5 * pi,
+            "thrust_min_3": -21.6e3,
+        },
+        **{
+            "thrust_max_1": 60e3,
+            "thrust_max_2": 60e3,
+            "thrust_max_3": 21.6e3,
+            "thrust_rate_1": 1e3,
+        },
+        **{
+            "thrust_rate_2": 1e3,
+            "thrust_rate_3": 1e3,
+            "azimuth_rate_1": radians(10),
+            "azimuth_rate_2": radians(10),
+        },
         **{
             "azimuth_first_1": radians(-80),
             "azimuth_last_1": radians(80),
             "thrust_least_1": 1e3,
             "thrust_least_2": 1e3,
         },
-        **{"azimuth_first_2": radians(100), "azimuth_last_2": radians(260), "yaw_lever": p.yaw_lever},
+        **{
+            "azimuth_first_2": radians(100),
+            "azimuth_last_2": radians(260),
+            "yaw_lever": p.yaw_lever,
+        },
         specific_power_3=4.77 * (21.6 / 60.0) ** 0.5,
     )
     design = optimal_units.design(numbered)
     one, other = start(), optimal_units.at_rest((0.0, 0.0, 0.0), parameters=numbered)
     for _ in range(100):
         one = step(one, (2e3, 7e3, 5e4))
-        other = optimal_units.step(other, (2e3, 7e3, 5e4), (True,) * 6, H, parameters=numbered, design=design)
-    assert other.thrusts[:3] == pytest.approx(one.thrusts, rel=1e-6) and other.thrusts[3:] == (0.0,) * 3
+        other = optimal_units.step(
+            other, (2e3, 7e3, 5e4), (True,) * 6, H, parameters=numbered, design=design
+        )
+    assert (
+        other.thrusts[:3] == pytest.approx(one.thrusts, rel=1e-6)
+        and other.thrusts[3:] == (0.0,) * 3
+    )
     assert other.azimuths[:2] == pytest.approx(one.azimuths[:2], abs=1e-6)
 
 
 def test_unit_without_an_interval_turns_all_round():
     free = optimal_units.OptimalUnitsParameters(
-        **{"x_1": -10.0, "thrust_max_1": 1e4, "thrust_rate_1": 1e3, "azimuth_rate_1": 0.2, "yaw_lever": 10.0}
+        **{
+            "x_1": -10.0,
+            "thrust_max_1": 1e4,
+            "thrust_rate_1": 1e3,
+            "azimuth_rate_1": 0.2,
+            "yaw_lever": 10.0,
+        }
     )
     design = optimal_units.design(free)
     assert design.units[0].first == -inf
     state = optimal_units.at_rest((0.0, 0.0, 0.0), parameters=free)
     for _ in range(600):
-        state = optimal_units.step(state, (-3e3, 100.0, -1e3), (True,) * 6, 0.1, parameters=free, design=design)
+        state = optimal_units.step(
+            state, (-3e3, 100.0, -1e3), (True,) * 6, 0.1, parameters=free, design=design
+        )
     assert state.tau_X == pytest.approx(-3e3, abs=30.0)

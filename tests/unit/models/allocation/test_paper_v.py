@@ -23,7 +23,9 @@ def after(seconds, design, h=0.5, tau=TAU, available=ALL, shares=(1.0, 1.0, 1.0)
     """State after some seconds with one request."""
     state = paper_v.at_rest(tau, parameters=UNITS)
     for _ in range(round(seconds / h)):
-        state = paper_v.step(state, tau, available, h, parameters=UNITS, design=design, shares=shares)
+        state = paper_v.step(
+            state, tau, available, h, parameters=UNITS, design=design, shares=shares
+        )
     return state
 
 
@@ -33,7 +35,9 @@ def test_commands_are_outputs_of_the_network_sample_by_sample(design):
         found, memory = evaluate(design.encoder, (np.array(TAU) - design.mean) / design.std, memory)
     state = after(20.0, design)
     tunnel, port, a, starboard, b = found * design.ranges
-    assert (*state.thrusts, *state.azimuths[:2]) == pytest.approx((port, starboard, tunnel, a, b), rel=1e-12)
+    assert (*state.thrusts, *state.azimuths[:2]) == pytest.approx(
+        (port, starboard, tunnel, a, b), rel=1e-12
+    )
     assert len(state.memory) == 2 and state.memory[0].cell.shape == memory[0].cell.shape
 
 
@@ -46,8 +50,12 @@ def test_the_load_is_that_of_the_full_configuration_matrix(design):
     fields = pseudo_inverse.AllocationParameters.__dataclass_fields__
     known = {name: getattr(UNITS, name) for name in fields if hasattr(UNITS, name)}
     known |= {"port_azimuth": state.azimuths[0], "starboard_azimuth": state.azimuths[1]}
-    b = pseudo_inverse.effect(pseudo_inverse.AllocationParameters(azimuth_weight=1.0, tunnel_weight=1.0, **known))
-    assert (state.tau_X, state.tau_Y, state.tau_N) == pytest.approx(pseudo_inverse.load(state.thrusts, b), rel=1e-9)
+    b = pseudo_inverse.effect(
+        pseudo_inverse.AllocationParameters(azimuth_weight=1.0, tunnel_weight=1.0, **known)
+    )
+    assert (state.tau_X, state.tau_Y, state.tau_N) == pytest.approx(
+        pseudo_inverse.load(state.thrusts, b), rel=1e-9
+    )
 
 
 def test_a_request_it_was_trained_on_is_met_roughly(design):
@@ -67,13 +75,22 @@ def test_a_missing_unit_gives_nothing_and_the_others_do_not_take_over(design):
 def test_a_lack_of_power_limits_the_thrust(design):
     share = 0.01
     part = after(20.0, design, shares=(share,) * 3)
-    limits = share * UNITS.azimuth_thrust_max, share * UNITS.azimuth_thrust_max, share * UNITS.tunnel_thrust_max
-    assert all(abs(f) <= limit for f, limit in zip(part.thrusts, limits, strict=True)) and part.saturated
+    limits = (
+        share * UNITS.azimuth_thrust_max,
+        share * UNITS.azimuth_thrust_max,
+        share * UNITS.tunnel_thrust_max,
+    )
+    assert (
+        all(abs(f) <= limit for f, limit in zip(part.thrusts, limits, strict=True))
+        and part.saturated
+    )
 
 
 @pytest.mark.parametrize("variant", sorted(file.stem for file in WEIGHTS.glob("*.npz")))
 def test_the_azimuths_push_against_each_other_where_nothing_is_asked_for(variant):
     """Why it saves no power (docs/allocation.md): each gives more than 1.5 kN, together next to nothing."""
-    state = after(60.0, paper_v.design(read_arrays(WEIGHTS / f"{variant}.npz")), 1.0, (0.0, 0.0, 0.0))
+    state = after(
+        60.0, paper_v.design(read_arrays(WEIGHTS / f"{variant}.npz")), 1.0, (0.0, 0.0, 0.0)
+    )
     assert min(abs(f) for f in state.thrusts[:2]) > 1500.0
     assert abs(state.tau_X) < 300.0 and abs(state.tau_Y) < 300.0

@@ -37,7 +37,9 @@ def test_what_is_granted_on_a_bus_is_what_it_has():
     rng = np.random.default_rng(5)
     for _ in range(50):
         a, b = rng.uniform(0.0, 4e5, 2)
-        port, starboard, tunnel = granted_power(tuple(rng.uniform(0.0, 1.0, 3)), (a, b), parameters=POWER)
+        port, starboard, tunnel = granted_power(
+            tuple(rng.uniform(0.0, 1.0, 3)), (a, b), parameters=POWER
+        )
         assert port + tunnel == pytest.approx(a) and starboard == pytest.approx(b)
         assert min(port, starboard, tunnel) > 0.0
 
@@ -54,7 +56,9 @@ def held(tau, buses, seconds=120.0, h=0.1):
     for _ in range(round(seconds / h)):
         granted = granted_power(shares_of(state), buses, parameters=POWER)
         shares = thrust_shares(granted, parameters=POWER)
-        state = allocation.step(state, tau, (True,) * 3, h, parameters=UNITS, design=made, shares=shares)
+        state = allocation.step(
+            state, tau, (True,) * 3, h, parameters=UNITS, design=made, shares=shares
+        )
     return state
 
 
@@ -78,8 +82,16 @@ def test_commands_use_the_power_of_their_bus_and_no_more():
 
 def test_power_that_is_lost_is_taken_back_at_once():
     state = held((40e3, 5e3, 50e3), (1e9, 1e9))
-    shares = thrust_shares(granted_power(shares_of(state), (40e3, 1e9), parameters=POWER), parameters=POWER)
+    shares = thrust_shares(
+        granted_power(shares_of(state), (40e3, 1e9), parameters=POWER), parameters=POWER
+    )
     after = allocation.step(
-        state, (40e3, 5e3, 50e3), (True,) * 3, 0.05, parameters=UNITS, design=design(UNITS), shares=shares
+        state,
+        (40e3, 5e3, 50e3),
+        (True,) * 3,
+        0.05,
+        parameters=UNITS,
+        design=design(UNITS),
+        shares=shares,
     )
     assert sum(power_of(after)[::2]) <= 40e3 * (1.0 + 1e-9)

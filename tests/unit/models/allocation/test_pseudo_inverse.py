@@ -8,7 +8,13 @@ import pytest
 from ships import parameters
 
 from shipcosim.models.allocation import pseudo_inverse as allocation
-from shipcosim.models.allocation.pseudo_inverse import AllocationParameters, at_rest, design, effect, load
+from shipcosim.models.allocation.pseudo_inverse import (
+    AllocationParameters,
+    at_rest,
+    design,
+    effect,
+    load,
+)
 
 PARAMETERS = parameters(AllocationParameters)
 ALL = (True, True, True)
@@ -17,7 +23,9 @@ LONG = 1e3  # s, a step in which the limit of the rate does not matter
 
 def allocate(tau, available=ALL, parameters=PARAMETERS, h=LONG, state=None):
     state = state or at_rest((0.0, 0.0, 0.0), parameters=parameters)
-    return allocation.step(state, tau, available, h, parameters=parameters, design=design(parameters))
+    return allocation.step(
+        state, tau, available, h, parameters=parameters, design=design(parameters)
+    )
 
 
 def requests(number, X, Y, N, seed=1):
@@ -36,13 +44,17 @@ def test_commands_give_exactly_what_was_asked_within_the_limits():
     for tau in requests(200, 10e3, 10e3, 100e3):
         state = allocate(tuple(tau))
         np.testing.assert_allclose(state[2:5], tau, rtol=1e-9, atol=1e-6)
-        np.testing.assert_allclose(load(state.thrusts, effect(PARAMETERS)), tau, rtol=1e-9, atol=1e-6)
+        np.testing.assert_allclose(
+            load(state.thrusts, effect(PARAMETERS)), tau, rtol=1e-9, atol=1e-6
+        )
         assert not state.saturated
 
 
 def test_starboard_mirrors_port():
     ahead, mirrored = allocate((4e3, 7e3, 50e3)), allocate((4e3, -7e3, -50e3))
-    assert mirrored.thrusts == pytest.approx((ahead.thrusts[1], ahead.thrusts[0], -ahead.thrusts[2]))
+    assert mirrored.thrusts == pytest.approx(
+        (ahead.thrusts[1], ahead.thrusts[0], -ahead.thrusts[2])
+    )
 
 
 def test_limits_are_kept_and_said():
@@ -69,7 +81,9 @@ def test_what_one_unit_cannot_give_is_shared_nearly_as_well_as_scipy_does():
 
 def test_where_several_thrusts_give_the_load_the_cheapest_are_taken():
     minimize = pytest.importorskip("scipy.optimize").minimize
-    astride = replace(PARAMETERS, port_azimuth=0.5 * math.pi, starboard_azimuth=0.5 * math.pi, tunnel_weight=3.0)
+    astride = replace(
+        PARAMETERS, port_azimuth=0.5 * math.pi, starboard_azimuth=0.5 * math.pi, tunnel_weight=3.0
+    )
     matrix = np.array(effect(astride)).T[1:]  # nothing gives surge; sway and yaw have three units
     state = allocate((0.0, 9e3, 20e3), parameters=astride)
     price = np.array([1.0, 1.0, 3.0])
@@ -103,7 +117,9 @@ def test_failed_unit_is_given_up_at_once_and_taken_back_at_the_rate():
 def test_commands_move_no_faster_than_the_rate_and_their_load_is_that_of_the_moved_commands():
     state = allocate((20e3, 5e3, 0.0), h=0.05)
     assert max(abs(f) for f in state.thrusts) == pytest.approx(50.0)
-    np.testing.assert_allclose(state[2:5], np.array(effect(PARAMETERS)).T @ state.thrusts, atol=1e-9)
+    np.testing.assert_allclose(
+        state[2:5], np.array(effect(PARAMETERS)).T @ state.thrusts, atol=1e-9
+    )
     assert not state.saturated
 
 

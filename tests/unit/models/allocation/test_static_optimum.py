@@ -25,7 +25,9 @@ def test_thrusts_and_angles_give_the_load():
     X = (found.thrusts * np.cos(found.azimuths)).sum(-1)
     np.testing.assert_allclose(X + found.missed[:, 0], REQUESTS[:, 0], atol=1e-6)
     assert np.abs(found.missed).max() < 0.5
-    aside = np.abs(np.degrees(np.arctan2(np.sin(found.azimuths[:, :2]), np.cos(found.azimuths[:, :2]))))
+    aside = np.abs(
+        np.degrees(np.arctan2(np.sin(found.azimuths[:, :2]), np.cos(found.azimuths[:, :2])))
+    )
     assert not ((aside > 80.001) & (aside < 99.999) & (found.thrusts[:, :2] > 1e-3)).any()
 
 
@@ -36,7 +38,10 @@ def test_scipy_finds_nothing_cheaper():
 
     def load(v):
         X, Y = v[0] + v[2], v[1] + v[3] + v[4]
-        N = sum(UNITS[i].x * v[2 * i + 1] - UNITS[i].y * v[2 * i] for i in range(2)) + UNITS[2].x * v[4]
+        N = (
+            sum(UNITS[i].x * v[2 * i + 1] - UNITS[i].y * v[2 * i] for i in range(2))
+            + UNITS[2].x * v[4]
+        )
         return np.array([X, Y, N / 14.0])
 
     def power(v):
@@ -47,13 +52,20 @@ def test_scipy_finds_nothing_cheaper():
         goal, cheapest = tau / [1e3, 1e3, 14e3], np.inf
         for ahead in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
             edges = [
-                {"type": "ineq", "fun": lambda v, i=i, s=s, e=e: s * v[2 * i] - e * v[2 * i + 1] / np.tan(radians(80))}
+                {
+                    "type": "ineq",
+                    "fun": lambda v, i=i, s=s, e=e: (
+                        s * v[2 * i] - e * v[2 * i + 1] / np.tan(radians(80))
+                    ),
+                }
                 for i, s in enumerate(ahead)
                 for e in (1, -1)
             ]
             edges.append({"type": "eq", "fun": lambda v, goal=goal: load(v) - goal})
             for _ in range(2):
-                tried = minimize(power, draw.normal(size=5), constraints=edges, options={"maxiter": 300})
+                tried = minimize(
+                    power, draw.normal(size=5), constraints=edges, options={"maxiter": 300}
+                )
                 if tried.success:
                     cheapest = min(cheapest, tried.fun * 1e3**1.5)
         assert best == pytest.approx(cheapest, rel=2e-3)

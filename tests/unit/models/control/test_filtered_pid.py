@@ -31,7 +31,9 @@ def test_a_step_passes_the_filter_as_two_equal_poles_say():
 def test_waves_are_weakened_and_late_as_the_frequency_response_says():
     """To 2 %: the wave is held over each step."""
     wave, ratio = 0.8, 0.8 / LAW.filter_frequency
-    found = np.array([s.y for s in run(at_rest(0.0, 0.0, 0.0), lambda t: (0.0, sin(wave * t), 0.0), 200.0)])[2000:]
+    found = np.array(
+        [s.y for s in run(at_rest(0.0, 0.0, 0.0), lambda t: (0.0, sin(wave * t), 0.0), 200.0)]
+    )[2000:]
     times = 0.05 * np.arange(2001, 4001)
     late = 1.0 / (1.0 + ratio**2) * np.sin(wave * times - 2.0 * atan(ratio))
     assert np.abs(found - late).max() < 0.02
@@ -49,7 +51,9 @@ def test_a_constant_error_asks_for_the_gain_times_it_and_its_growing_integral():
 def test_errors_turn_with_the_ship(psi):
     north = 3.0 * cos(psi) - 1.0 * sin(psi)
     east = 3.0 * sin(psi) + 1.0 * cos(psi)
-    surge, sway, yaw = errors(at_rest(0.0, 0.0, psi), HERE._replace(x=north, y=east, psi=psi + 0.1 - 2.0 * pi))
+    surge, sway, yaw = errors(
+        at_rest(0.0, 0.0, psi), HERE._replace(x=north, y=east, psi=psi + 0.1 - 2.0 * pi)
+    )
     assert (surge, sway, yaw) == pytest.approx((3.0, 1.0, 0.1))
 
 

@@ -22,7 +22,9 @@ def seen(x=0.0, y=0.0, psi=0.0, u=0.0, v=0.0, r=0.0):
 
 def meant(stage, sight, who=WHO):
     """Force of the levers that he means to set at first sight, in a stage. [N, N, N.m]"""
-    before = helmsman.begin(0.0)._replace(stage=stage, way=progress(-200.0, 0.0, 0.0, 1, fairway=WAY, yaw_rate=0.02))
+    before = helmsman.begin(0.0)._replace(
+        stage=stage, way=progress(-200.0, 0.0, 0.0, 1, fairway=WAY, yaw_rate=0.02)
+    )
     levers = helmsman.follow(0.0, before, sight, helmsman=who).meant
     units = (
         (levers.port, levers.port_azimuth, -SHIP.stern_y),
@@ -66,7 +68,9 @@ def test_under_way_he_turns_back_to_the_leg_and_to_its_course():
 def test_levers_move_after_the_reaction_time_and_not_before():
     mind = helmsman.follow(0.0, helmsman.begin(0.0), seen(-900.0, 400.0, u=1.0), helmsman=WHO)
     assert mind.levers == helmsman.NEUTRAL != mind.meant
-    early = helmsman.follow(CALM.reaction_time - 0.1, mind, seen(-899.0, 400.0, u=1.0), helmsman=WHO)
+    early = helmsman.follow(
+        CALM.reaction_time - 0.1, mind, seen(-899.0, 400.0, u=1.0), helmsman=WHO
+    )
     late = helmsman.follow(CALM.reaction_time, early, seen(-899.0, 400.0, u=1.0), helmsman=WHO)
     assert (early.levers, late.levers) == (helmsman.NEUTRAL, mind.meant)
 
@@ -76,7 +80,9 @@ def test_levers_stand_on_their_steps():
     mind = helmsman.follow(0.0, helmsman.begin(0.0), seen(-900.0, 400.0, 0.3, u=1.0), helmsman=who)
     notches = (mind.meant.port / SHIP.ahead_max) ** 0.5 / 0.1
     assert notches == pytest.approx(round(notches)) and notches > 0.0
-    assert mind.meant.port_azimuth / (pi / 36.0) == pytest.approx(round(mind.meant.port_azimuth / (pi / 36.0)))
+    assert mind.meant.port_azimuth / (pi / 36.0) == pytest.approx(
+        round(mind.meant.port_azimuth / (pi / 36.0))
+    )
 
 
 def test_she_is_moored_only_where_she_lies_still_parallel_at_the_berth():

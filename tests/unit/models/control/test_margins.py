@@ -7,11 +7,22 @@ import numpy as np
 import pytest
 from ships import parameters
 
-from shipcosim.models.control.margins import AXES, Delays, is_stable, linear_loop, margins, wave_suppression
+from shipcosim.models.control.margins import (
+    AXES,
+    Delays,
+    is_stable,
+    linear_loop,
+    margins,
+    wave_suppression,
+)
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 
-SHIP, OBSERVER, LAW = parameters(DpShip), parameters(ObserverParameters), parameters(ControlParameters)
+SHIP, OBSERVER, LAW = (
+    parameters(DpShip),
+    parameters(ObserverParameters),
+    parameters(ControlParameters),
+)
 PERIODS = (4.0, 5.0, 6.0, 8.0, 10.0, 12.0)
 
 
@@ -25,7 +36,10 @@ def test_margins_are_those_that_must_hold(period):
     assert is_stable(loop)
     for axis in range(len(AXES)):
         found = margins(loop, axis)
-        assert found.phase > math.radians(40.0) and found.sensitivity < 2.0 and found.delay > 3.0, (AXES[axis], found)
+        assert found.phase > math.radians(40.0) and found.sensitivity < 2.0 and found.delay > 3.0, (
+            AXES[axis],
+            found,
+        )
 
 
 @pytest.mark.parametrize("period", PERIODS)

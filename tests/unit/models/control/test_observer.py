@@ -41,16 +41,24 @@ def _design(parameters):
 
 
 def _step(estimate, measurement, load, parameters):
-    return observer.step(estimate, measurement, load, ship=SHIP, parameters=parameters, design=_design(parameters))
+    return observer.step(
+        estimate, measurement, load, ship=SHIP, parameters=parameters, design=_design(parameters)
+    )
 
 
 def test_gain_solves_the_riccati_equation():
     linalg = pytest.importorskip("scipy.linalg")
     transition = np.array([[1.0, 0.1, 0.0], [0.0, 0.98, 0.1], [0.0, 0.0, 1.0]])
-    noise, output, output_noise = np.diag([0.0, 1e-4, 1e-6]), np.array([[1.0, 0.0, 0.0]]), np.array([[0.04]])
+    noise, output, output_noise = (
+        np.diag([0.0, 1e-4, 1e-6]),
+        np.array([[1.0, 0.0, 0.0]]),
+        np.array([[0.04]]),
+    )
     covariance = linalg.solve_discrete_are(transition.T, output.T, noise, output_noise)
     expected = covariance @ output.T / (output @ covariance @ output.T + output_noise)
-    np.testing.assert_allclose(kalman_gain(transition, noise, output, output_noise), expected, rtol=1e-9)
+    np.testing.assert_allclose(
+        kalman_gain(transition, noise, output, output_noise), expected, rtol=1e-9
+    )
 
 
 def test_gains_between_two_frequencies_of_the_table_are_nearly_those_of_the_frequency():
@@ -64,7 +72,9 @@ def test_gains_between_two_frequencies_of_the_table_are_nearly_those_of_the_freq
 def test_wave_model_moves_as_a_damped_oscillator():
     expm = pytest.importorskip("scipy.linalg").expm
     found = np.reshape(wave_transition(0.3, 1.1, 0.2), (2, 2))
-    np.testing.assert_allclose(found, expm(0.3 * np.array([[0.0, 1.0], [-1.21, -0.44]])), rtol=1e-12)
+    np.testing.assert_allclose(
+        found, expm(0.3 * np.array([[0.0, 1.0], [-1.21, -0.44]])), rtol=1e-12
+    )
 
 
 def plant(position, velocity, load, force, steps):
@@ -76,7 +86,9 @@ def plant(position, velocity, load, force, steps):
             body = np.array([c * force[0] + s * force[1], c * force[1] - s * force[0], force[2]])
             u, v, r = velocity
             frame = np.array([r * v, -r * u, 0.0])
-            velocity = velocity + h * (np.linalg.solve(MASS, load + body - DAMPING @ velocity) + frame)
+            velocity = velocity + h * (
+                np.linalg.solve(MASS, load + body - DAMPING @ velocity) + frame
+            )
             u, v, r = velocity
             position = position + h * np.array([c * u - s * v, s * u + c * v, r])
         yield Motion(*position, *velocity)
@@ -119,7 +131,14 @@ def test_less_than_a_fifth_of_the_wave_motion_passes(period):
 def test_noise_of_the_sensors_is_filtered_to_centimetres():
     """Positions are the mean of three references, at each second sample; heading and rate are of each."""
     random, third = np.random.default_rng(1), 3.0**-0.5
-    noise = random.normal(size=(6000, 6)) * [0.2, 0.2, 0.1 * observer.DEGREE, 0.02, 0.02, 0.05 * observer.DEGREE]
+    noise = random.normal(size=(6000, 6)) * [
+        0.2,
+        0.2,
+        0.1 * observer.DEGREE,
+        0.02,
+        0.02,
+        0.05 * observer.DEGREE,
+    ]
     estimate, found = at_rest(Motion(*(0.0,) * 6)), []
     for k, (x, y, psi, u, v, r) in enumerate(noise):
         motion = Motion(third * x, third * y, psi, third * u, third * v, r)
@@ -141,10 +160,14 @@ def test_heading_through_south_does_not_jump():
 
 
 def test_what_is_not_new_corrects_nothing():
-    start = at_rest(Motion(1.0, 2.0, 0.5, 0.0, 0.0, 0.0))._replace(u=0.3, v=-0.1, r=0.01, bias_north=2e3)
+    start = at_rest(Motion(1.0, 2.0, 0.5, 0.0, 0.0, 0.0))._replace(
+        u=0.3, v=-0.1, r=0.01, bias_north=2e3
+    )
     away = Motion(50.0, -80.0, 2.0, 3.0, -2.0, 0.3)
     alone = step(start, away, position_new=0.0, heading_new=0.0)
-    assert alone == step(start, Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), position_new=0.0, heading_new=0.0)
+    assert alone == step(
+        start, Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), position_new=0.0, heading_new=0.0
+    )
     assert (alone.x, alone.y) == pytest.approx((1.03, 2.0), abs=0.02)
     turned = step(start, away, position_new=0.0)
     assert turned[:2] == alone[:2] and turned.psi != alone.psi
@@ -161,7 +184,9 @@ def test_late_measurements_at_rates_of_their_own_leave_no_lag():
     for k, _ in enumerate(ship):
         late, later = ship[max(0, k - 2)], ship[max(0, k - 4)]
         motion = Motion(later.x, later.y, late.psi, later.u, later.v, late.r)
-        estimate = _step(estimate, observer.Measurement(motion, float(k % 10 == 4)), tuple(load), slow)
+        estimate = _step(
+            estimate, observer.Measurement(motion, float(k % 10 == 4)), tuple(load), slow
+        )
     assert math.hypot(ship[-1].u, ship[-1].v) > 1.0
     assert estimate[:6] == pytest.approx(tuple(ship[-1]), abs=0.02)
 

@@ -17,10 +17,18 @@ from shipcosim.models.core.motion import Motion
 FREE = replace(parameters(DpShip), damping_surge=0.0, damping_sway=0.0, damping_yaw=0.0)
 PARAMETERS = replace(parameters(ControlParameters), force_filter_time=1e-3, moment_filter_time=1e-3)
 AT_ONCE = replace(
-    parameters(ObserverParameters), position_period=0.1, heading_period=0.1, position_delay=0.0, heading_delay=0.0
+    parameters(ObserverParameters),
+    position_period=0.1,
+    heading_period=0.1,
+    position_delay=0.0,
+    heading_delay=0.0,
 )
 MASS = np.array(
-    [[FREE.mass_surge, 0.0, 0.0], [0.0, FREE.mass_sway, FREE.mass_sway_yaw], [0.0, FREE.mass_sway_yaw, FREE.mass_yaw]]
+    [
+        [FREE.mass_surge, 0.0, 0.0],
+        [0.0, FREE.mass_sway, FREE.mass_sway_yaw],
+        [0.0, FREE.mass_sway_yaw, FREE.mass_yaw],
+    ]
 )
 CALM = (0.0, 0.0, 0.0)
 STAY = Desired(*(0.0,) * 9)
@@ -44,14 +52,24 @@ def observed():
         motion = Motion(*position, *velocity)
         last = estimates[-1] if estimates else observer.at_rest(motion, parameters=AT_ONCE)
         measured = Measurement(motion)
-        estimates.append(observer.step(last, measured, given, ship=FREE, parameters=AT_ONCE, design=made))
+        estimates.append(
+            observer.step(last, measured, given, ship=FREE, parameters=AT_ONCE, design=made)
+        )
         return estimates[-1]
 
     return estimate
 
 
 def sail(
-    start, seconds, estimate=known, *, force=CALM, most=math.inf, parameters=PARAMETERS, desired=STAY, told="given"
+    start,
+    seconds,
+    estimate=known,
+    *,
+    force=CALM,
+    most=math.inf,
+    parameters=PARAMETERS,
+    desired=STAY,
+    told="given",
 ):
     """Position and heading, every 0.1 s, of a ship of known mass that gets what is asked for, up to a limit of force.
 
@@ -68,7 +86,9 @@ def sail(
         for _ in range(10):
             u, v, r = velocity
             c, s = math.cos(position[2]), math.sin(position[2])
-            velocity = velocity + 0.01 * (np.linalg.solve(MASS, given + pushed) + [r * v, -r * u, 0.0])
+            velocity = velocity + 0.01 * (
+                np.linalg.solve(MASS, given + pushed) + [r * v, -r * u, 0.0]
+            )
             position = position + 0.01 * np.array([c * u - s * v, s * u + c * v, r])
         rows.append(position)
     return np.array(rows)
@@ -79,7 +99,9 @@ def test_ship_at_rest_on_her_place_is_left_alone():
 
 
 def test_wind_is_met_by_its_opposite():
-    assert ask(StateEstimate(0.0, 0.0, 0.0), wind=(-1e3, 2e3, 3e4))[-3:] == pytest.approx((1e3, -2e3, -3e4))
+    assert ask(StateEstimate(0.0, 0.0, 0.0), wind=(-1e3, 2e3, 3e4))[-3:] == pytest.approx(
+        (1e3, -2e3, -3e4)
+    )
 
 
 def test_bias_is_met_by_its_opposite_at_any_heading():
@@ -95,11 +117,15 @@ def test_loop_is_critically_damped_at_its_frequencies():
     t = 0.1 * np.arange(1, 501)
     rows = sail((2.0, 0.0, 0.0), 50.0, parameters=parameters)
     w = parameters.surge_frequency
-    np.testing.assert_allclose(rows[:, 0], 2.0 * (1.0 + w * t) * np.exp(-w * t), atol=0.03)  # sampled, so not exact
+    np.testing.assert_allclose(
+        rows[:, 0], 2.0 * (1.0 + w * t) * np.exp(-w * t), atol=0.03
+    )  # sampled, so not exact
     rows = sail((0.0, 0.0, 0.1), 50.0, parameters=parameters)
     w = parameters.yaw_frequency
     np.testing.assert_allclose(rows[:, 2], 0.1 * (1.0 + w * t) * np.exp(-w * t), atol=0.0025)
-    assert np.abs(rows[:, 1]).max() < 0.01  # the coupling of sway and yaw in the mass is accounted for
+    assert (
+        np.abs(rows[:, 1]).max() < 0.01
+    )  # the coupling of sway and yaw in the mass is accounted for
 
 
 def test_reference_is_followed_without_error_by_a_ship_of_known_mass():
@@ -115,7 +141,9 @@ def test_reference_is_followed_without_error_by_a_ship_of_known_mass():
 def test_turning_everything_turns_no_load(heading):
     c, s = math.cos(heading), math.sin(heading)
     straight = ask(StateEstimate(1.0, 2.0, 0.0, 0.1, 0.2, 0.01))
-    turned = ask(StateEstimate(c - 2.0 * s, s + 2.0 * c, heading, 0.1, 0.2, 0.01), STAY._replace(psi=heading))
+    turned = ask(
+        StateEstimate(c - 2.0 * s, s + 2.0 * c, heading, 0.1, 0.2, 0.01), STAY._replace(psi=heading)
+    )
     assert turned[-3:] == pytest.approx(straight[-3:])
 
 
@@ -127,7 +155,9 @@ def test_constant_force_is_taken_up_at_any_heading():
 
 
 def test_far_away_the_ship_is_pulled_no_harder_than_at_the_limit():
-    near, far = (ask(StateEstimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (2.5, 800.0))
+    near, far = (
+        ask(StateEstimate(distance, 0.0, 0.0), state=at_rest(CALM)) for distance in (2.5, 800.0)
+    )
     assert far.tau_X == pytest.approx(near.tau_X)
     assert abs(near.tau_X) > abs(ask(StateEstimate(2.4, 0.0, 0.0)).tau_X)
 

@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 from ships import parameters
 
-from shipcosim.models.control.reference import ReferenceParameters, at_rest, critically_damped, resumed, step
+from shipcosim.models.control.reference import (
+    ReferenceParameters,
+    at_rest,
+    critically_damped,
+    resumed,
+    step,
+)
 
 PARAMETERS = parameters(ReferenceParameters)
 W = PARAMETERS.position_frequency
@@ -30,7 +36,9 @@ def test_step_response_is_the_closed_form_whatever_the_step_size(h):
     np.testing.assert_allclose([s.y for s in states], -20.0 * expected, atol=1e-9)
     np.testing.assert_allclose([s.psi for s in states], 0.5 * expected, atol=1e-9)
     np.testing.assert_allclose([s.x_dot for s in states], 10.0 * W * wt**2 * np.exp(-wt), atol=1e-9)
-    np.testing.assert_allclose([s.x_ddot for s in states], 10.0 * W**2 * (2.0 * wt - wt**2) * np.exp(-wt), atol=1e-9)
+    np.testing.assert_allclose(
+        [s.x_ddot for s in states], 10.0 * W**2 * (2.0 * wt - wt**2) * np.exp(-wt), atol=1e-9
+    )
 
 
 def test_free_motion_from_any_state_is_the_matrix_exponential():
@@ -41,7 +49,12 @@ def test_free_motion_from_any_state_is_the_matrix_exponential():
 
 
 def test_heading_goes_the_shortest_way_round():
-    headings = [s.psi for s in run((0.0, 0.0, math.radians(10.0)), 400.0, 0.5, start=(0.0, 0.0, math.radians(350.0)))]
+    headings = [
+        s.psi
+        for s in run(
+            (0.0, 0.0, math.radians(10.0)), 400.0, 0.5, start=(0.0, 0.0, math.radians(350.0))
+        )
+    ]
     assert math.degrees(headings[-1]) == pytest.approx(370.0, abs=0.01)
     assert np.all(np.diff(headings) >= 0.0)
 
@@ -63,7 +76,9 @@ def test_limited_speed_is_kept_on_the_straight_line_to_the_setpoint():
 
 def test_limit_that_is_never_reached_changes_nothing_once_the_setpoint_is_there():
     wide = replace(PARAMETERS, speed_max=1e6, yaw_rate_max=1e6)
-    assert run((20.0, 5.0, 1.0), 50.0, 0.5, wide)[-1] == pytest.approx(run((20.0, 5.0, 1.0), 50.0, 0.5)[-1])
+    assert run((20.0, 5.0, 1.0), 50.0, 0.5, wide)[-1] == pytest.approx(
+        run((20.0, 5.0, 1.0), 50.0, 0.5)[-1]
+    )
 
 
 @pytest.mark.parametrize("speed_max", [0.0, 0.2])

@@ -14,7 +14,8 @@ from shipcosim.models.ship.sensor_messages import Fix, Heading, Telegrams, Wind
 
 LIMITS = VotingParameters()
 NO_WIND = dict(
-    mast=MastParameters(mast_x=0.0, mast_y=0.0, mast_height=10.0), wind=WindParameters(wind_table="0 0 0 0; 180 0 0 0")
+    mast=MastParameters(mast_x=0.0, mast_y=0.0, mast_height=10.0),
+    wind=WindParameters(wind_table="0 0 0 0; 180 0 0 0"),
 )
 DEGREE = math.pi / 180.0
 
@@ -22,14 +23,27 @@ DEGREE = math.pi / 180.0
 def telegrams(t, rng, positions=(), compasses=(), r=0.0, wind=None):
     """What healthy sensors of a ship at rest in the origin give out at t, with noise; and what is given instead."""
     noise = [
-        Fix(*(0.2 * rng.standard_normal(2)).tolist(), *(0.02 * rng.standard_normal(2)).tolist(), 1.0) for _ in "123"
+        Fix(
+            *(0.2 * rng.standard_normal(2)).tolist(), *(0.02 * rng.standard_normal(2)).tolist(), 1.0
+        )
+        for _ in "123"
     ]
     headings = [Heading(0.1 * DEGREE * float(rng.standard_normal()), 1.0) for _ in "12"]
-    fixes = tuple(change(fix) for change, fix in zip((*positions, same, same, same), noise, strict=False))
-    psi = tuple(change(heading) for change, heading in zip((*compasses, same, same), headings, strict=False))
+    fixes = tuple(
+        change(fix) for change, fix in zip((*positions, same, same, same), noise, strict=False)
+    )
+    psi = tuple(
+        change(heading) for change, heading in zip((*compasses, same, same), headings, strict=False)
+    )
     air = wind or Wind(8.0 + float(rng.standard_normal()), 0.3, 1.0)
     return Telegrams(
-        fixes, psi, r + 0.05 * DEGREE * float(rng.standard_normal()), air, math.floor(t + 1e-9), t, math.floor(t + 1e-9)
+        fixes,
+        psi,
+        r + 0.05 * DEGREE * float(rng.standard_normal()),
+        air,
+        math.floor(t + 1e-9),
+        t,
+        math.floor(t + 1e-9),
     )
 
 
@@ -62,7 +76,9 @@ def voted(changes, seconds, dt=0.1, seed=1):
     states = [voting.start(0.0, telegrams(0.0, rng, **changes(0.0)), **NO_WIND)]
     for k in range(1, round(seconds / dt)):
         given = telegrams(k * dt, rng, **changes(k * dt))
-        state, estimate = voting.step(k * dt, states[-1], given, estimate, parameters=LIMITS, **NO_WIND)
+        state, estimate = voting.step(
+            k * dt, states[-1], given, estimate, parameters=LIMITS, **NO_WIND
+        )
         states.append(state)
     return states
 
@@ -72,7 +88,10 @@ def used(state):
 
 
 def reckoned(states):
-    return [voting.dead_reckoning_time(0.1 * k, state, parameters=LIMITS) for k, state in enumerate(states)]
+    return [
+        voting.dead_reckoning_time(0.1 * k, state, parameters=LIMITS)
+        for k, state in enumerate(states)
+    ]
 
 
 def from_30_s(**failed):
@@ -88,7 +107,9 @@ def test_healthy_references_are_all_used_and_their_mean_is_better_than_one():
 
 
 @pytest.mark.parametrize("i", range(3))
-@pytest.mark.parametrize(("change", "within"), [(moved(north=8.0), 1.1), (moved(east=-3.0), 1.1), (frozen, 4.1)])
+@pytest.mark.parametrize(
+    ("change", "within"), [(moved(north=8.0), 1.1), (moved(east=-3.0), 1.1), (frozen, 4.1)]
+)
 def test_a_reference_that_jumps_or_freezes_is_rejected_and_the_others_are_kept(i, change, within):
     changes = [same, same, same]
     changes[i] = change
@@ -102,12 +123,16 @@ def test_a_slow_drift_is_found_before_it_is_3_m():
     states = voted(lambda t: dict(positions=[moved(north=0.05 * max(0.0, t - 30.0))]), 120.0)
     first = next(k for k, state in enumerate(states) if used(state) == [0, 1, 1])
     assert 0.05 * (0.1 * first - 30.0) < 3.0
-    assert max(abs(state.positions.fix.x) for state in states) < 1.5  # 0.9 m of a third of the drift, and noise
+    assert (
+        max(abs(state.positions.fix.x) for state in states) < 1.5
+    )  # 0.9 m of a third of the drift, and noise
 
 
 def test_of_two_that_disagree_the_one_that_moved_otherwise_than_measured_is_rejected():
     """Also where the observer has followed both of them half the way: the vote has no third."""
-    states = voted(lambda t: dict(positions=[same, moved(east=0.05 * max(0.0, t - 30.0)), lost]), 120.0)
+    states = voted(
+        lambda t: dict(positions=[same, moved(east=0.05 * max(0.0, t - 30.0)), lost]), 120.0
+    )
     assert used(states[-1]) == [1, 0, 0]
 
 
@@ -126,7 +151,9 @@ def test_a_jump_of_all_is_not_believed_at_first_nor_forever():
 def test_after_dead_reckoning_the_voted_position_starts_at_the_estimate_and_goes_to_the_references():
     def changes(t):
         return (
-            dict(positions=[lost] * 3) if 30.0 < t + 0.05 < 80.0 else dict(positions=[moved(3.0)] * 3 if t > 50 else [])
+            dict(positions=[lost] * 3)
+            if 30.0 < t + 0.05 < 80.0
+            else dict(positions=[moved(3.0)] * 3 if t > 50 else [])
         )
 
     states = voted(changes, 200.0)
@@ -152,7 +179,9 @@ def test_references_that_never_change_are_trusted_where_nothing_else_does():
     for k in range(1, 600):
         told = healthy._replace(position_time=float(k // 10), heading_time=0.1 * k)
         state, still = voting.step(0.1 * k, state, told, still, parameters=LIMITS, **NO_WIND)
-    assert used(state) == [1, 1, 1] and sum(state.compasses.used) == 2 and state.wind.wind.valid == 1.0
+    assert (
+        used(state) == [1, 1, 1] and sum(state.compasses.used) == 2 and state.wind.wind.valid == 1.0
+    )
 
 
 @pytest.mark.parametrize("rate", [0.02 * DEGREE, 0.1 * DEGREE, -0.1 * DEGREE])
@@ -176,7 +205,10 @@ def test_a_stuck_anemometer_fades_out_and_a_changing_one_comes_back():
     stuck = Wind(8.0, 0.3, 1.0)
     states = voted(lambda t: dict(wind=stuck) if 30.0 < t < 130.0 else {}, 300.0)
     valid, share = (
-        np.array([value(state.wind) for state in states]) for value in (lambda w: w.wind.valid, lambda w: w.share)
+        np.array([value(state.wind) for state in states])
+        for value in (lambda w: w.wind.valid, lambda w: w.share)
     )
     assert valid[380] == 1.0 and valid[420] == 0.0 and valid[1320] == 1.0
-    assert share[1290] == pytest.approx(math.exp(-(129.0 - 40.0) / 60.0), abs=0.02) and share[-1] > 0.9
+    assert (
+        share[1290] == pytest.approx(math.exp(-(129.0 - 40.0) / 60.0), abs=0.02) and share[-1] > 0.9
+    )

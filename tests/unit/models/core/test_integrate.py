@@ -26,7 +26,9 @@ def test_runge_kutta_of_a_pair_is_that_of_any_state_with_time_as_part_of_it():
         return -x + t * t, x * y
 
     wanted = integrate.rk4(lambda x, y, t: (*rates(x, y, t), 1.0), (1.0, 2.0, 0.5), 0.2)
-    assert integrate.rk4_pair(rates, 1.0, 2.0, 0.2, (0.5,), (0.6,), (0.7,)) == pytest.approx(wanted[:2], abs=1e-15)
+    assert integrate.rk4_pair(rates, 1.0, 2.0, 0.2, (0.5,), (0.6,), (0.7,)) == pytest.approx(
+        wanted[:2], abs=1e-15
+    )
 
 
 @pytest.mark.parametrize("h, parts", [(0.05, 1), (0.1, 1), (0.1000001, 2), (0.3, 3), (1.0, 10)])
@@ -58,7 +60,9 @@ def test_the_midpoint_rule_is_an_euler_step_with_the_rates_of_half_a_step():
     motion, h = (1.0, -2.0, 0.4, 2.0, -0.3, 0.05), 0.5
     middle = integrate.euler(motion, rates(*motion), 0.5 * h)
     wanted = integrate.euler(motion, rates(*middle), h)
-    assert integrate.midpoint_motion(accelerations, *motion, h, 0.5, -0.2) == pytest.approx(wanted, abs=1e-15)
+    assert integrate.midpoint_motion(accelerations, *motion, h, 0.5, -0.2) == pytest.approx(
+        wanted, abs=1e-15
+    )
 
 
 def test_inputs_of_a_runge_kutta_step_enter_at_start_middle_and_end():

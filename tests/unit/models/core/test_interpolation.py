@@ -30,4 +30,6 @@ def test_a_table_with_even_abscissae_is_interpolated_like_any_other():
     columns = np.sin(xs), np.cos(3.0 * xs)
     table = even_table(xs, *columns)
     for x in (-1.0, -0.99, -0.5, 0.3, 1.999, 2.0):
-        assert interp_even(x, table) == pytest.approx([np.interp(x, xs, column) for column in columns], abs=1e-14)
+        assert interp_even(x, table) == pytest.approx(
+            [np.interp(x, xs, column) for column in columns], abs=1e-14
+        )

@@ -37,7 +37,12 @@ def test_a_line_that_pulls_ahead_at_the_side_turns_away_from_it():
 
 @pytest.mark.parametrize(
     ("travel", "X", "Y", "N"),
-    [(0.0, 1 / 3, 0.0, 0.0), (90.0, 0.0, 1.0, 0.0), (180.0, -1 / 3, 0.0, 0.0), (45.0, 1 / (3 * 2**0.5), 0.5, -1.5)],
+    [
+        (0.0, 1 / 3, 0.0, 0.0),
+        (90.0, 0.0, 1.0, 0.0),
+        (180.0, -1 / 3, 0.0, 0.0),
+        (45.0, 1 / (3 * 2**0.5), 0.5, -1.5),
+    ],
 )
 def test_drift_is_its_law_at_the_angles_where_it_is_simple(travel, X, Y, N):
     """Travel direction from the bow; the heading is 30 deg and the waves turn with it."""
@@ -77,14 +82,24 @@ def test_a_fitted_sway_power_of_the_ships_table_is_a_little_less_than_that_of_sh
     table, powers = wave_loads.drift_table(DRIFT_33M9), []
     for period in (4.0, 4.5, 5.0, 5.5, 6.0, 7.0):
         sea = waves.components(0.5, period, pi, 3.3, 1)
-        Y = np.array(wave_loads.mean_drift(AROUND, sea, table))[1] / wave_loads.mean_drift(-0.5 * pi, sea, table)[1]
-        law = curve_fit(lambda psi, A, p: A * drift_force(psi, 1.0, 0.0, sway_power=p)[1], AROUND, Y, p0=(1.0, 2.0))[0]
+        Y = (
+            np.array(wave_loads.mean_drift(AROUND, sea, table))[1]
+            / wave_loads.mean_drift(-0.5 * pi, sea, table)[1]
+        )
+        law = curve_fit(
+            lambda psi, A, p: A * drift_force(psi, 1.0, 0.0, sway_power=p)[1],
+            AROUND,
+            Y,
+            p0=(1.0, 2.0),
+        )[0]
         powers.append(law[1])
     assert (min(powers), max(powers)) == pytest.approx((1.67, 1.75), abs=0.01)
 
 
 def test_an_effect_grows_from_its_onset_over_its_ramp():
     times = np.array([0.0, 99.9, 100.0, 110.0, 120.0, 500.0])
-    np.testing.assert_allclose(onset(times, onset_time=100.0, ramp_time=20.0), (0, 0, 0, 0.5, 1, 1), atol=1e-6)
+    np.testing.assert_allclose(
+        onset(times, onset_time=100.0, ramp_time=20.0), (0, 0, 0, 0.5, 1, 1), atol=1e-6
+    )
     np.testing.assert_allclose(onset(times, onset_time=100.0, ramp_time=0.0), (0, 0, 1, 1, 1, 1))
     assert onset(0.0, onset_time=0.0, ramp_time=0.0) == 1.0

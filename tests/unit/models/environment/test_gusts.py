@@ -11,7 +11,9 @@ from shipcosim.models.environment.gusts import FREQUENCY_MAX, FREQUENCY_MIN, gus
 
 def variance(low, high, mean_speed):
     """Integral of the spectrum, over the logarithm of the frequency."""
-    return quad(lambda p: norsok(np.exp(p), mean_speed) * np.exp(p), np.log(low), np.log(high), limit=200)[0]
+    return quad(
+        lambda p: norsok(np.exp(p), mean_speed) * np.exp(p), np.log(low), np.log(high), limit=200
+    )[0]
 
 
 @pytest.mark.parametrize("mean_speed, percent", [(10.0, 10.2), (20.0, 13.2)])
@@ -22,7 +24,9 @@ def test_whole_spectrum_has_the_turbulence_intensity_of_the_parameter_sheet(mean
 
 @pytest.mark.parametrize("mean_speed", [3.0, 10.0, 25.0])
 def test_variance_of_the_gusts_is_the_integral_of_the_spectrum_over_the_band(mean_speed):
-    assert gust_std(mean_speed) ** 2 == pytest.approx(variance(FREQUENCY_MIN, FREQUENCY_MAX, mean_speed), rel=2e-3)
+    assert gust_std(mean_speed) ** 2 == pytest.approx(
+        variance(FREQUENCY_MIN, FREQUENCY_MAX, mean_speed), rel=2e-3
+    )
 
 
 def test_a_long_record_has_that_variance_and_no_mean():
@@ -36,7 +40,9 @@ def test_records_have_the_norsok_spectrum():
     record = np.array([gust(step * k, speed, np.arange(40)) for k in range(8192)])
     frequency, density = welch(record, fs=1.0 / step, nperseg=4096, axis=0, detrend=False)
     density = np.mean(density, axis=1)
-    edges = (8.0 * 2.0 ** np.arange(7) - 0.5) * frequency[1]  # octaves from 0.0037 to 0.25 Hz, each of 7 sinusoids
+    edges = (8.0 * 2.0 ** np.arange(7) - 0.5) * frequency[
+        1
+    ]  # octaves from 0.0037 to 0.25 Hz, each of 7 sinusoids
     for low, high in zip(edges, edges[1:], strict=False):
         inside = (frequency >= low) & (frequency < high)
         found = np.sum(density[inside]) * frequency[1]
@@ -62,4 +68,6 @@ def test_floats_arrays_and_tensors_agree():
     assert_allclose(gust(8.0, np.array(speeds), np.array(seeds)), expected)
     assert_allclose(gust(8.0, torch.tensor(speeds, dtype=torch.float64), np.array(seeds)), expected)
     assert_allclose(gust_std(np.array(speeds)), [gust_std(speed) for speed in speeds])
-    assert_allclose(gust_std(torch.tensor(speeds, dtype=torch.float64)), [gust_std(speed) for speed in speeds])
+    assert_allclose(
+        gust_std(torch.tensor(speeds, dtype=torch.float64)), [gust_std(speed) for speed in speeds]
+    )

@@ -39,7 +39,9 @@ def test_tide_at_the_berth_flows_along_the_channel_alone():
 def test_jet_of_the_river_keeps_its_momentum():
     """The flux of momentum through any section ahead of the mouth is the same: a free plane jet."""
     across = np.linspace(-3000.0, 3000.0, 20001)
-    speeds = [local_current(100.0 + s, across, 0.0, 0.0, harbour=BERTH)[0] for s in (0.0, 200.0, 800.0)]
+    speeds = [
+        local_current(100.0 + s, across, 0.0, 0.0, harbour=BERTH)[0] for s in (0.0, 200.0, 800.0)
+    ]
     momentum = [np.trapezoid(speed**2, across) for speed in speeds]
     assert momentum == pytest.approx([momentum[0]] * 3, rel=1e-6)
     assert max(speeds[2]) < max(speeds[0]) == pytest.approx(0.4)

@@ -8,7 +8,14 @@ from numpy.testing import assert_allclose
 
 from shipcosim.models.environment.wave_loads import drift, drift_table, mean_drift
 from shipcosim.models.environment.wave_motion import first_order_motion, wave_response
-from shipcosim.models.environment.waves import COMPONENTS, GRAVITY, Waves, components, elevation, jonswap
+from shipcosim.models.environment.waves import (
+    COMPONENTS,
+    GRAVITY,
+    Waves,
+    components,
+    elevation,
+    jonswap,
+)
 
 SHIP = dict(length=33.9, breadth=9.6, draught=2.7)
 # X = 1000 cos, Y = 5000 sin, N = 40 000 sin of twice the heading, all growing linearly with frequency; every 10 deg
@@ -28,8 +35,12 @@ def regular(amplitude, omega, direction, phase=0.0):
     return Waves(np.array([amplitude]), omega, omega**2 / GRAVITY, np.array([phase]), direction)
 
 
-@pytest.mark.parametrize("height, period, peak_enhancement", [(0.5, 6.0, 3.3), (0.3, 5.0, 1.0), (4.0, 11.0, 7.0)])
-def test_four_roots_of_the_variance_of_the_components_are_the_significant_height(height, period, peak_enhancement):
+@pytest.mark.parametrize(
+    "height, period, peak_enhancement", [(0.5, 6.0, 3.3), (0.3, 5.0, 1.0), (4.0, 11.0, 7.0)]
+)
+def test_four_roots_of_the_variance_of_the_components_are_the_significant_height(
+    height, period, peak_enhancement
+):
     sea = components(height, period, 0.3, peak_enhancement, 7)
     assert 4.0 * np.sqrt(np.sum(sea.amplitude**2) / 2.0) == pytest.approx(height, rel=1e-12)
 
@@ -38,19 +49,31 @@ def test_four_roots_of_the_variance_of_the_components_are_the_significant_height
 def test_jonswap_integrates_to_the_significant_height(peak_enhancement):
     omega = np.linspace(0.2, 40.0, 400_000)
     variance = np.sum(jonswap(omega, 2.0, 8.0, peak_enhancement)) * (omega[1] - omega[0])
-    assert 4.0 * np.sqrt(variance) == pytest.approx(2.0, rel=2e-3)  # the factor 1 - 0.287 ln gamma is itself a fit
+    assert 4.0 * np.sqrt(variance) == pytest.approx(
+        2.0, rel=2e-3
+    )  # the factor 1 - 0.287 ln gamma is itself a fit
 
 
 def test_records_of_the_elevation_have_the_jonswap_spectrum():
     height, period, step, number = 0.5, 6.0, 0.5, 2048
     sea = components(height, period, 0.0, 3.3, np.arange(1, 101))
-    record = np.array([elevation(step * k, np.zeros(100), np.zeros(100), sea) for k in range(number)])
+    record = np.array(
+        [elevation(step * k, np.zeros(100), np.zeros(100), sea) for k in range(number)]
+    )
     window = np.hanning(number)[:, None]
     power = np.mean(np.abs(np.fft.rfft(record * window, axis=0)) ** 2, axis=1)
     power *= 2.0 / (number * np.sum(window**2))
     omega = 2.0 * pi * np.fft.rfftfreq(number, step)
     variance = height**2 / 16.0
-    for low, high in [(0.4, 0.8), (0.8, 0.95), (0.95, 1.05), (1.05, 1.2), (1.2, 1.6), (1.6, 2.4), (2.4, 5.0)]:
+    for low, high in [
+        (0.4, 0.8),
+        (0.8, 0.95),
+        (0.95, 1.05),
+        (1.05, 1.2),
+        (1.2, 1.6),
+        (1.6, 2.4),
+        (2.4, 5.0),
+    ]:
         fine = np.linspace(low, high, 2001)
         asked = np.mean(jonswap(fine, height, period, 3.3)) * (high - low)
         found = np.sum(power[(omega >= low) & (omega < high)])
@@ -63,7 +86,9 @@ def test_waves_travel_with_the_phase_speed_of_deep_water_away_from_where_they_co
     speed = GRAVITY / 1.3
     north, east = np.cos(radians(210.0)) * speed, np.sin(radians(210.0)) * speed
     for t in (0.0, 1.7, 40.0):
-        assert elevation(t, 5.0 + north * t, -3.0 + east * t, wave) == pytest.approx(elevation(0.0, 5.0, -3.0, wave))
+        assert elevation(t, 5.0 + north * t, -3.0 + east * t, wave) == pytest.approx(
+            elevation(0.0, 5.0, -3.0, wave)
+        )
 
 
 def test_components_obey_the_dispersion_of_deep_water():
@@ -73,7 +98,9 @@ def test_components_obey_the_dispersion_of_deep_water():
 
 def test_the_same_sea_is_the_same_object_and_another_seed_is_another_sea():
     assert components(0.5, 6.0, 0.0, 3.3, 1) is components(0.5, 6.0, 0.0, 3.3, 1)
-    assert np.all(components(0.5, 6.0, 0.0, 3.3, 1).phase != components(0.5, 6.0, 0.0, 3.3, 2).phase)
+    assert np.all(
+        components(0.5, 6.0, 0.0, 3.3, 1).phase != components(0.5, 6.0, 0.0, 3.3, 2).phase
+    )
 
 
 def test_a_calm_sea_does_exactly_nothing():
@@ -86,14 +113,19 @@ def test_a_calm_sea_does_exactly_nothing():
 
 def test_drift_of_a_regular_wave_is_constant_and_its_coefficient_times_the_amplitude_squared():
     wave = regular(0.4, 1.0, radians(70.0))
-    expected = 0.16 * np.array([1e3 * np.cos(radians(60.0)), 5e3 * np.sin(radians(60.0)), 4e4 * np.sin(radians(120.0))])
+    expected = 0.16 * np.array(
+        [1e3 * np.cos(radians(60.0)), 5e3 * np.sin(radians(60.0)), 4e4 * np.sin(radians(120.0))]
+    )
     for t in (0.0, 2.3, 77.0):
         assert_allclose(drift(t, 4.0, -9.0, radians(10.0), wave, TABLE), expected, rtol=1e-12)
 
 
 def test_drift_of_gunnerus_in_a_beam_wave_is_that_of_the_published_table(shared):
     rows = np.loadtxt(
-        shared / "reference/data/gunnerus_33p9_veres_wave_drift_U0.csv", delimiter=",", skiprows=2, comments="#"
+        shared / "reference/data/gunnerus_33p9_veres_wave_drift_U0.csv",
+        delimiter=",",
+        skiprows=2,
+        comments="#",
     )
     table = drift_table("; ".join(" ".join(map(repr, row)) for row in rows.tolist()))
     _, Y, _ = drift(0.0, 0.0, 0.0, 0.0, regular(1.0, 1.5708, pi / 2.0), table)
@@ -102,10 +134,19 @@ def test_drift_of_gunnerus_in_a_beam_wave_is_that_of_the_published_table(shared)
 
 def test_slow_drift_is_newmans_double_sum():
     sea, t, x, y, psi = components(0.8, 5.0, radians(200.0), 3.3, 3), 31.0, 4.0, -7.0, radians(25.0)
-    theta = sea.phase + sea.omega * t - sea.wavenumber * (x * np.cos(sea.direction) + y * np.sin(sea.direction))
+    theta = (
+        sea.phase
+        + sea.omega * t
+        - sea.wavenumber * (x * np.cos(sea.direction) + y * np.sin(sea.direction))
+    )
     beating = np.outer(sea.amplitude, sea.amplitude) * np.cos(theta[:, None] - theta)
     # each component alone, divided by its amplitude squared, gives its coefficients
-    D = np.array([drift(0.0, 0.0, 0.0, psi, regular(1.0, omega, sea.direction), TABLE) for omega in sea.omega.tolist()])
+    D = np.array(
+        [
+            drift(0.0, 0.0, 0.0, psi, regular(1.0, omega, sea.direction), TABLE)
+            for omega in sea.omega.tolist()
+        ]
+    )
     expected = [np.sum(beating * (Dk[:, None] + Dk) / 2.0) for Dk in D.T]
     assert_allclose(drift(t, x, y, psi, sea, TABLE), expected, rtol=1e-10)
 
@@ -134,7 +175,9 @@ def test_frequencies_above_the_converged_range_give_no_drift():
 def test_waves_from_port_mirror_waves_from_starboard(degrees):
     def response(side):
         sea = components(0.6, 5.0, side * radians(degrees), 3.3, 2)
-        loads, motions = wave_response(12.0, 3.0, side * 4.0, 0.0, 0.3, side * 0.2, sea, TABLE, **SHIP)
+        loads, motions = wave_response(
+            12.0, 3.0, side * 4.0, 0.0, 0.3, side * 0.2, sea, TABLE, **SHIP
+        )
         return np.array([*loads, *motions])
 
     mirror = np.array([1, -1, -1, 1, -1, -1, 1, -1, -1])
@@ -147,9 +190,15 @@ def test_a_ship_in_very_long_waves_follows_the_water():
     for t in (0.0, 20.0, 55.0):
         s, c = np.sin(0.05 * t + 0.8), np.cos(0.05 * t + 0.8)
         x, y, psi, u, v, r = first_order_motion(t, 0.0, 0.0, radians(10.0), wave, **SHIP)
-        assert_allclose([x, y], [1.5 * s * np.cos(radians(50.0)), 1.5 * s * np.sin(radians(50.0))], rtol=1e-3)
-        assert_allclose([u, v], np.array([np.cos(radians(40.0)), np.sin(radians(40.0))]) * 0.075 * c, rtol=1e-3)
-        assert_allclose([psi, r], [-slope * c, 0.05 * slope * s], rtol=1e-3)  # turned as a line of water particles
+        assert_allclose(
+            [x, y], [1.5 * s * np.cos(radians(50.0)), 1.5 * s * np.sin(radians(50.0))], rtol=1e-3
+        )
+        assert_allclose(
+            [u, v], np.array([np.cos(radians(40.0)), np.sin(radians(40.0))]) * 0.075 * c, rtol=1e-3
+        )
+        assert_allclose(
+            [psi, r], [-slope * c, 0.05 * slope * s], rtol=1e-3
+        )  # turned as a line of water particles
 
 
 @pytest.mark.parametrize("degrees", [0.0, 30.0, 90.0, 160.0])
@@ -161,7 +210,9 @@ def test_first_order_motion_is_the_waters_averaged_over_the_waterplane(degrees):
     c, s = np.cos(radians(degrees)), np.sin(radians(degrees))
     angle = omega * t + phase - k * (ahead * c + aside * s)
     water = a * np.exp(-k * 2.7 / 2.0) * np.sin(angle)
-    x, y, psi, *_ = first_order_motion(t, 0.0, 0.0, 0.0, regular(a, omega, radians(degrees), phase), **SHIP)
+    x, y, psi, *_ = first_order_motion(
+        t, 0.0, 0.0, 0.0, regular(a, omega, radians(degrees), phase), **SHIP
+    )
     assert_allclose([x, y], [np.mean(water) * c, np.mean(water) * s], rtol=1e-4, atol=1e-9)
     along_keel = a * np.exp(-k * 2.7 / 2.0) * np.sin(omega * t + phase - k * 33.9 * cells * c) * s
     # at the beam the limit q -> 0 is replaced by a value 1e-6 away
@@ -187,8 +238,16 @@ def test_response_is_drift_and_motion():
     assert motions == first_order_motion(8.0, 1.0, 2.0, 0.7, sea, u=0.4, v=0.1, **SHIP)
 
 
-STATES = np.array([[0.0, 3.0, -8.0], [1.0, -4.0, 20.0], [0.2, 3.0, -3.1], [0.5, 0.0, -0.3], [0.1, 0.0, 0.2]])
-HEIGHTS, PERIODS, FROM, GAMMA, SEEDS = (0.5, 0.8, 0.3), (6.0, 5.0, 7.5), (0.1, -2.0, 3.0), (3.3, 1.0, 5.0), (1, 2, 9)
+STATES = np.array(
+    [[0.0, 3.0, -8.0], [1.0, -4.0, 20.0], [0.2, 3.0, -3.1], [0.5, 0.0, -0.3], [0.1, 0.0, 0.2]]
+)
+HEIGHTS, PERIODS, FROM, GAMMA, SEEDS = (
+    (0.5, 0.8, 0.3),
+    (6.0, 5.0, 7.5),
+    (0.1, -2.0, 3.0),
+    (3.3, 1.0, 5.0),
+    (1, 2, 9),
+)
 
 
 def one_by_one():
@@ -197,7 +256,9 @@ def one_by_one():
     for state, *sea in zip(STATES.T.tolist(), HEIGHTS, PERIODS, FROM, GAMMA, SEEDS, strict=True):
         sea = components(*sea)
         loads, motions = wave_response(21.0, *state, sea, TABLE, **SHIP)
-        rows.append([*loads, *motions, elevation(21.0, *state[:2], sea), *mean_drift(state[2], sea, TABLE)])
+        rows.append(
+            [*loads, *motions, elevation(21.0, *state[:2], sea), *mean_drift(state[2], sea, TABLE)]
+        )
     assert all(isinstance(value, float) for row in rows for value in row)
     return np.array(rows)
 
@@ -227,7 +288,9 @@ def test_tensors_give_what_floats_give_and_have_gradients():
     found = at_once(states, components(height, period, wave_from, np.array(GAMMA), np.array(SEEDS)))
     assert_allclose(torch.stack(found, -1).detach().numpy(), one_by_one(), rtol=1e-9, atol=1e-12)
     found[1].sum().backward()
-    assert_allclose(height.grad, 2.0 * one_by_one()[:, 1] / HEIGHTS, rtol=1e-9)  # drift grows with the height squared
+    assert_allclose(
+        height.grad, 2.0 * one_by_one()[:, 1] / HEIGHTS, rtol=1e-9
+    )  # drift grows with the height squared
 
 
 def test_a_tensor_ship_in_a_sea_of_floats_has_gradients():

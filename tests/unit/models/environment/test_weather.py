@@ -17,7 +17,10 @@ from shipcosim.models.environment.weather import (
 )
 
 RATES = EnvironmentParameters(
-    wind_speed_rate=0.7, wind_turn_rate=radians(9.0), current_speed_rate=0.01, current_turn_rate=radians(0.3)
+    wind_speed_rate=0.7,
+    wind_turn_rate=radians(9.0),
+    current_speed_rate=0.01,
+    current_turn_rate=radians(0.3),
 )
 
 
@@ -33,11 +36,16 @@ def test_wind_turns_from_east_to_north_east_within_5_s_where_the_rate_says_so():
     means = run(EnvironmentState(10.0, pi / 2.0, 0.0, 0.0), (10.0, pi / 4.0, 0.0, 0.0), 6.0, 0.05)
     turned = means[:, 1]
     assert np.max(np.abs(np.diff(turned))) <= RATES.wind_turn_rate * 0.05 * (1.0 + 1e-9)
-    assert turned[99] > pi / 4.0 and turned[101] == pytest.approx(pi / 4.0) and turned[-1] == pytest.approx(pi / 4.0)
+    assert (
+        turned[99] > pi / 4.0
+        and turned[101] == pytest.approx(pi / 4.0)
+        and turned[-1] == pytest.approx(pi / 4.0)
+    )
 
 
 @pytest.mark.parametrize(
-    "start, setpoint, quarter", [(170.0, -170.0, 175.0), (-170.0, 170.0, -175.0), (350.0, 10.0, -5.0)]
+    "start, setpoint, quarter",
+    [(170.0, -170.0, 175.0), (-170.0, 170.0, -175.0), (350.0, 10.0, -5.0)],
 )
 def test_directions_take_the_shortest_way_round(start, setpoint, quarter):
     state = EnvironmentState(10.0, radians(start), 0.5, radians(start))
@@ -55,11 +63,15 @@ def test_speeds_ramp_at_their_rates_and_stop_at_the_setpoint():
 
 def test_means_do_not_depend_on_the_step():
     state, setpoints = EnvironmentState(5.0, 3.0, 0.1, -3.0), (12.0, -2.0, 0.5, 1.0)
-    assert_allclose(run(state, setpoints, 30.0, 0.05)[::2], run(state, setpoints, 30.0, 0.1), rtol=1e-9)
+    assert_allclose(
+        run(state, setpoints, 30.0, 0.05)[::2], run(state, setpoints, 30.0, 0.1), rtol=1e-9
+    )
 
 
 def test_air_goes_away_from_where_the_wind_comes_from_and_water_to_where_it_flows():
-    means = EnvironmentState(8.0, radians(45.0), 0.3, pi)  # four corners: wind from north-east, current to the south
+    means = EnvironmentState(
+        8.0, radians(45.0), 0.3, pi
+    )  # four corners: wind from north-east, current to the south
     wind = air_velocity(0.0, means, gust_scale=0.0, seed=1)
     assert_allclose(wind, [-8.0 / np.sqrt(2.0)] * 2)
     assert_allclose(water_velocity(means), [-0.3, 0.0], atol=1e-12)
@@ -79,7 +91,11 @@ def test_floats_arrays_and_tensors_agree():
 
     def results(state, setpoint, seed):
         means = step(0.1, EnvironmentState(*state), *setpoint, parameters=RATES)
-        return [*means, *air_velocity(3.0, means, gust_scale=1.0, seed=seed), *water_velocity(means)]
+        return [
+            *means,
+            *air_velocity(3.0, means, gust_scale=1.0, seed=seed),
+            *water_velocity(means),
+        ]
 
     expected = [results(states[:, i].tolist(), setpoints[:, i].tolist(), i) for i in range(2)]
     assert_allclose(np.transpose(results(list(states), list(setpoints), np.arange(2))), expected)
@@ -90,7 +106,9 @@ def test_floats_arrays_and_tensors_agree():
 @pytest.fixture
 def environment(root):
     """A new instance of the FMU's class in the weather of a scenario."""
-    spec = spec_from_file_location("environment_under_test", root / "fmus/environment/environment.py")
+    spec = spec_from_file_location(
+        "environment_under_test", root / "fmus/environment/environment.py"
+    )
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
     fmu = module.Environment()
@@ -102,7 +120,9 @@ def environment(root):
 def test_fmu_starts_in_the_weather_that_is_set_and_starts_again_the_same(environment):
     environment.start()
     first = dict(vars(environment))
-    assert environment.wind_speed_mean == 10.0 and environment.current_north == pytest.approx(0.5 * np.cos(2.0))
+    assert environment.wind_speed_mean == 10.0 and environment.current_north == pytest.approx(
+        0.5 * np.cos(2.0)
+    )
     environment.step(0.0, 0.05)
     environment.start()
     assert {name: value for name, value in vars(environment).items() if name != "model"} == {

@@ -15,7 +15,8 @@ SHIPS = pytest.mark.parametrize("wind", [LONG, SHORT], ids=["long", "short"])
 
 
 @pytest.mark.parametrize(
-    "psi, wind_from, bow_from", [(0.0, 0.0, 0.0), (0.0, 90.0, 90.0), (90.0, 0.0, -90.0), (45.0, 90.0, 45.0)]
+    "psi, wind_from, bow_from",
+    [(0.0, 0.0, 0.0), (0.0, 90.0, 90.0), (90.0, 0.0, -90.0), (45.0, 90.0, 45.0)],
 )
 def test_a_ship_at_rest_has_the_true_wind_turned_by_her_heading(psi, wind_from, bow_from):
     north, east = -8.0 * np.cos(radians(wind_from)), -8.0 * np.sin(radians(wind_from))
@@ -49,7 +50,9 @@ def test_wind_from_port_mirrors_wind_from_starboard(wind):
 
 @SHIPS
 def test_loads_grow_with_the_square_of_the_speed(wind):
-    np.testing.assert_allclose(wind_loads(14.0, 0.6, wind=wind), 4.0 * np.array(wind_loads(7.0, 0.6, wind=wind)))
+    np.testing.assert_allclose(
+        wind_loads(14.0, 0.6, wind=wind), 4.0 * np.array(wind_loads(7.0, 0.6, wind=wind))
+    )
 
 
 def test_long_ship_has_the_table_of_its_source(shared):
@@ -77,13 +80,19 @@ def test_long_ship_is_blendermanns_research_vessel():
         CDl = CDlAF * frontal / lateral
         denominator = 1.0 - 0.5 * delta * (1.0 - CDl / CDt) * np.sin(2.0 * angle) ** 2
         X, Y, _ = wind_loads(1.0, angle, wind=LONG)
-        assert X == pytest.approx(-0.5 * density * frontal * CDlAF * np.cos(angle) / denominator, rel=2e-3)
-        assert Y == pytest.approx(-0.5 * density * lateral * CDt * np.sin(angle) / denominator, rel=2e-3)
+        assert X == pytest.approx(
+            -0.5 * density * frontal * CDlAF * np.cos(angle) / denominator, rel=2e-3
+        )
+        assert Y == pytest.approx(
+            -0.5 * density * lateral * CDt * np.sin(angle) / denominator, rel=2e-3
+        )
 
 
 def test_a_table_that_does_not_go_round_is_refused():
     with pytest.raises(ValueError, match="from 0 to 90"):
-        wind_loads(1.0, 0.5, wind=replace(parameters(WindParameters), wind_table="0 -1 0 0; 90 0 -1 0"))
+        wind_loads(
+            1.0, 0.5, wind=replace(parameters(WindParameters), wind_table="0 -1 0 0; 90 0 -1 0")
+        )
 
 
 @SHIPS
@@ -102,7 +111,10 @@ def test_a_vane_that_shows_ten_degrees_too_much_has_the_wind_ten_degrees_less(wi
 @SHIPS
 def test_offsets_as_an_array_are_as_many_vanes(wind):
     offsets = np.array([0.0, 0.3, -0.2])
-    each = [wind_loads(9.0, 0.5, wind=replace(wind, apparent_wind_offset=float(offset))) for offset in offsets]
+    each = [
+        wind_loads(9.0, 0.5, wind=replace(wind, apparent_wind_offset=float(offset)))
+        for offset in offsets
+    ]
     together = wind_loads(9.0, 0.5, wind=replace(wind, apparent_wind_offset=offsets))
     np.testing.assert_allclose(together, np.transpose(each), rtol=1e-12)
     assert each[0] == wind_loads(9.0, 0.5, wind=wind)

@@ -22,7 +22,17 @@ HORIZONS, REST = (10.0, 30.0, 60.0), (0.0,) * 6
 UNITS, SLOW = parameters(pseudo_inverse.AllocationParameters), parameters(ReferenceParameters)
 
 
-def ahead(ship, thrusters, goal, *, force=(0.0,) * 3, desired=None, units=UNITS, longest_step=2.0, wave_frequency=2.0):
+def ahead(
+    ship,
+    thrusters,
+    goal,
+    *,
+    force=(0.0,) * 3,
+    desired=None,
+    units=UNITS,
+    longest_step=2.0,
+    wave_frequency=2.0,
+):
     """Prediction in calm air and water with a force that the bias has found; thrusters as they are told now."""
     desired = Desired(*(desired or goal), *REST)
     known = Known(ship, force, thrusters, 0.0, 0.0, 1.0, desired, goal, wave_frequency)
@@ -36,12 +46,19 @@ def ahead(ship, thrusters, goal, *, force=(0.0,) * 3, desired=None, units=UNITS,
     )
     around = Surroundings(0.0, 0.0, 0.0, 0.0, *force, ())
     model = {"hull": parameters(HullParameters), "wind": parameters(WindParameters)}
-    return controlled.predict(known, around, horizons=HORIZONS, longest_step=longest_step, loop=loop, **model)
+    return controlled.predict(
+        known, around, horizons=HORIZONS, longest_step=longest_step, loop=loop, **model
+    )
 
 
 def test_ship_in_balance_stays_where_she_is():
     force = 3e3, -4e3, 2e4
-    found = ahead(Motion(1.0, 2.0, 0.0, 0.0, 0.0, 0.0), tuple(-one for one in force), (1.0, 2.0, 0.0), force=force)
+    found = ahead(
+        Motion(1.0, 2.0, 0.0, 0.0, 0.0, 0.0),
+        tuple(-one for one in force),
+        (1.0, 2.0, 0.0),
+        force=force,
+    )
     assert all(ship == pytest.approx((1.0, 2.0, 0.0, 0.0, 0.0, 0.0), abs=1e-9) for ship in found)
 
 
@@ -75,7 +92,8 @@ def test_thrust_ends_at_its_limits():
     """Units of 2 kN cannot hold her against 20 kN: she is driven off, as far as with thrust astern of both."""
     weak = replace(UNITS, azimuth_thrust_min=-2e3, azimuth_thrust_max=2e3, tunnel_thrust_max=2e3)
     held, lost = (
-        ahead(Motion(*REST), (-2e3, 0.0, 0.0), (0.0,) * 3, force=(2e4, 0.0, 0.0), units=one) for one in (UNITS, weak)
+        ahead(Motion(*REST), (-2e3, 0.0, 0.0), (0.0,) * 3, force=(2e4, 0.0, 0.0), units=one)
+        for one in (UNITS, weak)
     )
     assert abs(held[-1].x) < 2.0 and lost[-1].x > 20.0
 
@@ -85,10 +103,15 @@ def test_missing_unit_stays_missing():
     effect = pseudo_inverse.effect(UNITS)
     two = tuple(2e3 * (effect[0][axis] - effect[1][axis]) for axis in range(3))
     off = Motion(0.0, 1.0, 0.0, 0.0, 0.0, 0.0)
-    whole, without = (ahead(off, load, (0.0,) * 3) for load in ((two[0], two[1] + 1.0, two[2]), two))
+    whole, without = (
+        ahead(off, load, (0.0,) * 3) for load in ((two[0], two[1] + 1.0, two[2]), two)
+    )
     assert abs(without[-1].psi) > 5.0 * abs(whole[-1].psi) > 0.0
 
 
 def test_in_long_waves_dp_is_slower():
-    quick, slow = (ahead(Motion(1.0, *REST[1:]), (10.0, 10.0, 0.0), (0.0,) * 3, wave_frequency=w) for w in (2.0, 0.5))
+    quick, slow = (
+        ahead(Motion(1.0, *REST[1:]), (10.0, 10.0, 0.0), (0.0,) * 3, wave_frequency=w)
+        for w in (2.0, 0.5)
+    )
     assert slow[1].x > quick[1].x + 0.1

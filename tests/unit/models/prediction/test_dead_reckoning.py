@@ -18,9 +18,21 @@ HULL, WIND = parameters(HullParameters), parameters(WindParameters)
 HORIZONS = (10.0, 30.0, 60.0)
 
 
-def ahead(ship, thrusters=(0.0,) * 3, rest=(0.0,) * 3, air=(0.0, 0.0), current=(0.0, 0.0), longest_step=1.0):
-    known, around = Known(ship, (0.0,) * 3, thrusters, 0.0, 0.0), Surroundings(*air, *current, *rest, ())
-    return predict(known, around, horizons=HORIZONS, longest_step=longest_step, hull=HULL, wind=WIND)
+def ahead(
+    ship,
+    thrusters=(0.0,) * 3,
+    rest=(0.0,) * 3,
+    air=(0.0, 0.0),
+    current=(0.0, 0.0),
+    longest_step=1.0,
+):
+    known, around = (
+        Known(ship, (0.0,) * 3, thrusters, 0.0, 0.0),
+        Surroundings(*air, *current, *rest, ()),
+    )
+    return predict(
+        known, around, horizons=HORIZONS, longest_step=longest_step, hull=HULL, wind=WIND
+    )
 
 
 def simulated(ship, seconds, thrusters, rest, air, current):
@@ -39,11 +51,16 @@ def test_prediction_is_the_simulation_with_loads_held(speed, near):
     for seconds, found in zip(HORIZONS, ahead(ship, *loads), strict=True):
         expected = simulated(ship, seconds, *loads)
         assert found[:2] == pytest.approx(expected[:2], abs=near)
-        assert math.remainder(found.psi - expected.psi, 2.0 * math.pi) == pytest.approx(0.0, abs=2e-3)
+        assert math.remainder(found.psi - expected.psi, 2.0 * math.pi) == pytest.approx(
+            0.0, abs=2e-3
+        )
 
 
 def test_prediction_converges_with_the_step():
-    ship, loads = Motion(0.0, 0.0, 0.0, 3.0, 0.2, 0.02), ((5e3, -6e3, 3e4), (0.0,) * 3, (-6.0, -6.0), (-0.3, 0.1))
+    ship, loads = (
+        Motion(0.0, 0.0, 0.0, 3.0, 0.2, 0.02),
+        ((5e3, -6e3, 3e4), (0.0,) * 3, (-6.0, -6.0), (-0.3, 0.1)),
+    )
     best = ahead(ship, *loads, longest_step=0.02)[-1]
     errors = [math.dist(ahead(ship, *loads, longest_step=h)[-1][:2], best[:2]) for h in (2.0, 1.0)]
     assert errors[1] < 0.6 * errors[0]
@@ -60,7 +77,10 @@ def test_free_ship_at_rest_in_the_water_goes_with_the_current():
 
 
 def test_ship_without_any_load_stays():
-    assert all(ship == pytest.approx((1.0, 2.0, 3.0, 0.0, 0.0, 0.0)) for ship in ahead(Motion(1.0, 2.0, 3.0, 0, 0, 0)))
+    assert all(
+        ship == pytest.approx((1.0, 2.0, 3.0, 0.0, 0.0, 0.0))
+        for ship in ahead(Motion(1.0, 2.0, 3.0, 0, 0, 0))
+    )
 
 
 def test_air_velocity_is_that_of_which_the_apparent_wind_was_made():

@@ -19,13 +19,20 @@ from shipcosim.models.ship.hull import HullParameters
 NAME, H = "gunnerus-28m9", 0.05
 HULL, WIND = parameters(HullParameters, NAME), parameters(WindParameters, NAME)
 HELM, TUNNEL = parameters(helm.HelmParameters, NAME), parameters(TunnelParameters, NAME)
-UNITS = parameters(AzimuthParameters, NAME, "port"), parameters(AzimuthParameters, NAME, "starboard")
+UNITS = (
+    parameters(AzimuthParameters, NAME, "port"),
+    parameters(AzimuthParameters, NAME, "starboard"),
+)
 MODEL = {"hull": HULL, "wind": WIND, "helm": HELM}
 STILL = Motion(3.0, -2.0, 0.4, 0.0, 0.0, 0.0)
 
 
-def aboard(ship, air=(0.0, 0.0), thrust=(0.0,) * 3, angles=(0.0, 0.0), rpm=(0.0,) * 3, azimuth=(0.0, 0.0)):
-    return helm.Aboard(ship, *apparent_wind(ship.psi, ship.u, ship.v, *air), thrust, angles, rpm, azimuth)
+def aboard(
+    ship, air=(0.0, 0.0), thrust=(0.0,) * 3, angles=(0.0, 0.0), rpm=(0.0,) * 3, azimuth=(0.0, 0.0)
+):
+    return helm.Aboard(
+        ship, *apparent_wind(ship.psi, ship.u, ship.v, *air), thrust, angles, rpm, azimuth
+    )
 
 
 class Simulated:
@@ -39,16 +46,25 @@ class Simulated:
         for _ in range(round(seconds / H)):
             water = self.ship[3:]
             commands = zip(self.units, thrust, angles, UNITS, strict=False)
-            self.units = [azimuth_step(u, T, a, *water, SOUND, H, unit=unit) for u, T, a, unit in commands]
+            self.units = [
+                azimuth_step(u, T, a, *water, SOUND, H, unit=unit) for u, T, a, unit in commands
+            ]
             self.tunnel = tunnel_step(self.tunnel, thrust[2], water[0], SOUND, H, tunnel=TUNNEL)
-            loads = [azimuth_loads(u, *water, unit=unit)[2:] for u, unit in zip(self.units, UNITS, strict=True)]
+            loads = [
+                azimuth_loads(u, *water, unit=unit)[2:]
+                for u, unit in zip(self.units, UNITS, strict=True)
+            ]
             loads.append(tunnel_loads(self.tunnel, water[0], tunnel=TUNNEL)[2:])
             loads.append(wind_loads(*apparent_wind(*self.ship[2:5], *self.air), wind=WIND))
-            self.ship = vessel.step(self.ship, *map(sum, zip(*loads, strict=True)), 0.0, 0.0, H, hull=HULL)
+            self.ship = vessel.step(
+                self.ship, *map(sum, zip(*loads, strict=True)), 0.0, 0.0, H, hull=HULL
+            )
 
     def known(self, thrust, angles):
         rpm = *(60.0 * unit.n for unit in self.units), 60.0 * self.tunnel.n
-        return aboard(self.ship, self.air, thrust, angles, rpm, tuple(unit.azimuth for unit in self.units))
+        return aboard(
+            self.ship, self.air, thrust, angles, rpm, tuple(unit.azimuth for unit in self.units)
+        )
 
 
 MANOEUVRES = {
@@ -71,13 +87,15 @@ def test_prediction_is_the_simulation_while_levers_and_wheel_stay_put(name):
     for horizon in (10, 20, 30):
         simulated.sail(10.0, thrust, angles)
         assert math.dist(found[horizon - 1][:2], simulated.ship[:2]) < near
-        assert math.remainder(found[horizon - 1].psi - simulated.ship.psi, 2.0 * math.pi) == pytest.approx(
-            0.0, abs=0.02
-        )
+        assert math.remainder(
+            found[horizon - 1].psi - simulated.ship.psi, 2.0 * math.pi
+        ) == pytest.approx(0.0, abs=0.02)
 
 
 def test_ship_that_lies_still_with_nothing_commanded_stays():
-    assert all(ship == pytest.approx(STILL, abs=1e-4) for ship in helm.predict(aboard(STILL), **MODEL))
+    assert all(
+        ship == pytest.approx(STILL, abs=1e-4) for ship in helm.predict(aboard(STILL), **MODEL)
+    )
 
 
 def test_ship_at_rest_in_the_water_goes_with_the_estimated_current():
@@ -89,7 +107,9 @@ def test_ship_at_rest_in_the_water_goes_with_the_estimated_current():
 
 def test_many_starts_at_once_are_each_one_by_itself():
     rng = np.random.default_rng(1)
-    rows = rng.uniform(-1.0, 1.0, (5, 16)) * ([9, 9, 3, 3, 0.3, 0.03, 8, 3, 9e3, 9e3, 9e3, 3, 3, 90, 90, 900])
+    rows = rng.uniform(-1.0, 1.0, (5, 16)) * (
+        [9, 9, 3, 3, 0.3, 0.03, 8, 3, 9e3, 9e3, 9e3, 3, 3, 90, 90, 900]
+    )
 
     def split(row):
         azimuth = 0.1 * row[11], 0.2 * row[12]
@@ -98,7 +118,9 @@ def test_many_starts_at_once_are_each_one_by_itself():
 
     together = helm.predict(split(rows.T), **MODEL)
     for k, row in enumerate(rows.tolist()):
-        for one, all_of_them in zip(helm.predict(split(row), **MODEL)[::10], together[::10], strict=True):
+        for one, all_of_them in zip(
+            helm.predict(split(row), **MODEL)[::10], together[::10], strict=True
+        ):
             assert [values[k] for values in all_of_them] == pytest.approx(list(one), abs=1e-9)
 
 

@@ -41,7 +41,9 @@ def test_she_goes_where_she_heads():
 
 
 def test_port_mirrors_starboard():
-    one = CALM._replace(wind_speed=8.0, wind_from=0.7, commands=(50.0, 40.0, -30.0, 20.0, 5.0, -3.0))
+    one = CALM._replace(
+        wind_speed=8.0, wind_from=0.7, commands=(50.0, 40.0, -30.0, 20.0, 5.0, -3.0)
+    )
     other = one._replace(wind_from=-0.7, commands=(-50.0, -40.0, 30.0, -20.0, 5.0, -3.0))
     a, b = after(STILL, one, 60), after(STILL, other, 60)
     assert (a.x, a.y, a.u, a.v) == pytest.approx((b.x, -b.y, b.u, -b.v))
@@ -63,12 +65,17 @@ def test_the_load_fades_to_its_mean_while_gnss_is_lost():
 
 def test_a_rough_sea_makes_it_slower_to_believe():
     gone = CALM._replace(valid=1.0, x=1.0)
-    calm, rough = (motion_filter.step(STILL._replace(sea=sea), gone, 1.0, design=DESIGN) for sea in (0.0, 4.0))
+    calm, rough = (
+        motion_filter.step(STILL._replace(sea=sea), gone, 1.0, design=DESIGN) for sea in (0.0, 4.0)
+    )
     assert 0.0 < rough.x < calm.x < 1.0
 
 
 def test_last_position_stays():
-    design, moving = design_of("last-position"), CALM._replace(valid=1.0, x=3.0, u=0.4, wind_speed=10.0)
+    design, moving = (
+        design_of("last-position"),
+        CALM._replace(valid=1.0, x=3.0, u=0.4, wind_speed=10.0),
+    )
     there = after(STILL, moving, 300, design)
     lost = after(there, moving._replace(valid=0.0), 60, design)
     assert there.x == pytest.approx(3.0, abs=0.01) and lost.x == pytest.approx(there.x, abs=0.01)

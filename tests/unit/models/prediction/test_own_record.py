@@ -42,8 +42,14 @@ def held_then_adrift(held=120, adrift=60):
     """What a ship of the nominal model knows, held at rest in wind and current, then set free, second by second."""
     ship = Motion(0.0, 0.0, 0.4, 0.0, 0.0, 0.0)
     for second in range(held + adrift):
-        water = hull_loads(*vessel.through_water(ship.psi, ship.u, ship.v, *WATER), ship.r, hull=HULL)
-        thrust = tuple(-a - b for a, b in zip(water, wind_load(ship), strict=True)) if second < held else (0.0,) * 3
+        water = hull_loads(
+            *vessel.through_water(ship.psi, ship.u, ship.v, *WATER), ship.r, hull=HULL
+        )
+        thrust = (
+            tuple(-a - b for a, b in zip(water, wind_load(ship), strict=True))
+            if second < held
+            else (0.0,) * 3
+        )
         yield known_of(ship, thrust)
         if second >= held:
             for _ in range(10):
@@ -100,8 +106,12 @@ def test_after_a_change_errors_come_down_while_she_runs(what):
         else:
             record = own_record.step(record, known, 1.0, learned=BELIEFS, **MODEL)
         if second in (165, 205, 360):
-            found = own_record.predict(record, known, horizons=(30.0,), steps=(10,), learned=BELIEFS, **MODEL)
-            off[second] = math.dist(own_record.mixed(record, found[0])[:2], samples[second + 30].ship[:2])
+            found = own_record.predict(
+                record, known, horizons=(30.0,), steps=(10,), learned=BELIEFS, **MODEL
+            )
+            off[second] = math.dist(
+                own_record.mixed(record, found[0])[:2], samples[second + 30].ship[:2]
+            )
     assert off[205] > 2.0 * off[165]
     assert off[360] < 0.5 * off[205]
 
@@ -131,7 +141,9 @@ def test_what_is_learned_shrinks_the_doubt():
     last = followed()[0].covariance
     first, now = (np.diagonal(one, axis1=-2, axis2=-1)[:, CURRENT] for one in (first, last))
     assert (now < 0.3 * first).all()
-    assert (np.linalg.eigvalsh(last).min(axis=-1) > -1e-9 * np.trace(last, axis1=-2, axis2=-1)).all()
+    assert (
+        np.linalg.eigvalsh(last).min(axis=-1) > -1e-9 * np.trace(last, axis1=-2, axis2=-1)
+    ).all()
 
 
 def test_without_errors_of_the_model_the_prediction_is_dead_reckoning():
@@ -140,9 +152,15 @@ def test_without_errors_of_the_model_the_prediction_is_dead_reckoning():
     record = own_record.begin(known_of(ship), learned=exact, hull=HULL)
     record.mean[:, CURRENT] = WATER
     around = Surroundings(*AIR, *WATER, 0.0, 0.0, 0.0, ())
-    expected = dead_reckoning.predict(known_of(ship), around, horizons=HORIZONS, longest_step=0.2, **MODEL)
-    found = own_record.predict(record, known_of(ship), horizons=HORIZONS, steps=(10, 20, 30), learned=exact, **MODEL)
-    for one, other in zip((own_record.mixed(record, each) for each in found), expected, strict=True):
+    expected = dead_reckoning.predict(
+        known_of(ship), around, horizons=HORIZONS, longest_step=0.2, **MODEL
+    )
+    found = own_record.predict(
+        record, known_of(ship), horizons=HORIZONS, steps=(10, 20, 30), learned=exact, **MODEL
+    )
+    for one, other in zip(
+        (own_record.mixed(record, each) for each in found), expected, strict=True
+    ):
         assert one[:2] == pytest.approx(other[:2], abs=0.03)
         assert one.psi == pytest.approx(other.psi, abs=2e-3)
 
@@ -205,7 +223,9 @@ def test_tensors_give_what_arrays_give():
         record = own_record.begin(like(samples[0]), learned=learned, hull=HULL)
         for known in samples[1:]:
             record = own_record.step(record, like(known), 1.0, learned=learned, **MODEL)
-        ahead = own_record.predict(record, known, horizons=HORIZONS, steps=(5, 5, 8), learned=learned, **MODEL)
+        ahead = own_record.predict(
+            record, known, horizons=HORIZONS, steps=(5, 5, 8), learned=learned, **MODEL
+        )
         mixed = [own_record.mixed(record, motion) for motion in ahead]
         return np.array([[float(value) for value in motion] for motion in mixed])
 
@@ -213,13 +233,17 @@ def test_tensors_give_what_arrays_give():
         ship = Motion(*(torch.tensor(value, dtype=torch.float64) for value in known.ship))
         return known._replace(ship=ship, wind_believed=torch.tensor(1.0, dtype=torch.float64))
 
-    np.testing.assert_allclose(end(learned, tensors), end(BELIEFS, lambda known: known), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(
+        end(learned, tensors), end(BELIEFS, lambda known: known), rtol=1e-9, atol=1e-9
+    )
 
 
 def hybrid(samples):
     state = drift_off.begin(samples[0], trained=TRAINED, hull=HULL, parameters=ASSUMED)
     for known in samples[1:]:
-        state = drift_off.step(state, known, 1.0, trained=TRAINED, **MODEL, ship=DP_SHIP, parameters=ASSUMED)
+        state = drift_off.step(
+            state, known, 1.0, trained=TRAINED, **MODEL, ship=DP_SHIP, parameters=ASSUMED
+        )
     return state
 
 
@@ -244,7 +268,9 @@ def test_filters_one_by_one_in_floats_predict_what_they_predict_together():
     for index in range(len(own_record.DIRECTIONS)):
         alone = own_record.predict(own_record.member(state.own, index), known, **options)
         assert all(type(value) is float for value in alone[-1])
-        np.testing.assert_allclose(np.array(alone), np.array(together)[..., index], rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(
+            np.array(alone), np.array(together)[..., index], rtol=1e-12, atol=1e-12
+        )
 
 
 @pytest.mark.parametrize("far", ["speed", "wind", "turning", "disbelieved"])
@@ -280,7 +306,10 @@ def test_trust_falls_from_the_limits_on():
 
 
 def test_headings_are_averaged_and_blended_across_south():
-    zeros, record = np.zeros(5), own_record.begin(next(held_then_adrift()), learned=BELIEFS, hull=HULL)
+    zeros, record = (
+        np.zeros(5),
+        own_record.begin(next(held_then_adrift()), learned=BELIEFS, hull=HULL),
+    )
     record = record._replace(likelihood=np.array([0.0, 0.0, -99.0, -99.0, -99.0]))
     headings = np.array([math.pi - 0.1, -math.pi + 0.3, 0.0, 0.0, 0.0])
     middle = own_record.mixed(record, Motion(zeros, zeros, headings, zeros, zeros, zeros))

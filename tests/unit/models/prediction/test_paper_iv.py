@@ -28,11 +28,17 @@ def constant(*residual):
 
 def test_without_networks_it_is_dead_reckoning():
     ship = Motion(1.0, 2.0, 0.7, 0.2, -0.1, 0.002)
-    found = paper_iv.predict(paper_iv.begin(known_of(ship)), known_of(ship), None, seconds=60, **MODEL)
+    found = paper_iv.predict(
+        paper_iv.begin(known_of(ship)), known_of(ship), None, seconds=60, **MODEL
+    )
     around = Surroundings(*AIR, 0.0, 0.0, 0.0, 0.0, 0.0, ())
-    expected = dead_reckoning.predict(known_of(ship), around, horizons=(10.0, 60.0), longest_step=0.5, **MODEL)
+    expected = dead_reckoning.predict(
+        known_of(ship), around, horizons=(10.0, 60.0), longest_step=0.5, **MODEL
+    )
     assert found[9][:2] == pytest.approx(expected[0][:2], abs=0.05)
-    assert found[59][:2] == pytest.approx(expected[1][:2], abs=1.0)  # Euler's steps of a second, as taken
+    assert found[59][:2] == pytest.approx(
+        expected[1][:2], abs=1.0
+    )  # Euler's steps of a second, as taken
 
 
 def test_networks_add_to_the_acceleration():
@@ -56,14 +62,18 @@ def test_the_residual_is_what_the_equations_missed():
 def test_heading_is_averaged_across_south():
     past = paper_iv.begin(known_of(Motion(0.0, 0.0, 3.13, 0.0, 0.0, 0.0), (0.0,) * 3))
     for _ in range(paper_iv.WINDOW):
-        past = paper_iv.step(past, known_of(Motion(0.0, 0.0, -3.13, 0.0, 0.0, 0.0), (0.0,) * 3), **MODEL)
+        past = paper_iv.step(
+            past, known_of(Motion(0.0, 0.0, -3.13, 0.0, 0.0, 0.0), (0.0,) * 3), **MODEL
+        )
     assert all(state[0] == pytest.approx(2.0 * np.pi - 3.13) for state in past.states)
 
 
 def test_arrays_give_what_floats_give():
     ships = [Motion(0.0, 0.0, 0.3, 0.1, 0.0, 0.0), Motion(1.0, 5.0, -2.0, -0.1, 0.3, 0.004)]
     rng = np.random.default_rng(1)
-    layers = tuple((rng.normal(size=(5, n, m)), rng.normal(size=(5, 1, m))) for n, m in ((9, 4), (4, 3)))
+    layers = tuple(
+        (rng.normal(size=(5, n, m)), rng.normal(size=(5, 1, m))) for n, m in ((9, 4), (4, 3))
+    )
     networks = paper_iv.Ensemble(layers, np.zeros(9), np.ones(9), np.zeros(3), np.full(3, 1e-3))
 
     def end(known):

@@ -11,7 +11,11 @@ REGIONS = RegionParameters(later_position_share=0.6, later_heading_share=0.5)
 
 
 def test_own_errors_are_an_exponential_mean_of_the_distance_to_where_she_was_foreseen():
-    errors, ship, foreseen = (0.0, 0.0), Motion(3.0, 4.0, pi - 0.1, 0, 0, 0), Motion(0.0, 0.0, 0.1 - pi, 0, 0, 0)
+    errors, ship, foreseen = (
+        (0.0, 0.0),
+        Motion(3.0, 4.0, pi - 0.1, 0, 0, 0),
+        Motion(0.0, 0.0, 0.1 - pi, 0, 0, 0),
+    )
     for _ in range(20):
         errors = own_errors(errors, ship, foreseen, 1.0, regions=REGIONS)
     reached = 1.0 - exp(-1.0)
@@ -30,4 +34,10 @@ def test_large_own_errors_widen_in_proportion():
 
 
 def test_half_width_at_any_horizon_passes_through_the_calibrated_ones():
-    assert [at_horizon(h, (0.5, 2.0, 8.0)) for h in (0.0, 10.0, 30.0, 45.0, 60.0)] == [0.0, 0.5, 2.0, 5.0, 8.0]
+    assert [at_horizon(h, (0.5, 2.0, 8.0)) for h in (0.0, 10.0, 30.0, 45.0, 60.0)] == [
+        0.0,
+        0.5,
+        2.0,
+        5.0,
+        8.0,
+    ]

@@ -26,7 +26,9 @@ ASSUMED = parameters(SurroundingsParameters)
 
 def known_of(ship, current, force, thrusters=(0.0, 0.0, 0.0)):
     """What an observer without error knows of a ship: its bias is the load that its linear damping leaves."""
-    X, Y, N = hull_loads(*vessel.through_water(ship.psi, ship.u, ship.v, *current), ship.r, hull=HULL)
+    X, Y, N = hull_loads(
+        *vessel.through_water(ship.psi, ship.u, ship.v, *current), ship.r, hull=HULL
+    )
     force_X, force_Y = to_body(ship.psi, *force)
     bias = (
         X + force_X + DP_SHIP.damping_surge * ship.u,
@@ -37,7 +39,9 @@ def known_of(ship, current, force, thrusters=(0.0, 0.0, 0.0)):
 
 
 def step(state, known, assumed=ASSUMED, wind=STILL):
-    return surroundings.step(state, known, 1.0, hull=HULL, wind=wind, ship=DP_SHIP, parameters=assumed)
+    return surroundings.step(
+        state, known, 1.0, hull=HULL, wind=wind, ship=DP_SHIP, parameters=assumed
+    )
 
 
 def held_then_adrift(current, force, psi=0.4, held=300, adrift=600, assumed=ASSUMED):
@@ -59,7 +63,9 @@ def test_load_of_a_ship_at_rest_is_explained_whole():
     X, Y, N = hull_loads(*vessel.through_water(known.ship.psi, 0.0, 0.0, *current), 0.0, hull=HULL)
     force_X, force_Y = to_body(known.ship.psi, state.force_north, state.force_east)
     assert (X + force_X, Y + force_Y) == pytest.approx(known.bias[:2], abs=300.0)
-    assert N + state.moment == pytest.approx(known.bias[2], abs=300.0 * ASSUMED.force_lever * HULL.length)
+    assert N + state.moment == pytest.approx(
+        known.bias[2], abs=300.0 * ASSUMED.force_lever * HULL.length
+    )
 
 
 @pytest.mark.parametrize("current", [(0.0, 0.4), (0.3, -0.2), (-0.4, 0.0)])
@@ -78,7 +84,9 @@ def test_drift_is_predicted_nearer_with_a_current_than_with_the_bias_as_a_force(
         (state, known), (_, later) = way[second], way[second + 60]
         X, Y, N = known.bias
         held = state._replace(current_north=0.0, current_east=0.0, moment=N)
-        held = held._replace(**dict(zip(("force_north", "force_east"), to_ned(known.ship.psi, X, Y), strict=True)))
+        held = held._replace(
+            **dict(zip(("force_north", "force_east"), to_ned(known.ship.psi, X, Y), strict=True))
+        )
         errors.append([math.dist(ahead(known, one)[:2], later.ship[:2]) for one in (state, held)])
     found, held = np.mean(errors, axis=0)
     assert found < 0.25 * held
@@ -94,7 +102,9 @@ def test_estimate_turns_with_the_compass():
     """The same weather, turned together with the ship, gives the same estimates, turned."""
     turn, current, force = 1.7, (0.3, -0.2), (400.0, -700.0)
     *_, (state, _) = held_then_adrift(current, force, psi=0.0, adrift=200)
-    *_, (other, _) = held_then_adrift(to_ned(turn, *current), to_ned(turn, *force), psi=turn, adrift=200)
+    *_, (other, _) = held_then_adrift(
+        to_ned(turn, *current), to_ned(turn, *force), psi=turn, adrift=200
+    )
     assert other[2:4] == pytest.approx(to_ned(turn, *state[2:4]), abs=1e-9)
     assert other[4:6] == pytest.approx(to_ned(turn, *state[4:6]), abs=1e-5)
 
@@ -105,7 +115,9 @@ def test_update_is_the_kalman_filters_in_matrices():
     thrusters = 2e3, -3e3, 4e4
     known = known_of(Motion(0.0, 0.0, 0.4, 0.1, -0.2, 0.01), current, (400.0, -700.0), thrusters)
     start = unknown(known, hull=HULL, parameters=ASSUMED)
-    start = start._replace(current_north=0.1, current_east=0.05, force_north=300.0, force_east=-50.0)
+    start = start._replace(
+        current_north=0.1, current_east=0.05, force_north=300.0, force_east=-50.0
+    )
     start = start._replace(moment=700.0, thrust_error=(100.0, -300.0, 2e3))
     found = step(start, known)
 
@@ -128,14 +140,22 @@ def test_update_is_the_kalman_filters_in_matrices():
     P = transition @ np.array(start.covariance) @ transition + grown
     span, water = np.sqrt(P[0, 0]), to_ship @ mean[:2]
     rest = mean[2:4], mean[4], mean[5:]
-    slopes = [(load(water + d, *rest) - load(water - d, *rest)) / (2.0 * span) for d in span * np.eye(2)]
+    slopes = [
+        (load(water + d, *rest) - load(water - d, *rest)) / (2.0 * span) for d in span * np.eye(2)
+    ]
     turned = np.vstack([to_ship, np.zeros((1, 2))])
     H = np.column_stack([np.column_stack(slopes) @ to_ship, turned, [0.0, 0.0, 1.0], np.eye(3)])
-    damping = DP_SHIP.damping_surge * motion.u, DP_SHIP.damping_sway * motion.v, DP_SHIP.damping_yaw * motion.r
+    damping = (
+        DP_SHIP.damping_surge * motion.u,
+        DP_SHIP.damping_sway * motion.v,
+        DP_SHIP.damping_yaw * motion.r,
+    )
     noise = ASSUMED.load_noise * np.diag([1.0, 1.0, lever**2])
     gain = P @ H.T @ np.linalg.inv(H @ P @ H.T + noise)
     innovation = np.array(known.bias) - damping - load(water, *rest)
-    np.testing.assert_allclose([*found[2:7], *found.thrust_error], mean + gain @ innovation, rtol=1e-9)
+    np.testing.assert_allclose(
+        [*found[2:7], *found.thrust_error], mean + gain @ innovation, rtol=1e-9
+    )
     np.testing.assert_allclose(found.covariance, P - gain @ H @ P, rtol=1e-7, atol=1e-4)
 
 
@@ -158,10 +178,16 @@ def test_errors_of_thrust_are_gone_with_the_thrust():
     error = 0.0, 0.0, 2e4
     state, known = of_thrusters(error)
     assert state.thrust_error[2] > 0.7 * error[2]
-    with_thrust, without = ahead(known, state), ahead(known._replace(thrusters=(0.0, 0.0, 0.0)), state)
+    with_thrust, without = (
+        ahead(known, state),
+        ahead(known._replace(thrusters=(0.0, 0.0, 0.0)), state),
+    )
     none = ahead(known, state._replace(thrust_error=(0.0, 0.0, 0.0)))
     assert abs(with_thrust.psi - none.psi) > 0.1
-    held = ahead(known._replace(thrusters=(0.0, 0.0, 0.0)), state._replace(moment=error[2], thrust_error=(0.0,) * 3))
+    held = ahead(
+        known._replace(thrusters=(0.0, 0.0, 0.0)),
+        state._replace(moment=error[2], thrust_error=(0.0,) * 3),
+    )
     assert abs(without.psi - 0.4) < 0.3 * abs(held.psi - 0.4)
 
 

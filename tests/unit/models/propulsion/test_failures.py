@@ -39,7 +39,9 @@ def test_a_sound_unit_reports_the_thrust_it_gives():
 
 def test_full_thrust_comes_as_fast_as_the_motor_can_whatever_is_commanded():
     state = run(Failures(full_thrust=True), 10.0, thrust=-5e3, state=SETTLED)
-    assert thrust_of(state) == pytest.approx(60e3, rel=0.01) and state.reported == pytest.approx(60e3, rel=0.01)
+    assert thrust_of(state) == pytest.approx(60e3, rel=0.01) and state.reported == pytest.approx(
+        60e3, rel=0.01
+    )
 
 
 def test_a_frozen_drive_keeps_its_speed():
@@ -80,7 +82,9 @@ def test_with_reversed_angle_feedback_the_unit_ends_where_its_reading_is_opposit
 def test_the_granted_power_is_not_exceeded():
     state = SETTLED
     for _ in range(400):
-        state = azimuth_step(state, 60e3, 0.0, 0.0, 0.0, 0.0, Failures(power_limit=60e3), H, unit=UNIT)
+        state = azimuth_step(
+            state, 60e3, 0.0, 0.0, 0.0, 0.0, Failures(power_limit=60e3), H, unit=UNIT
+        )
         assert 2.0 * pi * state.n * state.torque <= 60e3 * (1.0 + 1e-2)
     assert 20e3 < thrust_of(state) < 40e3 and state.saturated
 
@@ -94,9 +98,13 @@ def test_the_tunnel_fails_in_the_same_ways():
 
     settled = after(SOUND)
     assert settled.reported == pytest.approx(10e3, rel=1e-3)
-    assert after(Failures(full_thrust=True), -5e3, settled).reported == pytest.approx(21.6e3, rel=0.01)
+    assert after(Failures(full_thrust=True), -5e3, settled).reported == pytest.approx(
+        21.6e3, rel=0.01
+    )
     assert after(Failures(rpm_frozen=True), -5e3, settled).n == pytest.approx(settled.n, rel=1e-4)
-    assert after(Failures(rate_share=0.1), -5e3, settled, 5.0).thrust_cmd == pytest.approx(10e3 - 500.0)
+    assert after(Failures(rate_share=0.1), -5e3, settled, 5.0).thrust_cmd == pytest.approx(
+        10e3 - 500.0
+    )
     reversed_ = after(Failures(rpm_reversed=True), 10e3, settled)
     assert 60.0 * reversed_.n > 1700.0 and reversed_.reported < -19e3
     assert after(Failures(True), 10e3, settled).torque == 0.0

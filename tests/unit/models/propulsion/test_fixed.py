@@ -34,7 +34,9 @@ def test_a_thruster_that_points_to_starboard_pushes_to_starboard_at_its_place():
 
 def test_way_in_the_direction_of_the_thrust_takes_thrust_and_way_against_it_gives_some():
     slow = replace(BLUE, speed_loss=0.25, x=0.0)
-    ahead, astern = (fixed_loads(F, 0.0, 1.0, 0.0, 0.0, thruster=slow).thrust for F in (10.0, -10.0))
+    ahead, astern = (
+        fixed_loads(F, 0.0, 1.0, 0.0, 0.0, thruster=slow).thrust for F in (10.0, -10.0)
+    )
     assert (ahead, astern) == pytest.approx((7.5, -12.5))
     assert fixed_loads(10.0, 0.0, 9.0, 0.0, 0.0, thruster=slow).thrust == 0.0
 
@@ -45,5 +47,7 @@ def test_the_inner_thruster_of_a_turn_meets_less_water():
 
 
 def test_lost_thrust_is_lost_of_force_and_moment():
-    whole, part = (fixed_loads(9.0, 0.0, *STILL, thruster=replace(BLUE, thrust_loss=x)) for x in (0.0, 0.5))
+    whole, part = (
+        fixed_loads(9.0, 0.0, *STILL, thruster=replace(BLUE, thrust_loss=x)) for x in (0.0, 0.5)
+    )
     assert part[2:] == pytest.approx([0.5 * load for load in whole[2:]])

@@ -13,16 +13,22 @@ from shipcosim.models.propulsion.interaction import (
     thrust_shares,
 )
 
-SIDE_BY_SIDE = InteractionParameters(x_1=0.0, y_1=-2.0, diameter_1=1.9, x_2=0.0, y_2=2.0, diameter_2=1.9)
+SIDE_BY_SIDE = InteractionParameters(
+    x_1=0.0, y_1=-2.0, diameter_1=1.9, x_2=0.0, y_2=2.0, diameter_2=1.9
+)
 TANDEM = InteractionParameters(x_1=10.0, diameter_1=2.0, x_2=0.0, diameter_2=2.0)
 
 
 def shares(parameters, azimuths, washes, **more):
     idle = (0.0,) * (6 - len(azimuths))
-    return thrust_shares((*azimuths, *idle), (*washes, *idle), found=pairs(parameters), **more)[: len(azimuths)]
+    return thrust_shares((*azimuths, *idle), (*washes, *idle), found=pairs(parameters), **more)[
+        : len(azimuths)
+    ]
 
 
-@pytest.mark.parametrize(("distance", "published"), [(1.0, 0.20), (4.0, 0.43), (8.0, 0.59), (16.0, 0.76)])
+@pytest.mark.parametrize(
+    ("distance", "published"), [(1.0, 0.20), (4.0, 0.43), (8.0, 0.59), (16.0, 0.76)]
+)
 def test_loss_on_the_axis_is_that_of_dang_and_laheij(distance, published):
     """1 - 0.8^((x/D)^(2/3)), worked out by hand."""
     assert tandem_share(distance) == pytest.approx(published, abs=0.005)
@@ -62,7 +68,9 @@ def test_port_loss_mirrors_starboard_loss():
 
 
 def test_weak_slipstream_takes_little_and_none_nothing():
-    strong, weak, none = (shares(SIDE_BY_SIDE, (0.0, pi / 2), (5.0, wash))[0] for wash in (9.0, 1.0, 0.0))
+    strong, weak, none = (
+        shares(SIDE_BY_SIDE, (0.0, pi / 2), (5.0, wash))[0] for wash in (9.0, 1.0, 0.0)
+    )
     assert strong < weak < none == 1.0
     assert 1.0 - weak == pytest.approx((1.0 - strong) / 5.0, rel=1e-5)
 

@@ -15,10 +15,14 @@ from shipcosim.models.propulsion.mapped import (
     within_map,
 )
 
-BOAT = MapParameters(x=-0.4, y=0.3, thrust_table="1100 -28; 1480 -1; 1520 1; 1900 55", speed_loss=0.1)
+BOAT = MapParameters(
+    x=-0.4, y=0.3, thrust_table="1100 -28; 1480 -1; 1520 1; 1900 55", speed_loss=0.1
+)
 
 
-@pytest.mark.parametrize(("command", "thrust"), [(1100, -28), (900, -28), (1500, 0), (1710, 28), (2500, 55)])
+@pytest.mark.parametrize(
+    ("command", "thrust"), [(1100, -28), (900, -28), (1500, 0), (1710, 28), (2500, 55)]
+)
 def test_thrust_is_the_maps_and_constant_beyond_it(command, thrust):
     assert mapped_thrust(float(command), thruster=BOAT) == pytest.approx(thrust)
 
@@ -49,7 +53,9 @@ def test_a_map_whose_thrust_falls_is_refused():
 
 def test_command_changes_no_quicker_than_its_rate():
     """From stop to full ahead at 1.44 deg/s: 28.7 deg take 19.93 s."""
-    pitch = MapParameters(x=-38.0, y=-6.0, thrust_table="-21.5 -1e5; 0 0; 28.7 3e5", command_rate=1.44)
+    pitch = MapParameters(
+        x=-38.0, y=-6.0, thrust_table="-21.5 -1e5; 0 0; 28.7 3e5", command_rate=1.44
+    )
     command, steps = 0.0, 0
     while command < 28.7:
         command, steps = commanded(command, 28.7, 0.05, thruster=pitch), steps + 1
@@ -59,4 +65,6 @@ def test_command_changes_no_quicker_than_its_rate():
 
 @pytest.mark.parametrize("thrust", [-28.0, -20.0, 0.5, 41.0, 55.0])
 def test_map_read_backwards_gives_the_command_of_a_thrust(thrust):
-    assert mapped_thrust(mapped_command(thrust, thruster=BOAT), thruster=BOAT) == pytest.approx(thrust)
+    assert mapped_thrust(mapped_command(thrust, thruster=BOAT), thruster=BOAT) == pytest.approx(
+        thrust
+    )

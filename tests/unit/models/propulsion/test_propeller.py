@@ -28,7 +28,9 @@ def KT_KQ(J, n):
     return thrust / (RHO * D**4 * n * abs(n)), torque / (RHO * D**5 * n * abs(n))
 
 
-@pytest.mark.parametrize("n, KT, KQ", [(3.0, 0.8208, 0.0945), (-3.0, 0.418, 0.0977), (0.5, 0.8208, 0.0945)])
+@pytest.mark.parametrize(
+    "n, KT, KQ", [(3.0, 0.8208, 0.0945), (-3.0, 0.418, 0.0977), (0.5, 0.8208, 0.0945)]
+)
 def test_bollard_points_are_those_of_the_nominal_model(n, KT, KQ):
     found = KT_KQ(0.0, n)
     assert found[0] == pytest.approx(KT, abs=5e-5) and found[1] == pytest.approx(KQ, abs=1e-4)
@@ -43,8 +45,12 @@ def test_first_quadrant_has_the_polynomial_of_the_unit(J):
 
 def ka_4_70(shared):
     """KT and KQ of Ka4-70 in nozzle 19A at P/D 1.30, as functions of the advance ratio."""
-    series = json.loads((shared / "reference/data/propeller_ka_19a_polynomials.json").read_text())["Ka4-70_19A"]
-    return [lambda J, k=series[name]: sum(c * 1.30**x * J**y for c, x, y in k) for name in ("KT", "KQ")]
+    series = json.loads((shared / "reference/data/propeller_ka_19a_polynomials.json").read_text())[
+        "Ka4-70_19A"
+    ]
+    return [
+        lambda J, k=series[name]: sum(c * 1.30**x * J**y for c, x, y in k) for name in ("KT", "KQ")
+    ]
 
 
 @pytest.mark.parametrize("J", [0.7, 0.85, 1.0, 1.15, 1.3, 1.368])
@@ -66,7 +72,9 @@ def test_power_delivered_to_the_ship_is_some_0_73_of_that_of_the_shaft(rpm):
     assert 0.70 < thrust * V / (2.0 * pi * n * torque) < 0.78
 
 
-@pytest.mark.parametrize(("rpm", "knots", "power"), [(110.0, 7.25, 50e3), (170.0, 10.57, 200e3), (195.0, 11.87, 310e3)])
+@pytest.mark.parametrize(
+    ("rpm", "knots", "power"), [(110.0, 7.25, 50e3), (170.0, 10.57, 200e3), (195.0, 11.87, 310e3)]
+)
 def test_power_at_speed_is_near_what_the_parameter_sheet_estimates(rpm, knots, power):
     """Its P/D of 1.32 is fitted to the thrust at all speeds; ours, 1.30, to that at J = 1: 8 % less."""
     n = rpm / 60.0
@@ -82,7 +90,9 @@ def test_torque_falls_evenly_from_bollard_on():
 def test_thrust_and_torque_have_no_jump_anywhere_on_the_circle():
     """By 0.01 deg, at a fixed speed of the blade section of 10 m/s: no step beyond what the steepest slope explains."""
     beta = np.radians(np.arange(-18000, 18001) * 0.01)
-    thrust, torque = propeller_loads(10.0 * np.sin(beta), 10.0 * np.cos(beta) / (0.7 * pi * D), propeller=P)
+    thrust, torque = propeller_loads(
+        10.0 * np.sin(beta), 10.0 * np.cos(beta) / (0.7 * pi * D), propeller=P
+    )
     for loads in (thrust, torque):
         assert np.max(np.abs(np.diff(loads))) < 2e-3 * np.ptp(loads)
         assert loads[0] == pytest.approx(loads[-1])
@@ -91,11 +101,16 @@ def test_thrust_and_torque_have_no_jump_anywhere_on_the_circle():
 def test_look_up_is_as_exact_as_stated():
     """Between the nodes in the second and third quadrant, where only the scaled series holds."""
     degrees = np.array([95.05, 123.45, 170.05, -95.05, -140.03, -179.95])
-    scale_T, scale_Q = 1.0 - 0.125 * (np.abs(degrees) - 90.0) / 90.0, 1.0 - 0.187 * (np.abs(degrees) - 90.0) / 90.0
+    scale_T, scale_Q = (
+        1.0 - 0.125 * (np.abs(degrees) - 90.0) / 90.0,
+        1.0 - 0.187 * (np.abs(degrees) - 90.0) / 90.0,
+    )
     beta = np.radians(degrees)
     ct, cq = series(beta)
     C = 0.5 * RHO * 100.0 * pi / 4.0 * D**2
-    thrust, torque = propeller_loads(10.0 * np.sin(beta), 10.0 * np.cos(beta) / (0.7 * pi * D), propeller=P)
+    thrust, torque = propeller_loads(
+        10.0 * np.sin(beta), 10.0 * np.cos(beta) / (0.7 * pi * D), propeller=P
+    )
     np.testing.assert_allclose(thrust / C, ct * scale_T, atol=2e-5)
     np.testing.assert_allclose(torque / (C * D), cq * scale_Q, atol=5e-6)
 
@@ -103,7 +118,9 @@ def test_look_up_is_as_exact_as_stated():
 def test_series_is_b4_70_of_the_wageningen_polynomials(shared):
     """Parameter sheet 6.2: KT and 10 KQ within 0.03 at J from 0 to 0.9. At P/D 1.4 KT is off by 0.039 at J 0.1."""
     path = shared / "reference/data/wageningen_b_polynomials.csv"
-    terms = [line.split(",") for line in path.read_text().splitlines() if line.startswith(("KT", "KQ"))]
+    terms = [
+        line.split(",") for line in path.read_text().splitlines() if line.startswith(("KT", "KQ"))
+    ]
     for J in np.linspace(0.0, 0.9, 10):
         K = {"KT": 0.0, "KQ": 0.0}
         for which, C, s, t, u, v in terms:
@@ -124,7 +141,9 @@ def test_bollard_speed_gives_the_thrust_and_bollard_torque_its_torque(thrust):
 
 
 def test_a_stopped_propeller_is_a_brake_both_ways():
-    assert propeller_loads(2.0, 0.0, propeller=P)[0] < 0.0 < propeller_loads(-2.0, 0.0, propeller=P)[0]
+    assert (
+        propeller_loads(2.0, 0.0, propeller=P)[0] < 0.0 < propeller_loads(-2.0, 0.0, propeller=P)[0]
+    )
 
 
 def test_scale_outside_leaves_the_first_quadrant_alone_and_is_full_astern():

@@ -27,7 +27,12 @@ def published(n, delta, u, v, r):
     KT = 0.2931 - 0.2753 * J - 0.1385 * J**2
     T = RHO * n**2 * 0.204**4 * KT
     eta = 0.591
-    u_R = 1.09 * u * (1.0 - w) * sqrt(eta * (1.0 + 0.5 * (sqrt(1.0 + 8.0 * KT / (pi * J**2)) - 1.0)) ** 2 + 1.0 - eta)
+    u_R = (
+        1.09
+        * u
+        * (1.0 - w)
+        * sqrt(eta * (1.0 + 0.5 * (sqrt(1.0 + 8.0 * KT / (pi * J**2)) - 1.0)) ** 2 + 1.0 - eta)
+    )
     v_R = U * (0.640 if beta_R > 0.0 else 0.395) * beta_R
     F = 0.5 * RHO * 0.0539 * (u_R**2 + v_R**2) * 2.747 * sin(delta - atan2(v_R, u_R))
     X = (1.0 - 0.22) * T - (1.0 - 0.387) * F * sin(delta)

@@ -7,11 +7,22 @@ import numpy as np
 import pytest
 from ships import parameters, unit_on_centreline
 
-from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_loads, azimuth_replay, azimuth_step, turned
+from shipcosim.models.propulsion.azimuth import (
+    AzimuthParameters,
+    azimuth_loads,
+    azimuth_replay,
+    azimuth_step,
+    turned,
+)
 from shipcosim.models.propulsion.drive import at_rest, powers
 from shipcosim.models.propulsion.failures import SOUND, Failures
 from shipcosim.models.propulsion.propeller import propeller_loads
-from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay, tunnel_step
+from shipcosim.models.propulsion.tunnel import (
+    TunnelParameters,
+    tunnel_loads,
+    tunnel_replay,
+    tunnel_step,
+)
 
 UNIT = unit_on_centreline(x=0.0)
 THESIS = parameters(AzimuthParameters, "thesis", "port")
@@ -41,7 +52,9 @@ def test_forces_are_those_of_the_units_own_model(shared):
     """1260 points: side force to 3.75 kN rms of 36 kN, thrust to 3.7 kN rms of 60 kN (0.25 kN on the axis)."""
     u, v, _, angle, rpm, X, Y = curve(shared, "gunnerus_azimuth_fmu_dataset.csv").T
     angle, still = np.radians(angle), 0.0 * u
-    loads = azimuth_loads(azimuth_replay(rpm / 60.0, angle, u, v, still, unit=UNIT), u, v, still, unit=UNIT)
+    loads = azimuth_loads(
+        azimuth_replay(rpm / 60.0, angle, u, v, still, unit=UNIT), u, v, still, unit=UNIT
+    )
     c, s = np.cos(angle), np.sin(angle)
     off_thrust, off_side = loads.thrust - (c * X + s * Y), loads.side_force - (c * Y - s * X)
     on_axis = (angle == 0.0) & (v == 0.0)
@@ -73,7 +86,9 @@ FORCES = """
 def test_forces_on_the_ship_are_those_that_were_calibrated(row):
     """In all quadrants, as before the torque came from another series: the trials were fitted with these."""
     u_a, u_s, n, thrust, side = map(float, row.split())
-    loads = azimuth_loads(azimuth_replay(n, 0.0, u_a, u_s, 0.0, unit=UNIT), u_a, u_s, 0.0, unit=UNIT)
+    loads = azimuth_loads(
+        azimuth_replay(n, 0.0, u_a, u_s, 0.0, unit=UNIT), u_a, u_s, 0.0, unit=UNIT
+    )
     assert (loads.thrust, loads.side_force) == pytest.approx((thrust, side), rel=1e-13)
 
 
@@ -91,13 +106,20 @@ def test_thesis_set_has_the_curves_of_the_thesis(shared):
 def test_side_force_astern_has_its_factor_on_what_goes_with_shaft_speed(n):
     """-c rho D² (V + factor abs(n) D) u_s: continuous through n = 0."""
     unit, u, v = replace(UNIT, side_force_astern=0.71), 0.3, -0.4
-    side = azimuth_loads(azimuth_replay(n, 0.0, u, v, 0.0, unit=unit), u, v, 0.0, unit=unit).side_force
+    side = azimuth_loads(
+        azimuth_replay(n, 0.0, u, v, 0.0, unit=unit), u, v, 0.0, unit=unit
+    ).side_force
     wash = (0.71 if n < 0.0 else 1.0) * abs(n) * 1.9
     assert side == pytest.approx(-0.80 * 1025.0 * 1.9**2 * (0.5 + wash) * v, rel=1e-9)
 
 
 def test_thesis_set_has_no_side_force():
-    assert azimuth_loads(azimuth_replay(2.0, 0.0, 0.0, 1.0, 0.0, unit=THESIS), 0.0, 1.0, 0.0, unit=THESIS).tau_Y == 0.0
+    assert (
+        azimuth_loads(
+            azimuth_replay(2.0, 0.0, 0.0, 1.0, 0.0, unit=THESIS), 0.0, 1.0, 0.0, unit=THESIS
+        ).tau_Y
+        == 0.0
+    )
 
 
 def test_tunnel_has_the_nominal_curve(shared):
@@ -109,8 +131,12 @@ def test_tunnel_has_the_nominal_curve(shared):
 
 def test_load_is_along_the_azimuth_and_turns_the_ship_about_the_origin():
     unit = unit_on_centreline(x=-14.02, y=2.0)
-    loads = azimuth_loads(azimuth_replay(2.0, 0.6, 0.0, 0.0, 0.0, unit=unit), 0.0, 0.0, 0.0, unit=unit)
-    assert (loads.tau_X, loads.tau_Y) == pytest.approx((loads.thrust * cos(0.6), loads.thrust * sin(0.6)))
+    loads = azimuth_loads(
+        azimuth_replay(2.0, 0.6, 0.0, 0.0, 0.0, unit=unit), 0.0, 0.0, 0.0, unit=unit
+    )
+    assert (loads.tau_X, loads.tau_Y) == pytest.approx(
+        (loads.thrust * cos(0.6), loads.thrust * sin(0.6))
+    )
     assert loads.tau_N == pytest.approx(loads.thrust * (-14.02 * sin(0.6) - 2.0 * cos(0.6)))
 
 
@@ -123,8 +149,12 @@ def test_a_stopped_unit_takes_energy_from_any_motion():
 
 
 def test_port_unit_mirrors_starboard_unit():
-    port, starboard = (parameters(AzimuthParameters, "gunnerus-33m9", side) for side in ("port", "starboard"))
-    left = azimuth_loads(azimuth_replay(2.0, 0.5, 1.0, 0.3, 0.05, unit=port), 1.0, 0.3, 0.05, unit=port)
+    port, starboard = (
+        parameters(AzimuthParameters, "gunnerus-33m9", side) for side in ("port", "starboard")
+    )
+    left = azimuth_loads(
+        azimuth_replay(2.0, 0.5, 1.0, 0.3, 0.05, unit=port), 1.0, 0.3, 0.05, unit=port
+    )
     right = azimuth_replay(2.0, -0.5, 1.0, -0.3, -0.05, unit=starboard)
     right = azimuth_loads(right, 1.0, -0.3, -0.05, unit=starboard)
     assert (right.tau_X, -right.tau_Y, -right.tau_N) == pytest.approx(left[2:])
@@ -202,7 +232,9 @@ def test_motor_gives_its_torque_at_bollard_and_its_speed_at_service_speed(u, ask
     """Beyond the limits of thrust. Torque is short up to some 2 m/s; 12.2 kn take 330 kW, the sheet says 355 kW."""
     unit = replace(UNIT, thrust_min=-200e3, thrust_max=200e3, thrust_rate=20e3)
     state = run([asked] * 1200, unit=unit, u=u)[-1]
-    assert 60.0 * state.n == pytest.approx(rpm, rel=0.005) and state.torque == pytest.approx(torque, rel=0.005)
+    assert 60.0 * state.n == pytest.approx(rpm, rel=0.005) and state.torque == pytest.approx(
+        torque, rel=0.005
+    )
     assert state.saturated and abs(2.0 * pi * state.n * state.torque) <= 500e3
 
 
@@ -210,7 +242,9 @@ def test_limits_of_thrust_are_within_what_the_motor_can():
     """60 kN ahead and 30 kN astern take 200 kW each at bollard."""
     for asked in (60e3, -30e3):
         state = run([asked] * 1600)[-1]
-        assert not state.saturated and 2.0 * pi * state.n * state.torque == pytest.approx(195.5e3, rel=0.01)
+        assert not state.saturated and 2.0 * pi * state.n * state.torque == pytest.approx(
+            195.5e3, rel=0.01
+        )
 
 
 def test_speed_limit_is_never_passed():
@@ -241,12 +275,16 @@ def test_energy_goes_into_water_bearings_shaft_and_resistor(share):
     water = omega * propeller_loads(u + 0.0 * n, n, propeller=unit)[1]
     lost = np.trapezoid(water + unit.friction * omega**2 + heat, dx=h)
     kinetic = 0.5 * unit.inertia * (omega[-1] ** 2 - omega[0] ** 2)
-    assert np.trapezoid(drawn, dx=h) == pytest.approx(lost + kinetic, abs=2e-3 * np.trapezoid(np.abs(water), dx=h))
+    assert np.trapezoid(drawn, dx=h) == pytest.approx(
+        lost + kinetic, abs=2e-3 * np.trapezoid(np.abs(water), dx=h)
+    )
     assert (np.min(drawn) < -1e3) == (share > 0.0)
 
 
 def test_regeneration_changes_no_motion_of_the_shaft():
-    with_it, without = (reversal(replace(UNIT, regeneration=share), 3.0)[-1] for share in (1.0, 0.0))
+    with_it, without = (
+        reversal(replace(UNIT, regeneration=share), 3.0)[-1] for share in (1.0, 0.0)
+    )
     assert with_it == without
 
 
@@ -345,17 +383,23 @@ def replayed(rpm, azimuth=0.3, *, unit, neighbour=(0.0, 0.0), flow=FLOW):
 
 @pytest.mark.parametrize("rpm", [-90.0, 0.0, 120.0])
 def test_lost_thrust_is_missing_along_the_axis_and_the_torque_stays(rpm):
-    (state, whole), (same, left) = (replayed(rpm, unit=replace(UNIT, thrust_loss=loss)) for loss in (0.0, 0.25))
+    (state, whole), (same, left) = (
+        replayed(rpm, unit=replace(UNIT, thrust_loss=loss)) for loss in (0.0, 0.25)
+    )
     assert left.thrust == pytest.approx(0.75 * whole.thrust)
     assert left.side_force == whole.side_force and same.torque == state.torque
     axis = np.array([cos(0.3), sin(0.3)])
-    np.testing.assert_allclose([left.tau_X - whole.tau_X, left.tau_Y - whole.tau_Y], -0.25 * whole.thrust * axis)
+    np.testing.assert_allclose(
+        [left.tau_X - whole.tau_X, left.tau_Y - whole.tau_Y], -0.25 * whole.thrust * axis
+    )
 
 
 def test_loss_in_reverse_acts_at_negative_speed_only_and_on_what_the_other_loss_leaves():
     unit = replace(UNIT, thrust_loss=0.1, reverse_loss=0.4)
     for rpm, kept in ((120.0, 0.9), (-120.0, 0.9 * 0.6)):
-        assert replayed(rpm, unit=unit)[1].thrust == pytest.approx(kept * replayed(rpm, unit=UNIT)[1].thrust)
+        assert replayed(rpm, unit=unit)[1].thrust == pytest.approx(
+            kept * replayed(rpm, unit=UNIT)[1].thrust
+        )
 
 
 def test_loss_at_the_hull_is_none_ahead_and_whole_athwartships():
@@ -376,7 +420,10 @@ def test_the_drive_knows_nothing_of_lost_thrust():
 def test_azimuth_offset_turns_the_loads_and_not_what_is_reported():
     """Offset = real minus given."""
     offset = replace(UNIT, azimuth_offset=radians(7.0))
-    (state, found), (real, expected) = replayed(100.0, 0.3, unit=offset), replayed(100.0, 0.3 + radians(7.0), unit=UNIT)
+    (state, found), (real, expected) = (
+        replayed(100.0, 0.3, unit=offset),
+        replayed(100.0, 0.3 + radians(7.0), unit=UNIT),
+    )
     assert found == pytest.approx(expected) and state.torque == pytest.approx(real.torque)
     assert state.azimuth == 0.3
     driven = azimuth_step(at_rest(0.3), 5e3, 0.3, *FLOW, SOUND, H, unit=offset)
@@ -397,24 +444,37 @@ def test_lost_thrust_of_a_tunnel_leaves_its_torque():
     lossy = replace(TUNNEL, thrust_loss=0.3)
     state, whole = tunnel_replay(-15.0, tunnel=lossy), tunnel_replay(-15.0, tunnel=TUNNEL)
     assert state == whole
-    ratio = tunnel_loads(state, 0.4, tunnel=lossy).thrust / tunnel_loads(whole, 0.4, tunnel=TUNNEL).thrust
+    ratio = (
+        tunnel_loads(state, 0.4, tunnel=lossy).thrust
+        / tunnel_loads(whole, 0.4, tunnel=TUNNEL).thrust
+    )
     assert ratio == pytest.approx(0.7)
 
 
 @pytest.mark.parametrize(
     ("azimuth", "rpm", "kept"),
-    [(90.0, 80.0, 0.6), (110.0, 80.0, 1.0 - 0.4 / np.e), (-90.0, 80.0, 1.0), (-90.0, -80.0, 0.6), (90.0, 0.0, 1.0)],
+    [
+        (90.0, 80.0, 0.6),
+        (110.0, 80.0, 1.0 - 0.4 / np.e),
+        (-90.0, 80.0, 1.0),
+        (-90.0, -80.0, 0.6),
+        (90.0, 0.0, 1.0),
+    ],
 )
 def test_the_unit_that_a_slipstream_hits_loses_thrust(azimuth, rpm, kept):
     """Port, with starboard 4 m beside it: starboard pushing to starboard throws its water at port."""
     unit = unit_on_centreline(**PAIR, interaction_loss=0.4)
     hit = replayed(100.0, unit=unit, neighbour=(radians(azimuth), rpm))[1]
-    assert hit.thrust == pytest.approx(kept * replayed(100.0, unit=replace(unit, interaction_loss=0.0))[1].thrust)
+    assert hit.thrust == pytest.approx(
+        kept * replayed(100.0, unit=replace(unit, interaction_loss=0.0))[1].thrust
+    )
 
 
 def test_both_units_of_the_ship_know_where_the_other_one_is():
     for ship in ("gunnerus-33m9", "gunnerus-28m9", "thesis"):
-        port, starboard = (parameters(AzimuthParameters, ship, side) for side in ("port", "starboard"))
+        port, starboard = (
+            parameters(AzimuthParameters, ship, side) for side in ("port", "starboard")
+        )
         assert (port.neighbour_x, port.neighbour_y) == (starboard.x, starboard.y)
         assert (starboard.neighbour_x, starboard.neighbour_y) == (port.x, port.y)
 
@@ -433,10 +493,17 @@ EFFECTS = dict(
 @pytest.mark.parametrize("name", EFFECTS)
 @pytest.mark.parametrize("rpm", [-80.0, 100.0])
 def test_effects_as_an_array_are_as_many_units(name, rpm):
-    unit = unit_on_centreline(**PAIR, **({"interaction_loss": 0.3} if name == "interaction_width" else {}))
+    unit = unit_on_centreline(
+        **PAIR, **({"interaction_loss": 0.3} if name == "interaction_width" else {})
+    )
     values = np.array([getattr(unit, name), EFFECTS[name]])
     neighbour = (radians(80.0), 60.0)
-    each = [replayed(rpm, unit=replace(unit, **{name: float(value)}), neighbour=neighbour)[1] for value in values]
+    each = [
+        replayed(rpm, unit=replace(unit, **{name: float(value)}), neighbour=neighbour)[1]
+        for value in values
+    ]
     together = replayed(rpm, unit=replace(unit, **{name: values}), neighbour=neighbour)[1]
-    np.testing.assert_allclose(np.broadcast_arrays(*together, values)[:-1], np.transpose(each), rtol=1e-12)
+    np.testing.assert_allclose(
+        np.broadcast_arrays(*together, values)[:-1], np.transpose(each), rtol=1e-12
+    )
     assert each[0] == replayed(rpm, unit=unit, neighbour=neighbour)[1]

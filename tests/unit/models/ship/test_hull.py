@@ -30,7 +30,16 @@ def mass_matrix(hull):
 
 @pytest.mark.parametrize(
     "v, r",
-    [(1.0, 0.0), (1.0, 0.02), (0.1, 0.08), (-0.3, 0.05), (0.2, -0.06), (0.0, 0.1), (0.5, 0.5 / 16.95), (0.0, 0.0)],
+    [
+        (1.0, 0.0),
+        (1.0, 0.02),
+        (0.1, 0.08),
+        (-0.3, 0.05),
+        (0.2, -0.06),
+        (0.0, 0.1),
+        (0.5, 0.5 / 16.95),
+        (0.0, 0.0),
+    ],
 )
 def test_cross_flow_is_the_sum_over_strips(v, r):
     x = (np.arange(100_000) + 0.5) / 100_000 * 33.9 - 16.95
@@ -93,7 +102,9 @@ def test_mass_scale_is_a_ship_of_that_mass_and_inertia_in_the_same_water():
     scaled = replace(LONG, mass_scale=1.15, centre_of_gravity_x=0.7)
     heavy = replace(LONG, mass=1.15 * 531e3, inertia_yaw=1.15 * 43.0e6, centre_of_gravity_x=0.7)
     motion = (*ANY_VELOCITY, 2e4, -1e4, 3e5)
-    np.testing.assert_allclose(accelerations(*motion, hull=scaled), accelerations(*motion, hull=heavy), rtol=1e-12)
+    np.testing.assert_allclose(
+        accelerations(*motion, hull=scaled), accelerations(*motion, hull=heavy), rtol=1e-12
+    )
     at_rest = accelerations(0.0, 0.0, 0.0, 1e4, 0.0, 0.0, hull=replace(LONG, mass_scale=1.15))
     assert at_rest == pytest.approx((1e4 / (1.15 * 531e3 + 26_550.0), 0.0, 0.0))
 
@@ -103,20 +114,30 @@ def test_drag_scale_multiplies_the_resistance_ahead_and_nothing_else():
     u, v, r = ANY_VELOCITY
     X, Y, N = hull_loads(u, v, r, hull=replace(hull, drag_scale=2.5))
     X_once, Y_once, N_once = hull_loads(u, v, r, hull=hull)
-    np.testing.assert_allclose(X - X_once, 1.5 * (-400.0 * u - 1645.0 * u * np.abs(u)), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(
+        X - X_once, 1.5 * (-400.0 * u - 1645.0 * u * np.abs(u)), rtol=1e-9, atol=1e-6
+    )
     assert np.array_equal(Y, Y_once) and np.array_equal(N, N_once)
 
 
 def test_cross_flow_scale_multiplies_the_strips_and_nothing_else():
     u, v, r = ANY_VELOCITY
-    found = np.subtract(hull_loads(u, v, r, hull=replace(LONG, cross_flow_scale=1.4)), hull_loads(u, v, r, hull=LONG))
-    np.testing.assert_allclose(found, 0.4 * np.array(models.cross_flow(u, v, r, hull=LONG)), rtol=1e-6, atol=1e-3)
+    found = np.subtract(
+        hull_loads(u, v, r, hull=replace(LONG, cross_flow_scale=1.4)),
+        hull_loads(u, v, r, hull=LONG),
+    )
+    np.testing.assert_allclose(
+        found, 0.4 * np.array(models.cross_flow(u, v, r, hull=LONG)), rtol=1e-6, atol=1e-3
+    )
 
 
 def test_cross_flow_scale_of_a_hull_without_strips_is_on_damping_in_sway_and_yaw():
     u, v, r = ANY_VELOCITY
     hull = replace(SHORT, Y_v=-500.0, Y_r=100.0, N_v=200.0, N_r=-3e4, X_u=-50.0, N_modrr=-1e6)
-    found = np.subtract(hull_loads(u, v, r, hull=replace(hull, cross_flow_scale=1.4)), hull_loads(u, v, r, hull=hull))
+    found = np.subtract(
+        hull_loads(u, v, r, hull=replace(hull, cross_flow_scale=1.4)),
+        hull_loads(u, v, r, hull=hull),
+    )
     Y = -500.0 * v + 100.0 * r + hull.Y_modvv * v * np.abs(v)
     N = 200.0 * v - 3e4 * r - 1e6 * r * np.abs(r)
     np.testing.assert_allclose(found, (0.0 * u, 0.4 * Y, 0.4 * N), rtol=1e-6, atol=1e-2)
@@ -125,7 +146,10 @@ def test_cross_flow_scale_of_a_hull_without_strips_is_on_damping_in_sway_and_yaw
 def test_growing_drag_is_the_quadratic_one_at_froude_number_a_quarter_and_a_higher_power_of_speed():
     growing = replace(LONG, drag_growth=1.0)
     middle = 0.25 * np.sqrt(9.81 * LONG.length)
-    drag = [-models.quadratic_damping(u, 0.0, 0.0, hull=growing)[0] for u in (middle, 2.0 * middle, -2.0 * middle)]
+    drag = [
+        -models.quadratic_damping(u, 0.0, 0.0, hull=growing)[0]
+        for u in (middle, 2.0 * middle, -2.0 * middle)
+    ]
     assert drag[0] == pytest.approx(-LONG.X_uu * middle**2, rel=1e-3)
     assert drag[1] == pytest.approx(8.0 * drag[0], rel=1e-3) and drag[2] == -drag[1]
     assert models.quadratic_damping(0.0, 0.0, 0.0, hull=growing)[0] == 0.0
@@ -155,7 +179,9 @@ def test_mmg_hull_is_the_published_sum_with_its_munk_moment_once(state):
     X = -0.022 - 0.040 * a**2 + 0.002 * a * b + 0.011 * b**2 + 0.771 * a**4
     Y = -0.315 * a + 0.083 * b - 1.607 * a**3 + 0.379 * a * a * b - 0.391 * a * b * b + 0.008 * b**3
     N = -0.137 * a - 0.049 * b - 0.030 * a**3 - 0.294 * a * a * b + 0.055 * a * b * b - 0.013 * b**3
-    expected = SIZE * U**2 * np.array([X, Y, 7.0 * N]) + np.array([2486.0 * v * r, -245.0 * u * r, 0.0])
+    expected = SIZE * U**2 * np.array([X, Y, 7.0 * N]) + np.array(
+        [2486.0 * v * r, -245.0 * u * r, 0.0]
+    )
     assert hull_loads(u, v, r, hull=TANKER) == pytest.approx(expected, rel=2e-3, abs=0.05)
 
 
@@ -167,7 +193,10 @@ def test_mmg_loads_vanish_at_rest_and_stay_finite_where_she_turns_on_the_spot():
 
 def test_cross_flow_scale_multiplies_mmgs_third_order_alone():
     scaled = replace(TANKER, cross_flow_scale=2.0)
-    first = replace(TANKER, **{f"mmg_{n}": 0.0 for n in "Y_vvv Y_vvr Y_vrr Y_rrr N_vvv N_vvr N_vrr N_rrr".split()})
+    first = replace(
+        TANKER,
+        **{f"mmg_{n}": 0.0 for n in "Y_vvv Y_vvr Y_vrr Y_rrr N_vvv N_vvr N_vrr N_rrr".split()},
+    )
     state = (0.9, -0.25, 0.05)
     one, two, linear = (np.array(models.mmg(*state, hull=hull)) for hull in (TANKER, scaled, first))
     np.testing.assert_allclose(two - linear, [0.0, *(2.0 * (one - linear)[1:])], atol=1e-9)

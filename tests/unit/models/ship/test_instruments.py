@@ -56,7 +56,9 @@ def test_motion_of_is_the_inverse():
         assert true_motion(*readings(*circle(t), **errors), **errors) == pytest.approx(circle(t))
 
 
-@pytest.mark.parametrize(("lag", "off"), [(0.0, 3e-4), (0.03, 2e-4), (0.05, 1e-4), (0.4, 1e-4), (1.13, 1e-4)])
+@pytest.mark.parametrize(
+    ("lag", "off"), [(0.0, 3e-4), (0.03, 2e-4), (0.05, 1e-4), (0.4, 1e-4), (1.13, 1e-4)]
+)
 def test_recalled_lag_ago_is_the_motion_lag_ago(lag, off):
     """Stepped at 0.05 s through a heading of 180 deg; linear between steps leaves 1e-4 m, and beyond the last more."""
     h, history = 0.05, ((0.0, Motion(*circle(0.0))),)

@@ -25,7 +25,9 @@ def recorded(shared):
     """Turn of the short ship in Vico: states, accelerations, and the recorded loads of its two units."""
     path = shared / "reference/data/gunnerus_28p9_vico_turn_reference.csv"
     run = np.genfromtxt(path, delimiter=",", names=True, skip_header=1)
-    port, starboard = (parameters(AzimuthParameters, "gunnerus-28m9", side) for side in ("port", "starboard"))
+    port, starboard = (
+        parameters(AzimuthParameters, "gunnerus-28m9", side) for side in ("port", "starboard")
+    )
     X0, Y0, X1, Y1 = (run[f"bodyforce{i}_{axis}"] for i in (0, 1) for axis in ("surge", "sway"))
     tau = np.array([X0 + X1, Y0 + Y1, port.x * (Y0 + Y1) - port.y * X0 - starboard.y * X1])
     eta = np.array([run["N"], run["E"], np.radians(run["heading"])])
@@ -50,7 +52,9 @@ def test_short_ship_repeats_the_recorded_turn(recorded):
             load = (1.0 - share) * tau[:, k] + share * tau[:, k + 1]
             ship = step(ship, *map(float, load), 0.0, 0.0, 1.0 / parts, hull=SHORT)
     assert hypot(ship.x - eta[0, -1], ship.y - eta[1, -1]) == pytest.approx(3.3, abs=0.1)
-    assert abs(np.angle(np.exp(1j * (ship.psi - eta[2, -1])))) == pytest.approx(radians(1.7), abs=radians(0.1))
+    assert abs(np.angle(np.exp(1j * (ship.psi - eta[2, -1])))) == pytest.approx(
+        radians(1.7), abs=radians(0.1)
+    )
 
 
 def steady(rpm, angle, *, time=400.0, h=0.1):
@@ -58,7 +62,10 @@ def steady(rpm, angle, *, time=400.0, h=0.1):
     ship = Motion(0.0, 0.0, 0.0, 4.0, 0.0, 0.0)
     for _ in range(round(time / h)):
         motion = ship.u, ship.v, ship.r
-        loads = [azimuth_loads(azimuth_replay(rpm / 60.0, angle, *motion, unit=u), *motion, unit=u) for u in UNITS]
+        loads = [
+            azimuth_loads(azimuth_replay(rpm / 60.0, angle, *motion, unit=u), *motion, unit=u)
+            for u in UNITS
+        ]
         tau = [sum(load) for load in zip(*(load[2:] for load in loads), strict=True)]
         ship = step(ship, *tau, 0.0, 0.0, h, hull=LONG)
     return hypot(ship.u, ship.v), ship.r
@@ -72,7 +79,8 @@ def test_long_ship_reaches_the_speeds_of_the_nominal_model(rpm, knots):
 
 
 @pytest.mark.parametrize(
-    "angle, rpm, diameter, rate", [(10.0, 170.0, 223.0, 2.56), (20.0, 164.0, 125.0, 3.72), (30.0, 110.0, 84.0, 3.01)]
+    "angle, rpm, diameter, rate",
+    [(10.0, 170.0, 223.0, 2.56), (20.0, 164.0, 125.0, 3.72), (30.0, 110.0, 84.0, 3.01)],
 )
 def test_long_ship_turns_as_the_nominal_model(angle, rpm, diameter, rate):
     speed, r = steady(rpm, radians(angle))
@@ -92,7 +100,12 @@ def test_port_turn_mirrors_starboard_turn(hull):
 
 def test_kinetic_energy_of_the_free_long_ship_never_grows():
     """Relative to the water, over two minutes, from 300 states."""
-    u, v, r, psi = np.random.default_rng(2).uniform(-1.0, 1.0, (4, 300)) * [[8.0], [3.0], [0.3], [pi]]
+    u, v, r, psi = np.random.default_rng(2).uniform(-1.0, 1.0, (4, 300)) * [
+        [8.0],
+        [3.0],
+        [0.3],
+        [pi],
+    ]
     ship, current = Motion(0.0 * u, 0.0 * u, psi, u, v, r), (0.4, -0.3)
 
     def energy(ship):
@@ -129,7 +142,9 @@ def test_motion_in_a_current_is_motion_in_still_water_plus_its_way():
     assert carried.psi == pytest.approx(still.psi) and carried.r == pytest.approx(still.r)
 
 
-@pytest.mark.parametrize("hull", [LONG, replace(LONG, centre_of_gravity_x=1.0), SHORT], ids=["long", "offset", "short"])
+@pytest.mark.parametrize(
+    "hull", [LONG, replace(LONG, centre_of_gravity_x=1.0), SHORT], ids=["long", "offset", "short"]
+)
 def test_acceleration_is_what_a_small_step_gives(hull):
     ship, tau, current = Motion(0.0, 0.0, 0.5, 2.0, 0.3, 0.05), (1e4, -2e3, 3e4), (0.4, -0.3)
     later = step(ship, *tau, *current, 1e-5, hull=hull)
@@ -139,7 +154,12 @@ def test_acceleration_is_what_a_small_step_gives(hull):
 
 def test_equation_of_motion_is_that_of_the_thesis():
     """M_RB nu_dot + C_RB(nu) nu + M_A nu_r_dot = tau + hull loads in matrices, with the current's own rate."""
-    hull, ship, tau, current = LONG, Motion(0.0, 0.0, 0.5, 2.0, 0.3, 0.05), (1e4, -2e3, 3e4), (0.4, -0.3)
+    hull, ship, tau, current = (
+        LONG,
+        Motion(0.0, 0.0, 0.5, 2.0, 0.3, 0.05),
+        (1e4, -2e3, 3e4),
+        (0.4, -0.3),
+    )
     u, v, r = ship[3:]
     u_r, v_r = through_water(ship.psi, u, v, *current)
     rates = np.array(nu_dot(ship, *tau, *current, hull=hull))
@@ -148,7 +168,9 @@ def test_equation_of_motion_is_that_of_the_thesis():
     added = mass_matrix(hull) - rigid
     coriolis = hull.mass * np.array([-v * r, u * r, 0.0])
     left = rigid @ rates + coriolis + added @ (rates - nu_c_dot)
-    np.testing.assert_allclose(left, np.add(tau, hull_loads(u_r, v_r, r, hull=hull)), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(
+        left, np.add(tau, hull_loads(u_r, v_r, r, hull=hull)), rtol=1e-9, atol=1e-6
+    )
 
 
 def test_halving_the_step_changes_nothing_that_matters():
@@ -167,7 +189,16 @@ def swayed(share, *, parts=400):
     hull = replace(LONG, **plain, added_mass_coriolis=0.0, current_acceleration=share)
     ship, h, change = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 20.0 / parts, 0.4 / parts
     for k in range(parts):
-        ship = step(carried(ship, 0.0, change, hull=hull), 0.0, 0.0, 0.0, 0.0, (k + 1) * change, h, hull=hull)
+        ship = step(
+            carried(ship, 0.0, change, hull=hull),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            (k + 1) * change,
+            h,
+            hull=hull,
+        )
     return ship.v
 
 

@@ -143,14 +143,18 @@ def rich(shop, real):
     (shop.folder / "resources/icon.svg").write_bytes(b"<svg/>\r\n")
     (shop.folder / "extra").mkdir()
     (shop.folder / "extra/notes.txt").write_text("kept")
-    (shop.folder / "Variant.ssd").write_text(RICH.replace('name="rich"', 'name="variant"'), encoding="utf-8")
+    (shop.folder / "Variant.ssd").write_text(
+        RICH.replace('name="rich"', 'name="variant"'), encoding="utf-8"
+    )
     (shop.folder / "SystemStructure.ssd").write_text(RICH, encoding="utf-8")
     return shop
 
 
 def files(path):
     if path.is_dir():
-        return {f.relative_to(path).as_posix(): f.read_bytes() for f in path.rglob("*") if f.is_file()}
+        return {
+            f.relative_to(path).as_posix(): f.read_bytes() for f in path.rglob("*") if f.is_file()
+        }
     with zipfile.ZipFile(path) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
@@ -183,8 +187,15 @@ def test_read_and_written_again_is_the_same(rich, tmp_path, target, written_by):
 
 
 def test_the_comparison_sees_a_difference_and_no_prefixes():
-    assert meaning(renamed(RICH).encode()) == meaning(RICH.encode()) and "<ssd:" not in renamed(RICH)
-    for old, new_text in [("inside ", "outside"), ("2.50", "2.5"), ("kept too", "lost"), ('x2="9"', 'x2="8"')]:
+    assert meaning(renamed(RICH).encode()) == meaning(RICH.encode()) and "<ssd:" not in renamed(
+        RICH
+    )
+    for old, new_text in [
+        ("inside ", "outside"),
+        ("2.50", "2.5"),
+        ("kept too", "lost"),
+        ('x2="9"', 'x2="8"'),
+    ]:
         assert meaning(RICH.replace(old, new_text).encode()) != meaning(RICH.encode())
 
 
@@ -199,7 +210,10 @@ def test_the_system_as_it_runs_is_the_same(rich, tmp_path):
     before, after = read_system(rich.folder), read_system(tmp_path / "new.ssp")
     for name, component in before.components.items():
         assert after.components[name].start == component.start
-    strip = [[(c.source, c.target, c.factor, c.offset, c.mapping) for c in s.connections] for s in (before, after)]
+    strip = [
+        [(c.source, c.target, c.factor, c.offset, c.mapping) for c in s.connections]
+        for s in (before, after)
+    ]
     assert strip[0] == strip[1] and after.experiment == before.experiment
 
 
@@ -225,7 +239,12 @@ def test_a_variant_is_written_beside_the_others(rich, tmp_path):
 def test_a_single_ssd_takes_along_what_it_refers_to_and_nothing_else(rich, tmp_path):
     read(rich.folder / "SystemStructure.ssd").write(tmp_path / "other" / "mine.ssd")
     found = set(files(tmp_path / "other"))
-    assert found == {"mine.ssd", "resources/a part.fmu", "resources/numbers.ssv", "resources/names.ssm"}
+    assert found == {
+        "mine.ssd",
+        "resources/a part.fmu",
+        "resources/numbers.ssv",
+        "resources/names.ssm",
+    }
     assert meaning((tmp_path / "other/mine.ssd").read_bytes()) == meaning(RICH.encode())
 
 
@@ -287,7 +306,9 @@ def built(tmp_path_factory):
 
 def in_libcosim(path, n_steps=5):
     """Outputs of ramp and gain after some steps, as libcosim has them, its step from the file."""
-    execution_module = pytest.importorskip("libcosimpy.CosimExecution", reason="needs libcosim", exc_type=ImportError)
+    execution_module = pytest.importorskip(
+        "libcosimpy.CosimExecution", reason="needs libcosim", exc_type=ImportError
+    )
     from libcosimpy.CosimObserver import CosimObserver
 
     execution = execution_module.CosimExecution.from_ssp_file(ssp_path=str(path))
@@ -298,7 +319,9 @@ def in_libcosim(path, n_steps=5):
     system = read_system(path)
     values = {}
     for name, output in (("ramp", "height"), ("gain", "result")):
-        component = next(part for part in system.components.values() if output in part.fmu.variables)
+        component = next(
+            part for part in system.components.values() if output in part.fmu.variables
+        )
         index = execution.slave_index_from_instance_name(component.name)
         reference = component.fmu.variables[output].value_reference
         values[name] = observer.last_real_values(index, [reference])[0]
@@ -352,12 +375,18 @@ def test_a_changed_system_of_another_tools_prefixes_runs_in_libcosim(built, tmp_
 
 def test_values_of_a_systems_sets_reach_libcosim_once_they_are_bound_to_components(built, tmp_path):
     system = assembled(built)
-    write_ssv(tmp_path / "fast.ssv", "fast", [parameter("ramp.rate", 3600.0, "m/h"), parameter("gain.factor", 5.0)])
+    write_ssv(
+        tmp_path / "fast.ssv",
+        "fast",
+        [parameter("ramp.rate", 3600.0, "m/h"), parameter("gain.factor", 5.0)],
+    )
     system.bind(tmp_path / "fast.ssv")
     assert (system.parameters["ramp.rate"], system.parameters["gain.factor"]) == (1.0, 5.0)
     before = system.checked()
     system.bind_to_components()
-    assert {n: c.start for n, c in system.components.items()} == {n: c.start for n, c in before.components.items()}
+    assert {n: c.start for n, c in system.components.items()} == {
+        n: c.start for n, c in before.components.items()
+    }
     system.write(tmp_path / "bound.ssp")
     assert valid(tmp_path / "bound.ssp")
     assert in_libcosim(tmp_path / "bound.ssp")["ramp"] == pytest.approx(10.5, rel=1e-12)

@@ -26,12 +26,18 @@ def plant(shop):
         types=TYPES,
     )
     shop.fmu(
-        "thruster", "input cmd Real deg", "output thrust Real m", "output temperature Real K", "parameter gain Real"
+        "thruster",
+        "input cmd Real deg",
+        "output thrust Real m",
+        "output temperature Real K",
+        "parameter gain Real",
     )
     elements = shop.component("hull", "hull", "input force", "output x")
     elements += shop.component("thruster", "thruster", "output thrust")
     write_ssv(
-        shop.folder / "resources/ship.ssv", "ship", [parameter("hull.mass", 2000.0, "m", "a guess", tolerance=5.0)]
+        shop.folder / "resources/ship.ssv",
+        "ship",
+        [parameter("hull.mass", 2000.0, "m", "a guess", tolerance=5.0)],
     )
     binding = '<ssd:ParameterBindings><ssd:ParameterBinding source="resources/ship.ssv"/></ssd:ParameterBindings>'
     shop.ssd(elements, shop.connection("thruster.thrust", "hull.force"), head=binding)
@@ -112,7 +118,8 @@ def test_a_value_with_a_unit_is_converted_and_keeps_what_is_said_of_it(system, t
 def test_a_set_that_is_bound_twice_is_not_changed(plant):
     elements = plant.component("one", "hull") + plant.component("two", "hull")
     prefixed = "".join(
-        f'<ssd:ParameterBinding source="resources/hull.ssv" prefix="{name}."/>' for name in ("one", "two")
+        f'<ssd:ParameterBinding source="resources/hull.ssv" prefix="{name}."/>'
+        for name in ("one", "two")
     )
     write_ssv(plant.folder / "resources/hull.ssv", "hull", [parameter("mass", 1.0, "km")])
     plant.ssd(elements, head=f"<ssd:ParameterBindings>{prefixed}</ssd:ParameterBindings>")
@@ -125,7 +132,10 @@ def test_a_value_that_a_mapping_sets_is_overridden(plant):
     plant.ssm('<ssm:MappingEntry source="hull.mass" target="hull.mass"/>')
     mapping = '<ssd:ParameterMapping source="resources/names.ssm"/>'
     binding = f'<ssd:ParameterBinding source="resources/ship.ssv">{mapping}</ssd:ParameterBinding>'
-    plant.ssd(plant.component("hull", "hull"), head=f"<ssd:ParameterBindings>{binding}</ssd:ParameterBindings>")
+    plant.ssd(
+        plant.component("hull", "hull"),
+        head=f"<ssd:ParameterBindings>{binding}</ssd:ParameterBindings>",
+    )
     system = read(plant.folder)
     assert system.parameters["hull.mass"] == 2.0
     system.parameters["hull.mass"] = 9.0
@@ -144,7 +154,9 @@ def test_without_a_value_the_fmus_holds_again(system):
     del system.parameters["hull.mass"]
     assert system.parameters["hull.mass"] == 0.0  # the FMU's
     assert "hull.mass" not in system.parameters
-    assert "hull.seed: The system does not set it." in refused(system.parameters.__delitem__, "hull.seed")
+    assert "hull.seed: The system does not set it." in refused(
+        system.parameters.__delitem__, "hull.seed"
+    )
 
 
 @pytest.mark.parametrize(
@@ -155,13 +167,21 @@ def test_without_a_value_the_fmus_holds_again(system):
             1.0,
             "hull has no variable 'mas'. It has: force, mass, mode, seed, speed, x. Did you mean 'mass'?",
         ),
-        ("hul.mass", 1.0, "There is no component or connector 'hul'. There is: hull, thruster. Did you mean 'hull'?"),
+        (
+            "hul.mass",
+            1.0,
+            "There is no component or connector 'hul'. There is: hull, thruster. Did you mean 'hull'?",
+        ),
         ("hull.mass", -1.0, "hull.mass cannot be -1 km. Allowed: at least 0 km."),
         ("hull.mass", True, "the value is Boolean, hull.mass is Real."),
         ("hull.mass", float("nan"), "nan is not a finite number."),
         ("hull.mass", [1.0], "[1.0] is no value."),
         ("hull.seed", 1.5, "the value is Real, hull.seed is Integer."),
-        ("hull.mode", "onn", "The enumeration has no item 'onn'. It has: off, on. Did you mean 'on'?"),
+        (
+            "hull.mode",
+            "onn",
+            "The enumeration has no item 'onn'. It has: off, on. Did you mean 'on'?",
+        ),
         ("hull.x", 1.0, "hull.x is of causality output, a value that the FMU calculates."),
     ],
 )
@@ -182,7 +202,10 @@ def test_sets_are_bound_and_unbound(system, plant, tmp_path):
     after, _ = written(system, tmp_path)
     assert after.components["hull"].start == {"mass": 1.0}
     message = refused(system.unbind, "resources/lihgt.ssv")
-    assert "It is not bound there. There is: resources/light.ssv. Did you mean 'resources/light.ssv'?" in message
+    assert (
+        "It is not bound there. There is: resources/light.ssv. Did you mean 'resources/light.ssv'?"
+        in message
+    )
     assert "There is no such file" in refused(system.bind, "nowhere.ssv")
 
 
@@ -237,7 +260,10 @@ def test_an_fmu_is_packed_once_for_all_its_components(system, plant, tmp_path):
         system.add_component("one", fmu)
         system.add_component("two", fmu)
     after, _ = written(system, tmp_path)
-    assert {part.fmu.path.name for part in after.components.values()} == {"boat.fmu", "thruster.fmu"}
+    assert {part.fmu.path.name for part in after.components.values()} == {
+        "boat.fmu",
+        "thruster.fmu",
+    }
     fmu.unlink()
     assert "The file 'resources/boat.fmu' does not exist." in refused(system.checked)
 
@@ -260,24 +286,50 @@ def test_a_connection_declares_what_it_needs_and_starts_at_its_source(system, tm
 
 def test_a_transformation_comes_after_the_conversion_of_units(system):
     system.connect("hull.x", "thruster.cmd", suppress_unit_conversion=True, factor=2.0, offset=1.0)
-    assert (system.checked().connections[-1].factor, system.checked().connections[-1].offset) == (2.0, 1.0)
+    assert (system.checked().connections[-1].factor, system.checked().connections[-1].offset) == (
+        2.0,
+        1.0,
+    )
 
 
 @pytest.mark.parametrize(
     ("source", "target", "message"),
     [
-        ("thruster.thrst", "hull.speed", "thruster has no output 'thrst'. It has: temperature, thrust."),
-        ("truster.thrust", "hull.speed", "There is no element 'truster' in test. There is: hull, thruster."),
-        ("thruster.thrust", "hull.force", "A second connection into hull.force. It gets thruster.thrust already"),
-        ("thruster.temperature", "hull.speed", "thruster.temperature is in K, hull.speed in m/s; these cannot be"),
+        (
+            "thruster.thrst",
+            "hull.speed",
+            "thruster has no output 'thrst'. It has: temperature, thrust.",
+        ),
+        (
+            "truster.thrust",
+            "hull.speed",
+            "There is no element 'truster' in test. There is: hull, thruster.",
+        ),
+        (
+            "thruster.thrust",
+            "hull.force",
+            "A second connection into hull.force. It gets thruster.thrust already",
+        ),
+        (
+            "thruster.temperature",
+            "hull.speed",
+            "thruster.temperature is in K, hull.speed in m/s; these cannot be",
+        ),
         ("thruster.thrust", "hull.x", "both give a value, and neither takes one."),
-        ("thruster.thrust", "hull.seed", "thruster.thrust (output) cannot feed hull.seed (parameter)."),
+        (
+            "thruster.thrust",
+            "hull.seed",
+            "thruster.thrust (output) cannot feed hull.seed (parameter).",
+        ),
     ],
 )
 def test_connections_that_make_no_sense_are_refused_at_once(system, source, target, message):
     assert message in refused(system.connect, source, target)
     assert system.connections == [("thruster.thrust", "hull.force")]
-    assert system.connectors("hull") == {"force": "input", "x": "output"}  # nothing is left of the try
+    assert system.connectors("hull") == {
+        "force": "input",
+        "x": "output",
+    }  # nothing is left of the try
 
 
 def test_disconnected_in_either_order_or_all_of_one(system):
@@ -295,7 +347,11 @@ def test_what_is_removed_takes_its_connections_values_and_fmu_along(system, tmp_
     system.parameters["thruster.gain"] = 2.0
     system.remove("hull")
     after, ssd = written(system, tmp_path)
-    assert list(after.components) == ["thruster"] and after.connections == () and "<ssd:Connections" not in ssd
+    assert (
+        list(after.components) == ["thruster"]
+        and after.connections == ()
+        and "<ssd:Connections" not in ssd
+    )
     assert dict(system.parameters) == {"thruster.gain": 2.0}
     assert not (tmp_path / "written/resources/hull.fmu").exists()
     assert "hull.mass" not in (tmp_path / "written/resources/ship.ssv").read_text(encoding="utf-8")
@@ -319,7 +375,10 @@ def test_a_prefix_and_a_mapping_follow_a_new_name(plant, real):
     first = f'<ssd:ParameterBinding source="resources/ship.ssv">{mapping}</ssd:ParameterBinding>'
     second = '<ssd:ParameterBinding source="resources/numbers.ssv" prefix="hull."/>'
     for bindings, value in ((first, 2.0), (second, 1.0)):
-        plant.ssd(plant.component("hull", "hull"), head=f"<ssd:ParameterBindings>{bindings}</ssd:ParameterBindings>")
+        plant.ssd(
+            plant.component("hull", "hull"),
+            head=f"<ssd:ParameterBindings>{bindings}</ssd:ParameterBindings>",
+        )
         system = read(plant.folder)
         system.rename("hull", "ship")
         assert system.checked().components["ship"].start == {"mass": value}
@@ -347,7 +406,9 @@ def test_a_nested_system_is_built_connected_renamed_and_removed(system, plant, t
         (("thruster", "thrust"), ("inner.hull", "force"), 1.0),
     ]
     assert after.components["inner.hull"].start == {"mass": 4.0}
-    assert "is in another system than the other end" in refused(system.connect, "hull.x", "inner.hull.speed")
+    assert "is in another system than the other end" in refused(
+        system.connect, "hull.x", "inner.hull.speed"
+    )
     system.rename("inner.push", "shove")
     system.rename("inner", "core")
     assert ("thruster.thrust", "core.shove") in system.connections
@@ -370,7 +431,9 @@ def test_names_with_dots_are_understood(shop):
 
 def test_several_changes_are_taken_as_one(system, plant):
     with system.changes():
-        system.connect("hull.x", "hull.force", suppress_unit_conversion=True)  # a second one, for the moment
+        system.connect(
+            "hull.x", "hull.force", suppress_unit_conversion=True
+        )  # a second one, for the moment
         system.disconnect("thruster.thrust")
     assert system.connections == [("hull.x", "hull.force")]
 
@@ -399,15 +462,17 @@ def test_a_system_with_faults_can_be_read_and_repaired(plant):
 
 def test_times_are_written_and_the_step_for_everybody_who_states_one(plant, tmp_path):
     other = '<ssc:Annotation type="oms"><FixedStepMaster stepSize="0.5"/></ssc:Annotation>'
-    experiment = (
-        f'<ssd:DefaultExperiment stopTime="9"><ssd:Annotations>{other}</ssd:Annotations></ssd:DefaultExperiment>'
-    )
+    experiment = f'<ssd:DefaultExperiment stopTime="9"><ssd:Annotations>{other}</ssd:Annotations></ssd:DefaultExperiment>'
     plant.ssd(plant.component("hull", "hull"), rest=experiment)
     system = read(plant.folder)
     assert (system.start_time, system.stop_time, system.step_size) == (0.0, 9.0, 0.5)
     system.start_time, system.stop_time, system.step_size = 1.0, 12.0, 0.25
     after, ssd = written(system, tmp_path)
-    assert (after.experiment.start_time, after.experiment.stop_time, after.experiment.step_size) == (1.0, 12.0, 0.25)
+    assert (
+        after.experiment.start_time,
+        after.experiment.stop_time,
+        after.experiment.step_size,
+    ) == (1.0, 12.0, 0.25)
     assert 'stepSize="0.25"' in ssd and '<osp:FixedStepAlgorithm baseStepSize="0.25"/>' in ssd
     assert "must be positive" in refused(setattr, system, "step_size", -0.1)
 

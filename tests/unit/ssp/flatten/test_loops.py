@@ -19,7 +19,9 @@ def part(shop):
         outputs = ""
         for output in "yz":
             said = stated.get(output)
-            listed = "" if said is None else f' dependencies="{" ".join(index[one] for one in said)}"'
+            listed = (
+                "" if said is None else f' dependencies="{" ".join(index[one] for one in said)}"'
+            )
             outputs += f'<Unknown index="{index[output]}"{listed}/>'
         with zipfile.ZipFile(path) as archive:
             text = archive.read("modelDescription.xml").decode()
@@ -38,7 +40,9 @@ def system(shop):
     """Function that makes a system of FMUs by lines "a.y -> b.u"; components are named as their FMUs."""
 
     def make(names, *lines):
-        elements = "".join(shop.component(n, n, "input u", "input v", "output y", "output z") for n in names)
+        elements = "".join(
+            shop.component(n, n, "input u", "input v", "output y", "output z") for n in names
+        )
         shop.ssd(elements, "".join(shop.connection(*line.split(" -> ")) for line in lines))
         return read_system(shop.folder)
 
@@ -58,7 +62,12 @@ def test_a_circle_of_direct_feedthrough_is_a_loop_with_its_links_in_order(part, 
     assert [following[source[0]] for source, _ in loop.links] == [
         source[0] for source, _ in (*loop.links[1:], loop.links[0])
     ]
-    assert (loop.components, loop.silent, loop.breaking, loop.others) == (["a", "b", "c"], [], ["a", "b", "c"], 0)
+    assert (loop.components, loop.silent, loop.breaking, loop.others) == (
+        ["a", "b", "c"],
+        [],
+        ["a", "b", "c"],
+        0,
+    )
 
 
 def test_an_output_that_states_no_dependency_breaks_it(part, system):
@@ -92,11 +101,21 @@ def test_a_component_can_be_a_loop_with_itself(part, system):
 def test_two_loops_that_share_nothing_are_two_and_what_breaks_both_is_named(part, system):
     for name in "abcd":
         part(name)
-    assert len(find_loops(system("abcd", "a.y -> b.u", "b.y -> a.u", "c.y -> d.u", "d.y -> c.u"))) == 2
+    assert (
+        len(find_loops(system("abcd", "a.y -> b.u", "b.y -> a.u", "c.y -> d.u", "d.y -> c.u"))) == 2
+    )
     (both,) = find_loops(system("abc", "a.y -> b.u", "b.y -> a.u", "b.z -> c.u", "c.y -> b.v"))
     assert both.breaking == ["b"] and both.others == 2
     (none,) = find_loops(
-        system("abc", "a.y -> b.u", "b.y -> a.u", "b.z -> c.u", "c.y -> b.v", "a.z -> c.v", "c.z -> a.v")
+        system(
+            "abc",
+            "a.y -> b.u",
+            "b.y -> a.u",
+            "b.z -> c.u",
+            "c.y -> b.v",
+            "a.z -> c.v",
+            "c.z -> a.v",
+        )
     )
     assert none.breaking == []
 
@@ -133,8 +152,12 @@ def test_a_loop_of_the_start_alone_is_told_from_one_of_the_run(part, system, sho
     assert sorted(links(loop)) == sorted(lines) and loop.silent == ["b"]
     (problem,) = [p for p in check_system(shop.folder) if "loop" in p.found]
     assert "loop at the start" in problem.found and "the run is free of it" in problem.found
-    assert find_loops(system("ab", "a.y -> b.u", "b.z -> a.u"), at_start=True) == []  # z follows nothing
-    assert find_loops(system("ab", "a.z -> b.u", "b.y -> a.u"), at_start=True) == []  # z is known from the first
+    assert (
+        find_loops(system("ab", "a.y -> b.u", "b.z -> a.u"), at_start=True) == []
+    )  # z follows nothing
+    assert (
+        find_loops(system("ab", "a.z -> b.u", "b.y -> a.u"), at_start=True) == []
+    )  # z is known from the first
 
 
 FMI3 = """<fmiModelDescription fmiVersion="3.0" modelName="m" instantiationToken="m">

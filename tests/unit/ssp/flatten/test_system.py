@@ -41,9 +41,12 @@ def test_start_and_end_of_a_connection_do_not_decide_its_direction(shop):
 def test_two_outputs_connected_are_refused(shop):
     shop.fmu("one", "output y Real m")
     shop.ssd(
-        shop.component("a", "one", "output y") + shop.component("b", "one", "output y"), shop.connection("a.y", "b.y")
+        shop.component("a", "one", "output y") + shop.component("b", "one", "output y"),
+        shop.connection("a.y", "b.y"),
     )
-    assert "a.y (output) and b.y (output): both give a value, and neither takes one." in shop.refused()
+    assert (
+        "a.y (output) and b.y (output): both give a value, and neither takes one." in shop.refused()
+    )
 
 
 @pytest.mark.parametrize(
@@ -103,7 +106,9 @@ def test_an_integer_feeds_a_real_and_not_the_other_way_round(shop):
     assert shop.read().connections[0].factor == 1.0
 
 
-@pytest.mark.parametrize(("source", "target"), [("Real m", "Integer"), ("Boolean", "Real m"), ("String", "Integer")])
+@pytest.mark.parametrize(
+    ("source", "target"), [("Real m", "Integer"), ("Boolean", "Real m"), ("String", "Integer")]
+)
 def test_types_that_do_not_fit_are_refused(shop, source, target):
     pair(shop, source, target)
     kinds = source.split()[0], target.split()[0]
@@ -111,16 +116,16 @@ def test_types_that_do_not_fit_are_refused(shop, source, target):
 
 
 def test_a_boolean_mapping_becomes_a_table(shop):
-    entries = '<ssc:MapEntry source="true" target="false"/><ssc:MapEntry source="false" target="true"/>'
+    entries = (
+        '<ssc:MapEntry source="true" target="false"/><ssc:MapEntry source="false" target="true"/>'
+    )
     inside = f"<ssc:BooleanMappingTransformation>{entries}</ssc:BooleanMappingTransformation>"
     pair(shop, "Boolean", "Boolean", inside)
     assert shop.read().connections[0].mapping == {True: False, False: True}
 
 
 def test_an_integer_mapping_leaves_other_values_alone(shop):
-    inside = (
-        '<ssc:IntegerMappingTransformation><ssc:MapEntry source="1" target="5"/></ssc:IntegerMappingTransformation>'
-    )
+    inside = '<ssc:IntegerMappingTransformation><ssc:MapEntry source="1" target="5"/></ssc:IntegerMappingTransformation>'
     pair(shop, "Integer", "Integer", inside)
     assert shop.read().connections[0].mapping == {1: 5}
 
@@ -133,13 +138,17 @@ ENUMERATION_MAPPING = (
 
 def test_an_enumeration_mapping_by_names_becomes_one_by_numbers(shop):
     inside = ENUMERATION_MAPPING.format("alive")
-    pair(shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", inside, types=MODES)
+    pair(
+        shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", inside, types=MODES
+    )
     assert shop.read().connections[0].mapping == {1: 7, 2: 8}
 
 
 def test_an_enumeration_mapping_to_an_unknown_item_is_refused(shop):
     inside = ENUMERATION_MAPPING.format("alvie")
-    pair(shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", inside, types=MODES)
+    pair(
+        shop, "Enumeration declaredType=Mode", "Enumeration declaredType=State", inside, types=MODES
+    )
     assert "no item 'alvie'. It has: alive, dead. Did you mean 'alive'?" in shop.refused()
 
 
@@ -169,7 +178,9 @@ def test_a_connection_to_an_element_that_does_not_exist_says_what_there_is(shop)
 def test_a_second_connection_into_an_input_names_the_first(shop):
     shop.fmu("one", "output y Real m", "output z Real m")
     shop.fmu("two", "input u Real m")
-    elements = shop.component("a", "one", "output y", "output z") + shop.component("b", "two", "input u")
+    elements = shop.component("a", "one", "output y", "output z") + shop.component(
+        "b", "two", "input u"
+    )
     shop.ssd(elements, shop.connection("a.y", "b.u") + shop.connection("a.z", "b.u"))
     message = shop.refused()
     assert "line 11: a.z -> b.u: A second connection into b.u." in message
@@ -178,10 +189,16 @@ def test_a_second_connection_into_an_input_names_the_first(shop):
 
 def test_everything_wrong_is_reported_at_once(shop):
     shop.fmu("one", "output y Real m")
-    elements = shop.component("a", "one", "output y", "output nothing") + shop.component("b", "missing", "input u")
+    elements = shop.component("a", "one", "output y", "output nothing") + shop.component(
+        "b", "missing", "input u"
+    )
     shop.ssd(elements, shop.connection("a.y", "c.u"))
     message = shop.refused()
-    for part in ("no output 'nothing'", "'resources/missing.fmu' does not exist", "There is no element 'c'"):
+    for part in (
+        "no output 'nothing'",
+        "'resources/missing.fmu' does not exist",
+        "There is no element 'c'",
+    ):
         assert part in message
 
 
@@ -197,11 +214,16 @@ def test_a_connectors_unit_counts_between_connectors_and_the_fmus_at_the_fmu(sho
     """The SSD calls a variable in rad one in deg: what arrives in deg must be converted for the FMU, with a remark."""
     shop.fmu("one", "output y Real deg")
     shop.fmu("two", "input u Real rad")
-    elements = shop.component("a", "one", "output y") + shop.component("b", "two", 'input u <ssc:Real unit="deg"/>')
+    elements = shop.component("a", "one", "output y") + shop.component(
+        "b", "two", 'input u <ssc:Real unit="deg"/>'
+    )
     shop.ssd(elements, shop.connection("a.y", "b.u"))
     system = shop.read()
     assert system.connections[0].factor == pytest.approx(math.pi / 180)
-    assert any("The connector is in deg, the variable in two.fmu in rad" in remark.found for remark in system.remarks)
+    assert any(
+        "The connector is in deg, the variable in two.fmu in rad" in remark.found
+        for remark in system.remarks
+    )
 
 
 def test_unconnected_inputs_are_a_remark(shop):
@@ -214,7 +236,10 @@ def test_unconnected_inputs_are_a_remark(shop):
 def test_a_connector_that_is_only_in_the_fmu_is_a_remark(shop):
     shop.fmu("one", "output y Real m")
     shop.fmu("two", "input u Real m")
-    shop.ssd(shop.component("a", "one") + shop.component("b", "two", "input u"), shop.connection("a.y", "b.u"))
+    shop.ssd(
+        shop.component("a", "one") + shop.component("b", "two", "input u"),
+        shop.connection("a.y", "b.u"),
+    )
     system = shop.read()
     assert len(system.connections) == 1
     assert any("a.y is not declared as a connector" in remark.found for remark in system.remarks)
@@ -243,21 +268,36 @@ def nested(shop, inner_unit="", fmu_unit="m", transformation="", suppress="false
     )
     outer = '<ssd:Connectors><ssd:Connector name="result" kind="output"/></ssd:Connectors>'
     elements = shop.component("a", "one", "output y") + shell
-    shop.ssd(elements, shop.connection("a.y", "shell.in") + shop.connection("shell.out", "result"), head=outer)
+    shop.ssd(
+        elements,
+        shop.connection("a.y", "shell.in") + shop.connection("shell.out", "result"),
+        head=outer,
+    )
 
 
 def test_two_levels_of_systems_become_one_connection(shop):
     nested(shop)
     system = shop.read()
     assert list(system.components) == ["a", "shell.core.b"]
-    ways = {(connection.source, connection.target): connection.factor for connection in system.connections}
-    assert ways == {(("a", "y"), ("shell.core.b", "u")): 1000.0, (("shell.core.b", "v"), (None, "result")): 1.0}
+    ways = {
+        (connection.source, connection.target): connection.factor
+        for connection in system.connections
+    }
+    assert ways == {
+        (("a", "y"), ("shell.core.b", "u")): 1000.0,
+        (("shell.core.b", "v"), (None, "result")): 1.0,
+    }
     assert system.outputs["result"].unit == "m"
 
 
 def test_units_and_transformations_on_the_way_through_systems_combine(shop):
     """km at the source; metres at the shell; 3 x + 1 in metres at the core; the FMU counts in km again."""
-    nested(shop, inner_unit="m", fmu_unit="km", transformation='<ssc:LinearTransformation factor="3" offset="1"/>')
+    nested(
+        shop,
+        inner_unit="m",
+        fmu_unit="km",
+        transformation='<ssc:LinearTransformation factor="3" offset="1"/>',
+    )
     units = '<ssd:Units><ssc:Unit name="m"><ssc:BaseUnit m="1"/></ssc:Unit></ssd:Units>'
     end = "</ssd:SystemStructureDescription>"
     shop.path.write_text(shop.path.read_text().replace(end, units + end))
@@ -284,16 +324,19 @@ def test_connections_in_a_circle_without_a_component_are_refused(shop):
 def test_a_missing_connector_of_a_nested_system_is_refused(shop):
     nested(shop)
     shop.path.write_text(
-        shop.path.read_text().replace('endElement="shell" endConnector="in"', 'endElement="shell" endConnector="inn"')
+        shop.path.read_text().replace(
+            'endElement="shell" endConnector="in"', 'endElement="shell" endConnector="inn"'
+        )
     )
-    assert "a.y -> shell.inn: shell has no input 'inn'. It has: in. Did you mean 'in'?" in shop.refused()
+    assert (
+        "a.y -> shell.inn: shell has no input 'inn'. It has: in. Did you mean 'in'?"
+        in shop.refused()
+    )
 
 
 def test_inputs_of_the_system_feed_components_and_start_as_these_do(shop):
     shop.fmu("two", "input u Real m start=1500")
-    head = (
-        '<ssd:Connectors><ssd:Connector name="way" kind="input"><ssc:Real unit="km"/></ssd:Connector></ssd:Connectors>'
-    )
+    head = '<ssd:Connectors><ssd:Connector name="way" kind="input"><ssc:Real unit="km"/></ssd:Connector></ssd:Connectors>'
     shop.ssd(shop.component("b", "two", "input u"), shop.connection("way", "b.u"), head=head)
     system = shop.read()
     (connection,) = system.connections
@@ -345,8 +388,15 @@ def test_signals_of_a_dictionary_reach_all_who_read_them(shop):
     assert (connection.source, connection.target) == (("a", "y"), ("inner.b", "u"))
     assert connection.factor == pytest.approx(math.pi / 180)
 
-    shop.path.write_text(shop.path.read_text().replace('name="port" dictionary="bus"', 'name="port" dictionary="buss"'))
-    assert "There is no signal dictionary 'buss' here or in a system around. There is: bus." in shop.refused()
+    shop.path.write_text(
+        shop.path.read_text().replace(
+            'name="port" dictionary="bus"', 'name="port" dictionary="buss"'
+        )
+    )
+    assert (
+        "There is no signal dictionary 'buss' here or in a system around. There is: bus."
+        in shop.refused()
+    )
 
 
 def test_a_system_in_another_file_counts_as_if_it_stood_here(shop, tmp_path):
@@ -365,16 +415,19 @@ def test_a_system_in_another_file_counts_as_if_it_stood_here(shop, tmp_path):
 @pytest.mark.parametrize("source", ["SystemStructure.ssd", "#inner"])
 def test_a_system_that_contains_itself_is_refused(shop, source):
     part = f'<ssd:Component name="part" type="application/x-ssp-definition" source="{source}"/>'
-    shop.ssd(f'<ssd:System name="inner" id="inner"><ssd:Elements>{part}</ssd:Elements></ssd:System>')
+    shop.ssd(
+        f'<ssd:System name="inner" id="inner"><ssd:Elements>{part}</ssd:Elements></ssd:System>'
+    )
     assert f"'{source}' contains itself." in shop.refused()
 
 
 def test_a_system_of_this_file_is_instantiated_again_by_its_id(shop):
     shop.fmu("two", "input u Real m")
-    inner = (
-        f'<ssd:System name="one" id="pattern"><ssd:Elements>{shop.component("b", "two")}</ssd:Elements></ssd:System>'
+    inner = f'<ssd:System name="one" id="pattern"><ssd:Elements>{shop.component("b", "two")}</ssd:Elements></ssd:System>'
+    shop.ssd(
+        inner
+        + '<ssd:Component name="other" type="application/x-ssp-definition" source="#pattern"/>'
     )
-    shop.ssd(inner + '<ssd:Component name="other" type="application/x-ssp-definition" source="#pattern"/>')
     assert list(shop.read().components) == ["one.b", "other.b"]
 
 
@@ -397,7 +450,9 @@ def test_a_packed_system_within_a_system_takes_the_bindings_of_its_component(sho
 
 def test_the_form_of_an_fmu_that_is_asked_for_must_be_there(shop):
     shop.fmu("one", "output y Real m")
-    shop.ssd(shop.component("a", "one").replace("source=", 'implementation="ModelExchange" source='))
+    shop.ssd(
+        shop.component("a", "one").replace("source=", 'implementation="ModelExchange" source=')
+    )
     assert "one.fmu offers no ModelExchange. It offers CoSimulation." in shop.refused()
 
 
@@ -426,7 +481,9 @@ def test_a_system_travels_to_another_process(shop, tmp_path):
 def test_blanks_and_dots_in_names_are_names(shop):
     shop.fmu("one", "output y.a[1] Real m")
     shop.fmu("two", "input u Real m")
-    elements = shop.component("my a.b", "one", "output y.a[1]") + shop.component("b", "two", "input u")
+    elements = shop.component("my a.b", "one", "output y.a[1]") + shop.component(
+        "b", "two", "input u"
+    )
     elements = elements.replace("resources/two.fmu", "resources/t%20wo.fmu")
     (shop.folder / "resources/two.fmu").rename(shop.folder / "resources/t wo.fmu")
     connection = '<ssd:Connection startElement="my a.b" startConnector="y.a[1]" endElement="b" endConnector="u"/>'
@@ -440,7 +497,9 @@ def test_prefixes_do_not_matter(shop):
     pair(shop, "Real km", "Real m", '<ssc:LinearTransformation factor="2"/>')
     text = shop.path.read_text()
     default = text.replace("xmlns:ssd=", "xmlns=").replace("<ssd:", "<").replace("</ssd:", "</")
-    other = default.replace("xmlns:ssc=", "xmlns:q=").replace("<ssc:", "<q:").replace("</ssc:", "</q:")
+    other = (
+        default.replace("xmlns:ssc=", "xmlns:q=").replace("<ssc:", "<q:").replace("</ssc:", "</q:")
+    )
     shop.path.write_text(other)
     assert "ssd:" not in other and "ssc:" not in other
     assert shop.read().connections[0].factor == 2000.0
@@ -464,7 +523,9 @@ def test_experiment_and_step_sizes_come_from_annotations(shop):
     assert (experiment.start_time, experiment.stop_time, experiment.step_size) == (1.0, 20.0, 0.05)
     assert system.components["a"].step_size == 0.1
 
-    shop.path.write_text(shop.path.read_text().replace('baseStepSize="0.05"', 'baseStepSize="-0.05"'))
+    shop.path.write_text(
+        shop.path.read_text().replace('baseStepSize="0.05"', 'baseStepSize="-0.05"')
+    )
     assert "FixedStepAlgorithm: baseStepSize is -0.05. It must be positive." in shop.refused()
 
 
@@ -481,16 +542,29 @@ def test_fmus_are_found_in_the_folders_given(shop, tmp_path):
 
 def test_a_ssd_file_and_its_folder_read_alike(shop):
     pair(shop)
-    assert read_system(shop.path).connections[0].factor == read_system(shop.folder).connections[0].factor
+    assert (
+        read_system(shop.path).connections[0].factor
+        == read_system(shop.folder).connections[0].factor
+    )
 
 
 def test_values_given_for_a_run_are_checked(shop):
-    shop.fmu("two", "input u Real m", "parameter n Integer", "parameter p Real m min=0 max=5", "output v Real m")
+    shop.fmu(
+        "two",
+        "input u Real m",
+        "parameter n Integer",
+        "parameter p Real m min=0 max=5",
+        "output v Real m",
+    )
     shop.ssd(shop.component("b", "two"))
     system = with_values(shop.read(), {"b.p": 2, "b.n": 3})
     assert (system.components["b"].start["p"], system.components["b"].start["n"]) == (2.0, 3)
     with pytest.raises(ShipcosimError) as caught:
-        with_values(system, {"b.p": 7.0, "b.n": 1.5, "b.q": 1, "c.p": 1, "b.v": 1.0, "b.u": math.nan}, "four.toml")
+        with_values(
+            system,
+            {"b.p": 7.0, "b.n": 1.5, "b.q": 1, "c.p": 1, "b.v": 1.0, "b.u": math.nan},
+            "four.toml",
+        )
     assert str(caught.value).splitlines() == [
         "four.toml: b.p: p cannot be 7 m. Allowed: 0 to 5 m.",
         "four.toml: b.n: 1.5 is no Integer. Give a whole number.",

@@ -38,9 +38,18 @@ def fmu(path, text, *more):
 
 def test_fmi_2_variables_with_what_their_types_declare(shop):
     types = '<SimpleType name="Force"><Real unit="m" min="-5" max="5"/></SimpleType>'
-    path = shop.fmu("one", "input u Real declaredType=Force", "output y Real max=9 declaredType=Force", types=types)
+    path = shop.fmu(
+        "one",
+        "input u Real declaredType=Force",
+        "output y Real max=9 declaredType=Force",
+        types=types,
+    )
     described = read_fmu(path)
-    assert (described.fmi_version, described.model_identifier, described.token) == ("2.0", "one", "one")
+    assert (described.fmi_version, described.model_identifier, described.token) == (
+        "2.0",
+        "one",
+        "one",
+    )
     u, y = described.variables["u"], described.variables["y"]
     assert (u.unit, u.minimum, u.maximum, u.start, u.value_reference) == ("m", -5.0, 5.0, 0.0, 0)
     assert (y.unit, y.maximum, y.settable, u.settable) == ("m", 9.0, False, True)
@@ -49,7 +58,9 @@ def test_fmi_2_variables_with_what_their_types_declare(shop):
 
 def test_fmi_3_variables_arrays_and_aliases(tmp_path):
     path = fmu(
-        tmp_path / "new.fmu", FMI3.format(structure='<Output valueReference="2"/>'), "binaries/x86_64-linux/new.so"
+        tmp_path / "new.fmu",
+        FMI3.format(structure='<Output valueReference="2"/>'),
+        "binaries/x86_64-linux/new.so",
     )
     described = read_fmu(path)
     variables = described.variables
@@ -57,19 +68,36 @@ def test_fmi_3_variables_arrays_and_aliases(tmp_path):
     assert described.capability("canGetAndSetFMUState")
     assert (variables["u"].unit, variables["u"].minimum, variables["u"].start) == ("m/s", 0.0, 1.5)
     assert variables["speed"].value_reference == variables["u"].value_reference
-    assert (variables["y"].kind, variables["n"].kind, variables["b"].start) == ("Real", "Integer", True)
+    assert (variables["y"].kind, variables["n"].kind, variables["b"].start) == (
+        "Real",
+        "Integer",
+        True,
+    )
     assert (variables["v"].dimensions, variables["v"].start) == ((3,), (1.0, 2.0, 3.0))
-    assert (variables["s"].start, variables["e"].start, variables["e"].items) == ("a b", 2, {"off": 1, "on": 2})
+    assert (variables["s"].start, variables["e"].start, variables["e"].items) == (
+        "a b",
+        2,
+        {"off": 1, "on": 2},
+    )
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("<fmiModelDescription fmiVersion='0.9'/>", "FMI version '0.9'. Versions 1.0, 2.0 and 3.0 are read"),
+        (
+            "<fmiModelDescription fmiVersion='0.9'/>",
+            "FMI version '0.9'. Versions 1.0, 2.0 and 3.0 are read",
+        ),
         ("<x/>", "Its outermost element is <x>."),
         ("<fmiModelDescription", "Not well-formed XML"),
-        ("<fmiModelDescription fmiVersion='2.0'/>", "The attribute 'modelName' is required but missing."),
-        (FMI3.format(structure="<Output/>"), "line 16: Element 'Output': The attribute 'valueReference' is required"),
+        (
+            "<fmiModelDescription fmiVersion='2.0'/>",
+            "The attribute 'modelName' is required but missing.",
+        ),
+        (
+            FMI3.format(structure="<Output/>"),
+            "line 16: Element 'Output': The attribute 'valueReference' is required",
+        ),
     ],
 )
 def test_what_is_no_fmu_is_refused(tmp_path, text, message):
@@ -137,7 +165,8 @@ SLAVE = (
 def test_fmi_1_is_described_in_the_words_of_fmi_2(tmp_path):
     described = read_fmu(fmu(tmp_path / "first.fmu", FIRST.replace("MORE", SLAVE)))
     traits = {
-        v.name: (v.causality, v.variability, v.initial, v.start, v.settable) for v in described.variables.values()
+        v.name: (v.causality, v.variability, v.initial, v.start, v.settable)
+        for v in described.variables.values()
     }
     assert traits == {
         "u": ("input", "continuous", None, 1.0, True),
@@ -150,11 +179,18 @@ def test_fmi_1_is_described_in_the_words_of_fmi_2(tmp_path):
     assert described.variables["minus"].negated and not described.variables["y"].negated
     assert described.variables["gear"].items == {"back": 0, "park": 1}
     assert (described.variables["u"].unit, described.variables["u"].minimum) == ("m/s", -3.0)
-    assert (described.fmi_version, described.n_states, described.n_event_indicators) == ("1.0", 2, 1)
+    assert (described.fmi_version, described.n_states, described.n_event_indicators) == (
+        "1.0",
+        2,
+        1,
+    )
     assert set(described.interfaces) == {"CoSimulation"} and described.model_identifier == "m"
     assert described.capability("canHandleVariableCommunicationStepSize")
 
 
 def test_fmi_1_without_an_implementation_is_model_exchange(tmp_path):
     described = read_fmu(fmu(tmp_path / "first.fmu", FIRST.replace("MORE", "")))
-    assert set(described.interfaces) == {"ModelExchange"} and described.identifier("ModelExchange") == "m"
+    assert (
+        set(described.interfaces) == {"ModelExchange"}
+        and described.identifier("ModelExchange") == "m"
+    )

@@ -25,7 +25,14 @@ SIMULATORS = """
 @pytest.fixture
 def osp(shop):
     """Function that writes an OspSystemStructure.xml for two simulators of an FMU, and gives its path."""
-    shop.fmu("one", "input u Real m", "input v Real m", "output y Real m", "output z Real km", "parameter k Real")
+    shop.fmu(
+        "one",
+        "input u Real m",
+        "input v Real m",
+        "output y Real m",
+        "output z Real km",
+        "parameter k Real",
+    )
 
     def write(functions="", connections="", values="", head=HEAD, simulators=SIMULATORS):
         path = shop.folder / "OspSystemStructure.xml"
@@ -41,7 +48,9 @@ def osp(shop):
 
 
 def joined(one, other, more=""):
-    ends = "".join('<Variable simulator="{}" name="{}"/>'.format(*end.split(".")) for end in (one, other))
+    ends = "".join(
+        '<Variable simulator="{}" name="{}"/>'.format(*end.split(".")) for end in (one, other)
+    )
     return f"<VariableConnection{more}>{ends}</VariableConnection>\n"
 
 
@@ -65,12 +74,20 @@ def remarks_of(path):
 
 def test_a_system_has_its_steps_times_values_and_directions(osp):
     head = "<StartTime>2.0</StartTime><EndTime>12</EndTime>" + HEAD
-    path = osp(connections=joined("a.u", "b.y"), values=value("k", "Real", "1e-3") + value("u", "Real", "4"), head=head)
+    path = osp(
+        connections=joined("a.u", "b.y"),
+        values=value("k", "Real", "1e-3") + value("u", "Real", "4"),
+        head=head,
+    )
     system = read_system(path)
     assert system.components["b"].start == {"k": 1e-3, "u": 4.0}
     assert (system.components["a"].step_size, system.components["b"].step_size) == (0.2, None)
     assert [(c.source, c.target) for c in system.connections] == [(("b", "y"), ("a", "u"))]
-    assert (system.experiment.start_time, system.experiment.stop_time, system.experiment.step_size) == (2.0, 12.0, 0.1)
+    assert (
+        system.experiment.start_time,
+        system.experiment.stop_time,
+        system.experiment.step_size,
+    ) == (2.0, 12.0, 0.1)
     assert read_system(path.parent).components.keys() == {"a", "b"}
 
 
@@ -82,10 +99,17 @@ def test_parameter_sets_go_over_initial_values(osp, shop):
 
 
 def test_functions_become_connections_and_a_sum_is_several_into_one(osp):
-    functions = '<LinearTransformation name="f" factor="2" offset="-1"/><Sum name="s" inputCount="2"/>'
+    functions = (
+        '<LinearTransformation name="f" factor="2" offset="-1"/><Sum name="s" inputCount="2"/>'
+    )
     connections = through("a.y", "f", "in") + through("b.v", "f", "out")
-    connections += through("b.y", "s", "in[1]") + through("b.u", "s", "out") + through("a.z", "s", "in[0]")
-    found = [(c.source, c.target, c.factor, c.offset) for c in read_system(osp(functions, connections)).connections]
+    connections += (
+        through("b.y", "s", "in[1]") + through("b.u", "s", "out") + through("a.z", "s", "in[0]")
+    )
+    found = [
+        (c.source, c.target, c.factor, c.offset)
+        for c in read_system(osp(functions, connections)).connections
+    ]
     assert found == [
         (("a", "y"), ("b", "v"), 2.0, -1.0),
         (("a", "z"), ("b", "u"), 1.0, 0.0),
@@ -108,37 +132,60 @@ def test_an_fmu_may_lie_elsewhere_and_be_addressed_as_a_file(osp, shop, tmp_path
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"simulators": '<Simulator name="a" source="proxyfmu://host?file=one.fmu"/>'}, "of the kind 'proxyfmu'"),
-        ({"simulators": '<Simulator name="a" source="http://host/one.fmu"/>'}, "of the kind 'http'. Name the FMU's"),
-        ({"simulators": '<Simulator name="a" source="two.fmu"/>'}, "The file 'two.fmu' does not exist. In"),
+        (
+            {"simulators": '<Simulator name="a" source="proxyfmu://host?file=one.fmu"/>'},
+            "of the kind 'proxyfmu'",
+        ),
+        (
+            {"simulators": '<Simulator name="a" source="http://host/one.fmu"/>'},
+            "of the kind 'http'. Name the FMU's",
+        ),
+        (
+            {"simulators": '<Simulator name="a" source="two.fmu"/>'},
+            "The file 'two.fmu' does not exist. In",
+        ),
         ({"simulators": SIMULATORS.replace('"b"', '"a"')}, "A second simulator is named 'a'."),
         ({"simulators": SIMULATORS.replace("0.2", "-1")}, "stepSize is -1. It must be positive."),
         ({"simulators": SIMULATORS.replace(' name="b"', "")}, "'name' is required but missing"),
         ({"head": HEAD.replace("0.1", "0.0")}, "base step size must be positive"),
         ({"head": HEAD.replace("0.1", "quick")}, "'quick' is not"),
-        ({"head": "<Algorithm>fixedStep</Algorithm><BaseStepSize>1</BaseStepSize>"}, "This element is not expected."),
+        (
+            {"head": "<Algorithm>fixedStep</Algorithm><BaseStepSize>1</BaseStepSize>"},
+            "This element is not expected.",
+        ),
         ({"values": value("l", "Real", "1")}, "b has no parameter 'l'. It has: k, u, v."),
         ({"values": value("k", "Boolean", "true")}, "the value is Boolean, b.k is Real"),
         ({"values": value("y", "Real", "1")}, "b.y is of causality output"),
         ({"connections": joined("a.y", "c.u")}, "There is no simulator 'c'. There is: a, b."),
         ({"connections": joined("a.y", "b.w")}, "b has no variable 'w'. It has: k, u, v, y, z."),
-        ({"connections": joined("a.y", "b.z")}, "b.z output. A connection leads from an output to an input."),
+        (
+            {"connections": joined("a.y", "b.z")},
+            "b.z output. A connection leads from an output to an input.",
+        ),
         ({"connections": joined("a.u", "b.u")}, "b.u is of causality input, a.u input."),
         ({"connections": joined("a.y", "b.k")}, "b.k parameter"),
-        ({"connections": joined("a.y", "b.u") + joined("a.y", "b.u")}, "line 11: a.y - b.u: A second connection"),
+        (
+            {"connections": joined("a.y", "b.u") + joined("a.y", "b.u")},
+            "line 11: a.y - b.u: A second connection",
+        ),
         ({"connections": through("a.y", "g", "in")}, "There is no function 'g'."),
         ({"functions": '<Sum name="a" inputCount="2"/>'}, "'a' is the name of something else"),
         ({"functions": '<Sum name="s" inputCount="999999999"/>'}, "At most 10000 are taken."),
         ({"functions": '<LinearTransformation name="f" factor="INF"/>'}, "no finite number"),
         ({"functions": '<Sum name="s" inputCount="1"/>'}, "has nothing connected to in[0], out."),
         (
-            {"functions": '<Sum name="s" inputCount="1"/>', "connections": through("a.y", "s", "in")},
+            {
+                "functions": '<Sum name="s" inputCount="1"/>',
+                "connections": through("a.y", "s", "in"),
+            },
             "The Sum 's' has no signal 'in'. It has: in[0], out.",
         ),
         (
             {
                 "functions": '<Sum name="s" inputCount="1"/>',
-                "connections": through("a.y", "s", "in[0]") + through("a.z", "s", "in[0]") + through("b.u", "s", "out"),
+                "connections": through("a.y", "s", "in[0]")
+                + through("a.z", "s", "in[0]")
+                + through("b.u", "s", "out"),
             },
             "A second connection into s:in[0].",
         ),
@@ -162,14 +209,18 @@ def test_what_libcosim_would_do_otherwise_is_remarked(osp):
     assert "powerBond is not used" in found
     assert "a.z is in km, b.u in m: OSP converts no units. Put a LinearTransformation" in found
     functions = '<LinearTransformation name="f"/>'
-    connections = through("a.y", "f", "in") + through("b.u", "f", "out") + through("b.v", "f", "out")
+    connections = (
+        through("a.y", "f", "in") + through("b.u", "f", "out") + through("b.v", "f", "out")
+    )
     path = osp(functions, connections)
     assert "libcosim makes the first alone" in text_of(remarks_of(path), "remark")
     assert len(read_system(path).connections) == 2
 
 
 def grouped(one, other):
-    ends = "".join('<VariableGroup simulator="{}" name="{}"/>'.format(*end.split(".")) for end in (one, other))
+    ends = "".join(
+        '<VariableGroup simulator="{}" name="{}"/>'.format(*end.split(".")) for end in (one, other)
+    )
     return f"<VariableGroupConnection>{ends}</VariableGroupConnection>\n"
 
 
@@ -181,17 +232,39 @@ PORTS = """<Force name="taken"><Variable ref="u"/><Variable ref="v"/></Force>
 @pytest.mark.parametrize(
     ("groups", "connections", "message"),
     [
-        (None, grouped("a.given", "b.taken"), "are described nowhere. Put one_OspModelDescription.xml beside it."),
-        (PORTS, grouped("a.given", "b.take"), "b has no variable group 'take'. It has: given, one, short, taken."),
+        (
+            None,
+            grouped("a.given", "b.taken"),
+            "are described nowhere. Put one_OspModelDescription.xml beside it.",
+        ),
+        (
+            PORTS,
+            grouped("a.given", "b.take"),
+            "b has no variable group 'take'. It has: given, one, short, taken.",
+        ),
         (PORTS, grouped("a.short", "b.taken"), "a.short has 1 variable, b.taken 2 variables."),
-        (PORTS, grouped("a.one", "b.taken"), "a.one has 0 variables and 1 group, b.taken 2 variables."),
-        (PORTS.replace('"y"', '"w"', 1), grouped("a.given", "b.taken"), "one.fmu has no variable 'w'."),
-        (PORTS.replace("given", "taken"), grouped("a.taken", "b.taken"), "A second group has this name."),
+        (
+            PORTS,
+            grouped("a.one", "b.taken"),
+            "a.one has 0 variables and 1 group, b.taken 2 variables.",
+        ),
+        (
+            PORTS.replace('"y"', '"w"', 1),
+            grouped("a.given", "b.taken"),
+            "one.fmu has no variable 'w'.",
+        ),
+        (
+            PORTS.replace("given", "taken"),
+            grouped("a.taken", "b.taken"),
+            "A second group has this name.",
+        ),
     ],
 )
 def test_a_fault_of_groups_is_refused(osp, shop, groups, connections, message):
     if groups:
-        (shop.folder / "resources" / "one_OspModelDescription.xml").write_text(GROUPS.format(groups))
+        (shop.folder / "resources" / "one_OspModelDescription.xml").write_text(
+            GROUPS.format(groups)
+        )
     assert message in text_of(check_file(osp(connections=connections)))
 
 
@@ -200,15 +273,21 @@ def test_groups_are_found_beside_the_structure_and_by_the_name_of_the_file(osp, 
     with zipfile.ZipFile(fmu) as archive:
         text = archive.read("modelDescription.xml").decode()
     with zipfile.ZipFile(fmu, "w") as archive:
-        archive.writestr("modelDescription.xml", text.replace('modelName="one"', 'modelName="Only One"'))
+        archive.writestr(
+            "modelDescription.xml", text.replace('modelName="one"', 'modelName="Only One"')
+        )
     (shop.folder / "one_OspModelDescription.xml").write_text(GROUPS.format(PORTS))
     path = osp(connections=grouped("a.given", "b.taken"))
     pairs = [(".".join(c.source), ".".join(c.target)) for c in read_system(path).connections]
     assert pairs == [("a.y", "b.u"), ("a.z", "b.v")]
-    assert "libcosim looks for Only One_OspModelDescription.xml instead" in text_of(remarks_of(path), "remark")
+    assert "libcosim looks for Only One_OspModelDescription.xml instead" in text_of(
+        remarks_of(path), "remark"
+    )
 
 
-@pytest.mark.parametrize("text", ["<a/>", f'<OspModelDescription xmlns="{NAMESPACE}"/>', "", "<!DOCTYPE a><a/>"])
+@pytest.mark.parametrize(
+    "text", ["<a/>", f'<OspModelDescription xmlns="{NAMESPACE}"/>', "", "<!DOCTYPE a><a/>"]
+)
 def test_another_file_is_none(tmp_path, text):
     path = tmp_path / "OspSystemStructure.xml"
     path.write_text(text)
@@ -232,7 +311,12 @@ def test_arrays_of_fmi_3_are_connected_by_elements_and_sized_by_initial_values(o
     with zipfile.ZipFile(shop.folder / "resources" / "three.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", ARRAYS)
     simulators = SIMULATORS.replace("one.fmu", "three.fmu")
-    system = read_system(osp(connections=joined("a.B[2]", "b.A[1]"), simulators=simulators.replace("{}", "")))
+    system = read_system(
+        osp(connections=joined("a.B[2]", "b.A[1]"), simulators=simulators.replace("{}", ""))
+    )
     assert [(c.source, c.target) for c in system.connections] == [(("a", "B[2]"), ("b", "A[1]"))]
     larger = read_system(osp(values=value("n", "Integer", "3"), simulators=simulators))
-    assert "A[3]" in larger.components["b"].fmu.variables and "A[3]" not in larger.components["a"].fmu.variables
+    assert (
+        "A[3]" in larger.components["b"].fmu.variables
+        and "A[3]" not in larger.components["a"].fmu.variables
+    )

@@ -24,7 +24,10 @@ def inline(parameters, prefix="", mapping=""):
 
 def by_file(*sources, mapping=""):
     """ParameterBindings with sets in files."""
-    inner = "".join(f'<ssd:ParameterBinding source="{source}">{mapping}</ssd:ParameterBinding>' for source in sources)
+    inner = "".join(
+        f'<ssd:ParameterBinding source="{source}">{mapping}</ssd:ParameterBinding>'
+        for source in sources
+    )
     return f"<ssd:ParameterBindings>{inner}</ssd:ParameterBindings>"
 
 
@@ -76,11 +79,21 @@ def test_values_of_every_type_arrive_as_such(ship):
     [
         ("seed", "Real", "1.0", "the value is Real, hull.seed is Integer."),
         ("mass", "Boolean", "true", "the value is Boolean, hull.mass is Real."),
-        ("mode", "Enumeration", "onn", "The enumeration has no item 'onn'. It has: off, on. Did you mean 'on'?"),
+        (
+            "mode",
+            "Enumeration",
+            "onn",
+            "The enumeration has no item 'onn'. It has: off, on. Did you mean 'on'?",
+        ),
         ("mass", "Real", "-1", "hull.mass cannot be -1 m. Allowed: 0 to 10000 m."),
         ("mass", "Real", "NaN", "'NaN' is not a finite number."),
         ("x", "Real", "1", "hull.x is of causality output, a value that the FMU calculates."),
-        ("maass", "Real", "1", "hull has no parameter 'maass'. It has: angle, mass, mode, replay, seed, table."),
+        (
+            "maass",
+            "Real",
+            "1",
+            "hull has no parameter 'maass'. It has: angle, mass, mode, replay, seed, table.",
+        ),
     ],
 )
 def test_values_that_do_not_fit_are_refused(ship, name, kind, value, message):
@@ -93,7 +106,9 @@ def test_a_unit_that_does_not_fit_is_refused_with_its_line(ship, real):
     ship.ssv(real("hull.mass", "2", "deg"))
     ship.ssd(ship.component("hull", "hull"), head=by_file("resources/numbers.ssv"))
     message = ship.refused()
-    assert "resources/numbers.ssv, line 5: hull.mass: the value is in deg, hull.mass in m" in message
+    assert (
+        "resources/numbers.ssv, line 5: hull.mass: the value is in deg, hull.mass in m" in message
+    )
 
 
 def test_a_value_without_a_unit_is_in_the_fmus(ship, real):
@@ -104,12 +119,13 @@ def test_a_value_without_a_unit_is_in_the_fmus(ship, real):
 def test_later_sets_and_higher_levels_win(ship, real):
     """mass: set at the component, at both systems around it and for this run; each level is taken away in turn."""
     for number in (2, 3, 4, 5):
-        ship.ssv(real({2: "hull.mass"}.get(number, "inner.hull.mass"), str(number)), f"resources/{number}.ssv")
+        ship.ssv(
+            real({2: "hull.mass"}.get(number, "inner.hull.mass"), str(number)),
+            f"resources/{number}.ssv",
+        )
     own = inline(real("mass", "1"))
     component = ship.component("hull", "hull", more=own)
-    inner = (
-        f'<ssd:System name="inner">{by_file("resources/2.ssv")}<ssd:Elements>{component}</ssd:Elements></ssd:System>'
-    )
+    inner = f'<ssd:System name="inner">{by_file("resources/2.ssv")}<ssd:Elements>{component}</ssd:Elements></ssd:System>'
     ship.ssd(inner, head=by_file("resources/3.ssv", "resources/4.ssv"))
     run = ship.folder / "resources/5.ssv"
     assert start(ship, run, component="inner.hull") == {"mass": 5.0}
@@ -155,9 +171,15 @@ def test_an_enumeration_is_mapped_by_the_names_of_its_items(ship):
 
 
 def test_a_systems_parameter_connector_hands_its_value_in(ship, real):
-    connector = '<ssd:Connector name="weight" kind="parameter"><ssc:Real unit="km"/></ssd:Connector>'
+    connector = (
+        '<ssd:Connector name="weight" kind="parameter"><ssc:Real unit="km"/></ssd:Connector>'
+    )
     head = f"<ssd:Connectors>{connector}</ssd:Connectors>" + inline(real("weight", "3"))
-    ship.ssd(ship.component("hull", "hull", "parameter mass"), ship.connection("weight", "hull.mass"), head=head)
+    ship.ssd(
+        ship.component("hull", "hull", "parameter mass"),
+        ship.connection("weight", "hull.mass"),
+        head=head,
+    )
     system = ship.read()
     assert system.components["hull"].start == {"mass": 3000.0}
     assert (system.parameters["weight"].start, system.parameters["weight"].unit) == (3.0, "km")
@@ -176,13 +198,17 @@ def test_a_set_may_hold_values_for_elements_that_are_not_here(ship, real):
 def test_a_slip_in_an_elements_name_is_refused_but_another_number_is_not(ship, real):
     ship.ssd(ship.component("hull_1", "hull"), head=by_file("resources/numbers.ssv"))
     ship.ssv(real("hulk_1.mass", "2"))
-    assert "There is no element 'hulk_1'. There is: hull_1. Did you mean 'hull_1'?" in ship.refused()
+    assert (
+        "There is no element 'hulk_1'. There is: hull_1. Did you mean 'hull_1'?" in ship.refused()
+    )
     ship.ssv(real("hull_2.mass", "2"))
     assert ship.read().components["hull_1"].start == {}
 
 
 def test_a_parameter_twice_in_a_set_is_refused(ship, real):
-    ship.ssd(ship.component("hull", "hull", more=inline(real("mass", "2") + "\n" + real("mass", "3"))))
+    ship.ssd(
+        ship.component("hull", "hull", more=inline(real("mass", "2") + "\n" + real("mass", "3")))
+    )
     assert "line 9: mass: The set has this parameter already, in line 8." in ship.refused()
 
 
@@ -199,7 +225,11 @@ def test_a_written_set_reads_back_the_same(tmp_path):
         parameter("environment.wind_from", 45.0, "deg"),
         parameter("environment.seed", 12),
         parameter("port.replay", False),
-        parameter("vessel.wind_table", "0 -0.53 0; 10 -0.59 0.22; " * 800, description="from <tests> & 'drawings'"),
+        parameter(
+            "vessel.wind_table",
+            "0 -0.53 0; 10 -0.59 0.22; " * 800,
+            description="from <tests> & 'drawings'",
+        ),
     ]
     path = tmp_path / "new" / "ship.ssv"
     write_ssv(path, "ship", values)
@@ -216,10 +246,20 @@ def test_a_set_inside_the_fmu_is_found_there(ship, real):
     with zipfile.ZipFile(ship.folder / "resources/hull.fmu", "a") as archive:
         archive.writestr("extra/own.ssv", ship.ssv(real("mass", "8")).read_text())
     ship.ssd(
-        ship.component("hull", "hull", more=by_file("extra/own.ssv").replace("source", 'sourceBase="component" source'))
+        ship.component(
+            "hull",
+            "hull",
+            more=by_file("extra/own.ssv").replace("source", 'sourceBase="component" source'),
+        )
     )
     assert start(ship) == {"mass": 8.0}
-    ship.ssd(ship.component("hull", "hull", more=by_file("own.ssv").replace("source", 'sourceBase="component" source')))
+    ship.ssd(
+        ship.component(
+            "hull",
+            "hull",
+            more=by_file("own.ssv").replace("source", 'sourceBase="component" source'),
+        )
+    )
     assert "hull.fmu has no file 'own.ssv'." in ship.refused()
 
 

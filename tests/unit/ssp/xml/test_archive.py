@@ -18,7 +18,8 @@ def archive(path, **entries):
 
 
 @pytest.mark.parametrize(
-    "name", ["../outside.txt", "/outside.txt", "a/../../outside.txt", "..\\outside.txt", "C:\\x.txt"]
+    "name",
+    ["../outside.txt", "/outside.txt", "a/../../outside.txt", "..\\outside.txt", "C:\\x.txt"],
 )
 def test_an_entry_that_would_land_outside_is_refused(tmp_path, name):
     path = archive(tmp_path / "evil.ssp", **{name: "x"})
@@ -75,7 +76,9 @@ def test_a_changed_byte_in_the_archive_is_never_a_crash(shop, tmp_path):
 
 def test_an_archive_without_a_structure_says_what_there_is(tmp_path):
     path = archive(tmp_path / "x.ssp", **{"Other.ssd": "<x/>"})
-    with pytest.raises(ShipcosimError, match="has no SystemStructure.ssd at its top. It has: Other.ssd"):
+    with pytest.raises(
+        ShipcosimError, match="has no SystemStructure.ssd at its top. It has: Other.ssd"
+    ):
         read_system(path)
 
 

@@ -43,7 +43,9 @@ def library() -> ctypes.CDLL:
     except OSError as error:
         there = sorted(one.stem for end in SUFFIXES.values() for one in FOLDER.glob(f"*{end}"))
         remedy = f"There are filters for {', '.join(there)}; compile.py beside them makes others."
-        raise ShipcosimError(Problem(str(file), f"The diagnosis cannot load its filter: {error}.", remedy)) from error
+        raise ShipcosimError(
+            Problem(str(file), f"The diagnosis cannot load its filter: {error}.", remedy)
+        ) from error
 
 
 def _call(name: str, sizes: tuple[int, ...], *arrays: np.ndarray | None) -> None:
@@ -106,7 +108,9 @@ def weights(
     """
     n, m, o = R.shape
     s = W.shape[-1]
-    gain, root, logdet = np.empty((n, m, o, s)), np.empty((n, m, o, o)), np.empty((n, m))
+    gain = np.empty((n, m, o, s))
+    root = np.empty((n, m, o, o))
+    logdet = np.empty((n, m))
     covariances = np.empty((n if keep else 0, m, s, s))
     sizes = n, m, o, s, A.shape[-1], len(A), A.shape[1], H.shape[1]
     found = gain, root, logdet, covariances if keep else None
@@ -147,9 +151,24 @@ def whitened(
     tuple of (n, m, o, c) array, (n, m, s) array
         White innovations; state of the first column after each row's measurement.
     """
-    (n, _, o, c), (m, s) = Z.shape, (gain.shape[1], W.shape[-1])
-    white, states = np.empty((n, m, o, c)), np.empty((n, m, s))
-    sizes = n, m, o, s, A.shape[-1], B.shape[2], c, len(A), A.shape[1], B.shape[1], H.shape[1], Z.shape[1]
+    (n, _, o, c) = Z.shape
+    (m, s) = (gain.shape[1], W.shape[-1])
+    white = np.empty((n, m, o, c))
+    states = np.empty((n, m, s))
+    sizes = (
+        n,
+        m,
+        o,
+        s,
+        A.shape[-1],
+        B.shape[2],
+        c,
+        len(A),
+        A.shape[1],
+        B.shape[1],
+        H.shape[1],
+        Z.shape[1],
+    )
     _call("whitened", sizes, A, W, B, H, Z, gain, root, is_last, x, white, states)
     return white, states
 
@@ -234,7 +253,8 @@ def log_likelihoods(
     -------
     (m,) array
     """
-    (n, o, s), m = H.shape, R.shape[1]
+    (n, o, s) = H.shape
+    m = R.shape[1]
     found = np.empty(m)
     _call(
         "log_likelihoods",

@@ -33,7 +33,9 @@ OPTIONS = (
     "-lm",
 )
 EXACT = "-ffp-contract=off"  # no fused operations: the same result on every machine
-NAMED = "-Wl,-install_name,kalman.dylib"  # without it a library for macOS holds where it was compiled
+NAMED = (
+    "-Wl,-install_name,kalman.dylib"  # without it a library for macOS holds where it was compiled
+)
 
 
 def digest(platform: str) -> str:
@@ -63,7 +65,9 @@ def compile_filter(platform: str, out: Path) -> Path:
         The library.
     """
     target = out / library_for(platform).name
-    with tempfile.TemporaryDirectory() as folder:  # takes the import library that the linker leaves for Windows
+    with (
+        tempfile.TemporaryDirectory() as folder
+    ):  # takes the import library that the linker leaves for Windows
         library = Path(folder, target.name)
         command = [sys.executable, "-m", "ziglang", "cc", "kalman.c", *_options(platform)]
         command += [f'-DSOURCES="{digest(platform)}"', "-o", str(library)]

@@ -40,7 +40,9 @@ from shipcosim.diagnose.numerics import Bands
 
 __all__ = ["wrong_clock"]
 
-_AT_ONCE = 8  # columns that are whitened together, over the rows in which any of them is not nothing
+_AT_ONCE = (
+    8  # columns that are whitened together, over the rows in which any of them is not nothing
+)
 _FORGOTTEN = 37.0  # nats: what is left after them is lost in rounding
 
 
@@ -65,22 +67,31 @@ class _Side:
         It begins with the segment, and soon after it the filter has forgotten it; so it is sparse.
         """
         parts = [slice(k, k + _AT_ONCE) for k in range(0, len(first), _AT_ONCE)]
-        return Bands(self.rest.size, [self._columns(np.asarray(first[p]), np.asarray(last[p])) for p in parts])
+        return Bands(
+            self.rest.size,
+            [self._columns(np.asarray(first[p]), np.asarray(last[p])) for p in parts],
+        )
 
     def _columns(self, first, last):
         """Columns of some segments that are near each other, from a row on."""
-        time, axes = self.motion.time, self.rest.shape[1]
+        time = self.motion.time
+        axes = self.rest.shape[1]
         begin = max(int(np.searchsorted(time, first.min(), side="right")) - 1, 0)
         over = min(int(np.searchsorted(time, last.max(), side="right")), time.size - 1)
-        rows = slice(begin, int(np.searchsorted(self.forgotten, self.forgotten[over] + _FORGOTTEN)) + 1)
+        rows = slice(
+            begin, int(np.searchsorted(self.forgotten, self.forgotten[over] + _FORGOTTEN)) + 1
+        )
         inner = (time[rows, None] > first) & (time[rows, None] <= last)
         ways = np.cumsum(self.steps[rows, :, None] * inner[:, None, :], axis=0)
-        whitener = replace(self.whitener, gains=self.whitener.gains[rows], scale=self.whitener.scale[rows])
+        whitener = replace(
+            self.whitener, gains=self.whitener.gains[rows], scale=self.whitener.scale[rows]
+        )
         return begin * axes, whitener(ways).reshape(-1, first.size)
 
     def match(self, columns):
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""
-        scale, rest = self.scale.ravel(), self.rest.ravel()
+        scale = self.scale.ravel()
+        rest = self.rest.ravel()
         shared = columns.with_series(scale) / self._scale_energy()
         return (columns.with_series(rest) - shared * (scale @ rest)) / self.rough
 
@@ -118,7 +129,11 @@ def wrong_clock(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
     """
-    sides = [_side(motion) for motion in (position_motion(log), heading_motion(log)) if motion is not None]
+    sides = [
+        _side(motion)
+        for motion in (position_motion(log), heading_motion(log))
+        if motion is not None
+    ]
     sides = [side for side in sides if is_clear(side.motion, side.whitener)]
     if not sides:
         return []
@@ -140,7 +155,8 @@ def wrong_clock(log: dict) -> list[Finding]:
 
 
 def _block_edges(sides):
-    start, end = min(s.motion.time[0] for s in sides), max(s.motion.time[-1] for s in sides)
+    start = min(s.motion.time[0] for s in sides)
+    end = max(s.motion.time[-1] for s in sides)
     count = int(np.clip((end - start) / SHORTEST_BLOCK, 2 * FEWEST_BLOCKS, MOST_BLOCKS))
     return np.linspace(start, end, count + 1)
 
@@ -169,8 +185,12 @@ def _best(sides, blocks, gram, edges):
     grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
     own = np.diag(grams)
     span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
-    nats, value, _ = _evidence(matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T)
-    nats[(span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < CLOCK_TOLERANCE)] = -np.inf
+    nats, value, _ = _evidence(
+        matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T
+    )
+    nats[
+        (span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < CLOCK_TOLERANCE)
+    ] = -np.inf
     first, last = np.unravel_index(np.argmax(nats), nats.shape)
     cost = 2.0 * np.log(count)
     if not nats[first, last] - cost > CLOCK_GAIN:
@@ -181,7 +201,11 @@ def _best(sides, blocks, gram, edges):
 def _evidence(match, energy):
     """Nats, estimate and standard deviation of ρ - 1 from the match of a column with the data and its energy."""
     precision = np.maximum(energy, 0.0) + 1.0 / CLOCK_SLAB**2
-    return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2), match / precision, precision**-0.5
+    return (
+        0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2),
+        match / precision,
+        precision**-0.5,
+    )
 
 
 def _refined(sides, first, last, cost):
@@ -190,9 +214,15 @@ def _refined(sides, first, last, cost):
     for reach, stride in ((3 * CLOCK_REACH, 6), (CLOCK_REACH // 2, 1)):
         for end in (0, 1):
             near = np.abs(np.searchsorted(time, (first, last)[end]) - np.arange(len(time))) <= reach
-            right = time < last if end == 0 else time > first  # rows may be so far apart that the other end is near
+            right = (
+                time < last if end == 0 else time > first
+            )  # rows may be so far apart that the other end is near
             places = time[near & right][::stride]
-            firsts, lasts = (places, np.full_like(places, last)) if end == 0 else (np.full_like(places, first), places)
+            firsts, lasts = (
+                (places, np.full_like(places, last))
+                if end == 0
+                else (np.full_like(places, first), places)
+            )
             nats = _evidence(*_joint(sides, firsts, lasts))[0]
             place = float(places[np.argmax(nats)]) if stride > 1 else _middle(places, nats)
             first, last = (place, last) if end == 0 else (first, place)
@@ -221,7 +251,9 @@ def _alone(side, first, last):
 
 def _is_said_by_both(segment):
     """Whether positions and headings both say so, by about the same rate: a single side can have a fault of its own."""
-    telling = [value / segment.value > 0.4 and abs(value) > 2.5 * std for value, std in segment.apart]
+    telling = [
+        value / segment.value > 0.4 and abs(value) > 2.5 * std for value, std in segment.apart
+    ]
     plausible = PLAUSIBLE_RATES[0] < 1.0 + segment.value < PLAUSIBLE_RATES[1]
     return plausible and len(telling) == 2 and all(telling) and _agree(segment.apart, segment.value)
 
@@ -229,7 +261,8 @@ def _is_said_by_both(segment):
 def _is_like(segment, sure):
     """Whether a segment that one side cannot tell of has the rate of another that both tell of."""
     return any(
-        abs(segment.value - other.value) < 3.0 * np.hypot(segment.std, other.std) and _agree(segment.apart, other.value)
+        abs(segment.value - other.value) < 3.0 * np.hypot(segment.std, other.std)
+        and _agree(segment.apart, other.value)
         for other in sure
     )
 
@@ -242,7 +275,11 @@ def _findings(segments):
     found = []
     while segments:
         lead = max(segments, key=lambda s: s.gain)
-        same = [s for s in segments if abs(s.value - lead.value) < 3.0 * np.hypot(s.std, lead.std) + 0.02]
+        same = [
+            s
+            for s in segments
+            if abs(s.value - lead.value) < 3.0 * np.hypot(s.std, lead.std) + 0.02
+        ]
         segments = [s for s in segments if s not in same]
         weight = np.array([s.std**-2 for s in same])
         rate = 1.0 + float(weight @ [s.value for s in same] / weight.sum())
@@ -251,5 +288,7 @@ def _findings(segments):
         std = float(np.hypot(weight.sum() ** -0.5, RATE_UNSURE * abs(rate - 1.0)))
         rates = {"rate": ParameterEstimate(rate, std, "1")}
         note = "positions and headings go at another rate than speeds and yaw rates say"
-        found.append(Finding("clock", None, "data", probability, rates, spans, ("time",), note=note))
+        found.append(
+            Finding("clock", None, "data", probability, rates, spans, ("time",), note=note)
+        )
     return found

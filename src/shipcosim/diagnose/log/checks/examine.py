@@ -44,13 +44,18 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     useless = [*wraps(logged), *lifeless(logged)]
     used = _without(logged, useless)
     throughout = _unless_in_part(misread(used, _stated_units(log)), used, _stated_units(log))
-    table, start = read_anew(used, throughout), logged["time"][0]
-    empty = {role: logged[role] for role, values in table.items() if np.isnan(values).all()}  # not lost, but unusable
+    table = read_anew(used, throughout)
+    start = logged["time"][0]
+    empty = {
+        role: logged[role] for role, values in table.items() if np.isnan(values).all()
+    }  # not lost, but unusable
     found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
         found += _in_parts(_with_even_heading(_without(table, found)), _stated_units(log))
     rate = rate_of(throughout)
-    found = [replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found]
+    found = [
+        replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found
+    ]
     return sorted([*useless, *throughout, *found], key=lambda finding: -finding.probability)
 
 
@@ -73,7 +78,8 @@ def _in_parts(table, stated):
     table = undone(table, mislabel_in(quiet[0]), quiet[0].segments) if quiet else table
     labels, right = mislabelled(table)
     if labels and not is_as_labelled(right, stated):
-        labels, right = [], table
+        labels = []
+        right = table
     clock = wrong_clock(right)
     kept = [label for label in labels if not _is_the_clock(label, clock, table["time"])]
     if len(kept) < len(labels):
@@ -102,30 +108,42 @@ def _as_logged(segment, start, rate):
 def _stated_units(log):
     """Units that are stated, by role; of positions that come from latitude and longitude, that they do."""
     geodetic = {"latitude": "deg"} if "latitude_origin" in log.attrs else {}
-    return geodetic | {str(n): v.attrs["stated_unit"] for n, v in log.variables.items() if v.attrs.get("stated_unit")}
+    return geodetic | {
+        str(n): v.attrs["stated_unit"]
+        for n, v in log.variables.items()
+        if v.attrs.get("stated_unit")
+    }
 
 
 def _is_the_clock(label, clock, time):
     """Whether a mislabel of a part of the log is where the clock is wrong even with the label put right."""
     if not label.segments or not clock:
         return False
-    part, wrong = inside(time, label.segments), inside(time, [s for finding in clock for s in finding.segments])
+    part = inside(time, label.segments)
+    wrong = inside(time, [s for finding in clock for s in finding.segments])
     return bool((part & wrong).sum() > 0.5 * part.sum())
 
 
 def _arrays(log):
     """The log as a dict of arrays, rows in order of time."""
     rows = usable_rows(log["time"].values)
-    table = {str(name): np.array(variable.values[rows], float) for name, variable in log.data_vars.items()}
+    table = {
+        str(name): np.array(variable.values[rows], float)
+        for name, variable in log.data_vars.items()
+    }
     return {"time": log["time"].values[rows], **table}
 
 
 def _without(table, found):
     """The table with what is no measurement left out."""
-    table = table | {role: np.where(bad, np.nan, table[role]) for role, bad in outliers(table).items()}
+    table = table | {
+        role: np.where(bad, np.nan, table[role]) for role, bad in outliers(table).items()
+    }
     for finding in found:
         bad = inside(table["time"], finding.segments)
-        table |= {role: np.where(bad, np.nan, table[role]) for role in finding.channels if role in table}
+        table |= {
+            role: np.where(bad, np.nan, table[role]) for role in finding.channels if role in table
+        }
     return table
 
 

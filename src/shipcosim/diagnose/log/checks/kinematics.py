@@ -11,7 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.diagnose.log.thresholds import CLEAR_MOTION, LONGEST_BRIDGE, NOISE_WINDOWS, SLOW_MOTION, WHITENESS_LAGS
+from shipcosim.diagnose.log.thresholds import (
+    CLEAR_MOTION,
+    LONGEST_BRIDGE,
+    NOISE_WINDOWS,
+    SLOW_MOTION,
+    WHITENESS_LAGS,
+)
 from shipcosim.diagnose.numerics import gaussian_filter, solve_tridiagonal, spline_integral
 
 __all__ = [
@@ -26,7 +32,21 @@ __all__ = [
     "whiteness",
 ]
 
-RATIOS = (0.0005, 0.002, 0.005, 0.01, 0.02, 0.04, 0.1, 0.2, 0.4, 0.8, 1.6, 6.0, 50.0)  # variance of wander over noise
+RATIOS = (
+    0.0005,
+    0.002,
+    0.005,
+    0.01,
+    0.02,
+    0.04,
+    0.1,
+    0.2,
+    0.4,
+    0.8,
+    1.6,
+    6.0,
+    50.0,
+)  # variance of wander over noise
 
 
 @dataclass(frozen=True)
@@ -81,10 +101,16 @@ def position_motion(log: dict) -> Motion | None:
     if len(rows) < 30:
         return None
     north, east, surge, sway, heading = (log[role][rows] for role in roles)
-    cosine, sine = np.cos(np.radians(heading)), np.sin(np.radians(heading))
-    ahead, aside = np.column_stack([cosine * surge, sine * surge]), np.column_stack([-sine * sway, cosine * sway])
-    velocity, none = ahead + aside, np.zeros(len(rows))
-    axes = {"north": np.column_stack([velocity[:, 0], none]), "east": np.column_stack([none, velocity[:, 1]])}
+    cosine = np.cos(np.radians(heading))
+    sine = np.sin(np.radians(heading))
+    ahead = np.column_stack([cosine * surge, sine * surge])
+    aside = np.column_stack([-sine * sway, cosine * sway])
+    velocity = ahead + aside
+    none = np.zeros(len(rows))
+    axes = {
+        "north": np.column_stack([velocity[:, 0], none]),
+        "east": np.column_stack([none, velocity[:, 1]]),
+    }
     parts = {"surge": ahead, "sway": aside, **axes}
     return _motion(log["time"][rows], np.column_stack([north, east]), velocity, parts)
 
@@ -118,7 +144,12 @@ def _jumps(seen):
         change_here = change[:, axis]
         around = np.array([np.roll(change_here, k) for k in (-3, -2, -1, 1, 2, 3)])
         off = np.abs(change_here - np.median(around, axis=0))
-        leap |= off > 5.0 * np.quantile(off, 0.95) + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0) + 1e-9
+        leap |= (
+            off
+            > 5.0 * np.quantile(off, 0.95)
+            + 3.0 * np.ptp(np.sort(around, axis=0)[1:-1], axis=0)
+            + 1e-9
+        )
     return leap
 
 
@@ -134,8 +165,12 @@ class Filter:
         """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
         flat = levels.reshape(len(levels), -1)
         driven = np.vstack([flat[:1], self.gains[:-1, None] * flat[:-1]])
-        before = np.append(0.0, self.gains[:-1] - 1.0)  # predicted[k + 1] - (1 - gain[k]) predicted[k] = driven[k + 1]
-        innovations = flat - solve_tridiagonal(before, np.ones(len(flat)), np.zeros(len(flat)), driven)
+        before = np.append(
+            0.0, self.gains[:-1] - 1.0
+        )  # predicted[k + 1] - (1 - gain[k]) predicted[k] = driven[k + 1]
+        innovations = flat - solve_tridiagonal(
+            before, np.ones(len(flat)), np.zeros(len(flat)), driven
+        )
         white = innovations / (self.std * self.scale)[:, None]
         white[self.gains >= 1.0] = 0.0
         return white.reshape(levels.shape)
@@ -148,7 +183,8 @@ def filter_for(motion: Motion, levels: np.ndarray | None = None) -> list[Filter]
     """
     levels = motion.level[:, :, None] if levels is None else levels
     drafts = filters(motion.time, motion.starts)
-    stds, scores = np.zeros((len(drafts), levels.shape[2])), np.zeros((len(drafts), levels.shape[2]))
+    stds = np.zeros((len(drafts), levels.shape[2]))
+    scores = np.zeros((len(drafts), levels.shape[2]))
     for number, draft in enumerate(drafts):
         known = draft.gains < 1.0
         stds[number], calm = _spreads(draft(levels)[known])
@@ -168,8 +204,10 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
     """
     steps = np.diff(time, prepend=time[0])
     steps = steps / np.median(steps[1:])
-    ratios, variance = np.array(RATIOS), np.ones(len(RATIOS))
-    gains, scale = np.ones((len(steps), len(RATIOS))), np.ones((len(steps), len(RATIOS)))
+    ratios = np.array(RATIOS)
+    variance = np.ones(len(RATIOS))
+    gains = np.ones((len(steps), len(RATIOS)))
+    scale = np.ones((len(steps), len(RATIOS)))
     for row, (step, anew) in enumerate(zip(steps.tolist(), starts.tolist(), strict=True)):
         if row == 0 or anew:
             variance = np.ones(len(RATIOS))
@@ -183,9 +221,13 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
 def _spreads(white):
     """Standard deviation in calm windows, and mean of its logarithm over the calmer ones, of (n, a, k): two of (k,)."""
     count = max(1, min(NOISE_WINDOWS, len(white) // 40))
-    spreads = np.array([1.4826 * np.median(np.abs(w), axis=(0, 1)) for w in np.array_split(white, count)])
+    spreads = np.array(
+        [1.4826 * np.median(np.abs(w), axis=(0, 1)) for w in np.array_split(white, count)]
+    )
     spreads = np.sort(np.maximum(spreads, 1e-9), axis=0)
-    return np.quantile(spreads, 0.4, axis=0), np.mean(np.log(spreads[: max(1, int(0.6 * count))]), axis=0)
+    return np.quantile(spreads, 0.4, axis=0), np.mean(
+        np.log(spreads[: max(1, int(0.6 * count))]), axis=0
+    )
 
 
 def whiteness(white: np.ndarray) -> float:
@@ -195,7 +237,8 @@ def whiteness(white: np.ndarray) -> float:
 
 
 def _togetherness(white):
-    tame, lags = np.clip(white, -4.0, 4.0), range(1, min(WHITENESS_LAGS + 1, len(white)))  # a part may have few rows
+    tame = np.clip(white, -4.0, 4.0)  # a part may have few rows
+    lags = range(1, min(WHITENESS_LAGS + 1, len(white)))
     power = np.mean(tame**2) + 1e-12
     together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in lags]
     return max(1.0, 1.0 + 2.0 * sum(together))
@@ -203,9 +246,11 @@ def _togetherness(white):
 
 def is_clear(motion: Motion, whitener: Filter, segment: tuple[float, float] | None = None) -> bool:
     """Whether the ship moves so much that the noise of its velocity hardly makes slopes on it too small."""
-    time, moving = motion.time, whitener.gains < 1.0
+    time = motion.time
+    moving = whitener.gains < 1.0
     inner = slice(None) if segment is None else (time >= segment[0]) & (time <= segment[1])
     slow = motion.slow(motion.velocity)[inner]
-    gain, std = np.median(whitener.gains[moving]), whitener.std * np.median(whitener.scale[moving])
+    gain = np.median(whitener.gains[moving])
+    std = whitener.std * np.median(whitener.scale[moving])
     wander = (gain * std) ** 2 / np.median(np.diff(time))
     return bool(np.mean(slow**2) > CLEAR_MOTION**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW_MOTION))

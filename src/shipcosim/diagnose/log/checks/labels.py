@@ -90,7 +90,9 @@ def _best(log, motion_of, labels):
         gain, segment = best_segment(plain.time, likely[:, number] - likely[:, 0])
         rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, segment))
         hypothesis = _LabelHypothesis(label, gain, segment, rough)
-        if gain / rough > LABEL_GAIN and _explains(plain, others[number - 1], filters[number], hypothesis):
+        if gain / rough > LABEL_GAIN and _explains(
+            plain, others[number - 1], filters[number], hypothesis
+        ):
             hypotheses.append(hypothesis)
     if not hypotheses:
         return None
@@ -106,7 +108,9 @@ def _is_alike(log, hypothesis):
     if hypothesis.segment is None:
         return False
     here = inside(log["time"][2:], [hypothesis.segment])
-    bends = np.mean([np.abs(np.diff(log[role], n=2)) for role in hypothesis.mislabel.channels], axis=0)
+    bends = np.mean(
+        [np.abs(np.diff(log[role], n=2)) for role in hypothesis.mislabel.channels], axis=0
+    )
     if (~here).sum() < 10:
         return True
     return bool(0.7 < np.nanmean(bends[~here]) / (np.nanmean(bends[here]) + 1e-12) < 1.4)
@@ -136,7 +140,9 @@ def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[floa
     return float(part), (float(time[first]), float(time[last - 1]))
 
 
-def in_segment(values: np.ndarray, time: np.ndarray, segment: tuple[float, float] | None) -> np.ndarray:
+def in_segment(
+    values: np.ndarray, time: np.ndarray, segment: tuple[float, float] | None
+) -> np.ndarray:
     """The rows within a segment; all if there is none."""
     return values if segment is None else values[(time >= segment[0]) & (time <= segment[1])]
 
@@ -147,7 +153,8 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, hypothesis) -> boo
     Noise in the velocity makes slopes too small, for a ship that hardly moves by half. That leaves signs and swapped
     channels clear, but not units.
     """
-    channels, is_unit = hypothesis.mislabel.channels, hypothesis.mislabel.scale is not None
+    channels = hypothesis.mislabel.channels
+    is_unit = hypothesis.mislabel.scale is not None
     under = _slopes(other, channels, whitener, hypothesis.segment)
     given = _slopes(plain, channels, whitener, hypothesis.segment)
     lowest, highest = (1.0 - LABEL_SLOPE_NEAR, 1.0 + LABEL_SLOPE_NEAR) if is_unit else (0.3, 1.7)
@@ -168,25 +175,37 @@ def _slopes(motion: Motion, channels, whitener: Filter, segment):
     ways = [motion.way(motion.slow(motion.parts[role])) for role in channels]
     white = whitener(np.stack([motion.seen, *ways], axis=2))
     white = in_segment(white, motion.time, segment).reshape(-1, 1 + len(ways))
-    y, x = white[:, 0], white[:, 1:]
+    y = white[:, 0]
+    x = white[:, 1:]
     spread = np.linalg.pinv(x.T @ x + 1e-9 * np.eye(len(ways)))
     slopes = spread @ (x.T @ y)
     rest = np.clip(y - x @ slopes, -LABEL_CLIP, LABEL_CLIP)
-    return list(zip(slopes.tolist(), np.sqrt(np.mean(rest**2) * np.diag(spread)).tolist(), strict=True))
+    return list(
+        zip(slopes.tolist(), np.sqrt(np.mean(rest**2) * np.diag(spread)).tolist(), strict=True)
+    )
 
 
 def _refined(log, motion_of, whitener, best):
     """The segment with each end where the log with it undone is likeliest and leaps least; None for the whole log."""
     if best.segment is None:
         return None
-    motion, ends = motion_of(log), [int(i) for i in np.searchsorted(log["time"], best.segment)]
+    motion = motion_of(log)
+    ends = [int(i) for i in np.searchsorted(log["time"], best.segment)]
     leaps = np.searchsorted(log["time"], motion.time[motion.starts])
     for end in (0, 1):
-        places = sorted({*range(ends[end] - LABEL_REACH, ends[end] + LABEL_REACH + 1), *(leaps - end)})
-        places = [k for k in places if 0 <= k < len(log["time"]) and (k < ends[1] if end == 0 else k > ends[0])]
+        places = sorted(
+            {*range(ends[end] - LABEL_REACH, ends[end] + LABEL_REACH + 1), *(leaps - end)}
+        )
+        places = [
+            k
+            for k in places
+            if 0 <= k < len(log["time"]) and (k < ends[1] if end == 0 else k > ends[0])
+        ]
         segments = [log["time"][[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
         tried = [motion_of(undone(log, best.mislabel, [one])) for one in segments]
-        white = np.clip(whitener(np.stack([one.level for one in tried], axis=2)), -LABEL_CLIP, LABEL_CLIP)
+        white = np.clip(
+            whitener(np.stack([one.level for one in tried], axis=2)), -LABEL_CLIP, LABEL_CLIP
+        )
         left = LABEL_CLIP**2 * np.array([one.starts.sum() for one in tried])
         ends[end] = places[int(np.argmin(np.sum(white**2, axis=(0, 1)) + left))]
     return tuple(float(t) for t in log["time"][ends])
@@ -195,5 +214,7 @@ def _refined(log, motion_of, whitener, best):
 def _finding(segment, best, hypotheses):
     rough = max(s.rough for s in hypotheses)
     others = [(s.gain - best.gain) / rough for s in hypotheses if s is not best]
-    probability = float(1.0 / (1.0 + np.exp(LABEL_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others))))
+    probability = float(
+        1.0 / (1.0 + np.exp(LABEL_GAIN - 6.0 - best.gain / best.rough) + np.sum(np.exp(others)))
+    )
     return finding_of(best.mislabel, probability, segment)

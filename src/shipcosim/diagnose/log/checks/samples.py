@@ -30,13 +30,17 @@ __all__ = ["gaps", "lifeless", "outliers", "runs", "wraps"]
 
 LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
-NO_ROWS, NO_VALUES, HELD, STRAIGHT = (
-    "there are no rows",
-    "there are no values",
-    "values are held",
-    "values are interpolated",
+NO_ROWS = "there are no rows"
+NO_VALUES = "there are no values"
+HELD = "values are held"
+STRAIGHT = "values are interpolated"
+GROUPS = (
+    ("north", "east"),
+    ("heading",),
+    ("surge", "sway"),
+    ("yaw_rate",),
+    ("wind_speed", "wind_from"),
 )
-GROUPS = (("north", "east"), ("heading",), ("surge", "sway"), ("yaw_rate",), ("wind_speed", "wind_from"))
 
 
 @dataclass(frozen=True)
@@ -79,9 +83,17 @@ def lifeless(log: dict) -> list[Finding]:
     """
     constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
     moved = all(role in log and _changes(log[role]) for role in ("north", "east"))
-    turned = "heading" in log and _changes(np.degrees(np.unwrap(np.radians(_known(log["heading"])))))
+    turned = "heading" in log and _changes(
+        np.degrees(np.unwrap(np.radians(_known(log["heading"]))))
+    )
     sailed = any(role in log and _changes(log[role]) for role in ("surge", "sway"))
-    should = {"surge": moved, "sway": moved and turned, "yaw_rate": turned, "north": sailed, "east": sailed}
+    should = {
+        "surge": moved,
+        "sway": moved and turned,
+        "yaw_rate": turned,
+        "north": sailed,
+        "east": sailed,
+    }
     should["heading"] = "yaw_rate" in log and _changes(log["yaw_rate"])
     roles = tuple(role for role in constant if should[role])
     whole = ((float(log["time"][0]), float(log["time"][-1])),)
@@ -95,7 +107,9 @@ def _known(values):
 def _is_constant(values):
     values = _known(values)
     is_one = len(values) >= FEWEST_CONSTANT and np.ptp(values) == 0.0
-    return is_one and len(np.unique(np.signbit(values))) == 1  # zeros of both signs are what a coarse unit leaves
+    return (
+        is_one and len(np.unique(np.signbit(values))) == 1
+    )  # zeros of both signs are what a coarse unit leaves
 
 
 def _changes(values):
@@ -113,11 +127,14 @@ def _leaps(log):
     if not all(role in log for role in roles):
         return
     north, east, surge, sway = (log[role] for role in roles)
-    steps, speed = np.diff(log["time"]), np.hypot(surge, sway)
+    steps = np.diff(log["time"])
+    speed = np.hypot(surge, sway)
     went = np.hypot(np.diff(north), np.diff(east))
     told = np.maximum(speed[1:], speed[:-1]) * steps
     usual = np.nanquantile(np.abs(went - told), 0.9) if np.isfinite(went - told).any() else np.inf
-    usual = max(usual, np.hypot(quantum(north), quantum(east)))  # between two steps of its resolution no ship leaps
+    usual = max(
+        usual, np.hypot(quantum(north), quantum(east))
+    )  # between two steps of its resolution no ship leaps
     with np.errstate(invalid="ignore"):
         leaping = went > LEAP * (told + usual)
     for first, last in runs(leaping):
@@ -160,7 +177,8 @@ def _flat_runs(log, roles):
     """Runs in which all channels of a group are empty, held or straight for longer than chance makes them."""
     if not roles:
         return
-    time, values = log["time"], np.column_stack([log[role] for role in roles])
+    time = log["time"]
+    values = np.column_stack([log[role] for role in roles])
     for first, last in runs(np.all(np.isnan(values), axis=1)):
         if time[last - 1] - time[first] >= SHORTEST_GAP and last - first >= FEWEST_GAP_ROWS:
             yield _Run(first, last - 1, roles, NO_VALUES)
@@ -171,7 +189,9 @@ def _flat_runs(log, roles):
     for first, last in _long_runs(straight | _same(values), least):
         kind = _kind(values[first:last])
         last = min(last + (kind == STRAIGHT), len(time) - 1)  # rows of the line, both ends included
-        if time[last] - time[first] >= SHORTEST_GAP and (len(roles) > 2 or _is_line(log, roles, first, last)):
+        if time[last] - time[first] >= SHORTEST_GAP and (
+            len(roles) > 2 or _is_line(log, roles, first, last)
+        ):
             yield _Run(first + 1, last - (kind == STRAIGHT), roles, kind)
 
 
@@ -247,9 +267,18 @@ def _with_followers(log, run):
     """The run, with the other channels too where these are empty, held or straight for the whole time."""
     others = [role for role in log if role not in (*run.channels, "time")]
     inner = slice(run.first, run.last + 1)
-    flat = [role for role in others if _follows(log[role][inner], role, run.kind, _straight(log[role], role))]
+    flat = [
+        role
+        for role in others
+        if _follows(log[role][inner], role, run.kind, _straight(log[role], role))
+    ]
     moving = [role for role in flat if _range(log[role]) > 0.0]
-    return _Run(run.first, run.last, (*run.channels, *(moving if len(flat) == len(others) else ())), run.kind)
+    return _Run(
+        run.first,
+        run.last,
+        (*run.channels, *(moving if len(flat) == len(others) else ())),
+        run.kind,
+    )
 
 
 def _range(values):
@@ -270,20 +299,30 @@ def wraps(log: dict) -> list[Finding]:
     """Samples of the heading that were interpolated the long way round between both sides of north."""
     if "heading" not in log:
         return []
-    time, heading = log["time"], log["heading"]
-    bad, fine = np.zeros(len(heading), bool), quantum(heading)
+    time = log["time"]
+    heading = log["heading"]
+    bad = np.zeros(len(heading), bool)
+    fine = quantum(heading)
     faster = _no_turn(heading)
-    full = np.where(np.abs(heading) <= fine, heading + 360.0, heading)  # 359.98 rounded is written as 0.0
+    full = np.where(
+        np.abs(heading) <= fine, heading + 360.0, heading
+    )  # 359.98 rounded is written as 0.0
     for between in range(1, min(LONGEST_WRAP, len(heading) - 2) + 1):
         crossing = np.zeros(len(heading) - between - 1, bool)
         for a, b in ((heading, heading), (full, heading), (heading, full)):
-            crossing |= _long_way(time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine, faster)
+            crossing |= _long_way(
+                time, heading, a[: -between - 1], b[between + 1 :], 3.0 + 2.0 * fine, faster
+            )
         for row in np.flatnonzero(crossing):
             bad[row + 1 : row + 1 + between] = True
     bad |= _round_south(log, faster)
     segments = tuple((float(time[first]), float(time[last - 1])) for first, last in runs(bad))
     note = "samples lie on the long way round between both sides of north"
-    return [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)] if segments else []
+    return (
+        [Finding("heading_wrap", None, "data", 1.0, {}, segments, ("heading",), note=note)]
+        if segments
+        else []
+    )
 
 
 def _no_turn(heading):
@@ -297,10 +336,17 @@ def _long_way(time, heading, a, b, tolerance, faster):
 
     Some of them may be missing.
     """
-    n, between = len(a), len(heading) - len(a) - 1
-    crossing = (np.abs(b - a) > 180.0) & (np.abs(wrap_series(b - a)) < 45.0) & (np.abs(b - a) > faster * (between + 1))
+    n = len(a)
+    between = len(heading) - len(a) - 1
+    crossing = (
+        (np.abs(b - a) > 180.0)
+        & (np.abs(wrap_series(b - a)) < 45.0)
+        & (np.abs(b - a) > faster * (between + 1))
+    )
     turning = np.nan_to_num(np.abs(wrap_series(np.diff(heading))))
-    beside = np.minimum(np.r_[0.0, turning[: n - 1]], np.r_[turning[between + 1 :], 0.0])  # before a, after b
+    beside = np.minimum(
+        np.r_[0.0, turning[: n - 1]], np.r_[turning[between + 1 :], 0.0]
+    )  # before a, after b
     crossing &= np.abs(b - a) > 2.0 * beside * (between + 1)
     some = np.zeros(n, bool)
     for k in range(1, between + 1):
@@ -316,15 +362,22 @@ def _round_south(log, faster):
 
     They come and go within a few rows, much faster than the ship turns.
     """
-    bad, known = np.zeros(len(log["heading"]), bool), np.flatnonzero(np.isfinite(log["heading"]))
-    time, heading = log["time"][known], wrap_series(log["heading"][known])
+    bad = np.zeros(len(log["heading"]), bool)
+    known = np.flatnonzero(np.isfinite(log["heading"]))
+    time = log["time"][known]
+    heading = wrap_series(log["heading"][known])
     change = np.abs(wrap_series(np.diff(heading)))
     longest = (2 * LONGEST_WRAP + 1.5) * np.median(np.diff(log["time"]))
     for first, last in runs(np.abs(heading) > NEAR_NORTH):
         if first == 0 or last == len(known) or time[last] - time[first - 1] > longest:
             continue
-        if heading[first - 1] * heading[last] < 0.0 and max(change[first - 1], change[last - 1]) > faster:
-            first -= first > 1 and change[first - 2] > faster  # samples near north may lie on the line too
+        if (
+            heading[first - 1] * heading[last] < 0.0
+            and max(change[first - 1], change[last - 1]) > faster
+        ):
+            first -= (
+                first > 1 and change[first - 2] > faster
+            )  # samples near north may lie on the line too
             last += last < len(change) and change[last] > faster
             bad[known[first:last]] = True
     return bad
@@ -343,12 +396,18 @@ def _far_off(values, is_angle):
     if is_angle:
         change = wrap_series(change)
     usual = 1.4826 * np.nanmedian(np.abs(change - np.nanmedian(change))) + quantum(values) + 1e-12
-    before, after = change[:-1], change[1:]
+    before = change[:-1]
+    after = change[1:]
     with np.errstate(invalid="ignore"):
-        spike = (np.minimum(np.abs(before), np.abs(after)) > 12.0 * usual) & (np.abs(before + after) < 6.0 * usual)
+        spike = (np.minimum(np.abs(before), np.abs(after)) > 12.0 * usual) & (
+            np.abs(before + after) < 6.0 * usual
+        )
     far = np.r_[False, spike & (before * after < 0.0), False]
     for end in () if is_angle or len(values) < 4 else (0, -1):
         others = np.delete(values, end)
-        low, high = np.nanmin(others, initial=np.inf), np.nanmax(others, initial=-np.inf)
-        far[end] = high > low and abs(values[end] - 0.5 * (low + high)) > END_DISTANCE * (high - low)
+        low = np.nanmin(others, initial=np.inf)
+        high = np.nanmax(others, initial=-np.inf)
+        far[end] = high > low and abs(values[end] - 0.5 * (low + high)) > END_DISTANCE * (
+            high - low
+        )
     return far

@@ -26,7 +26,9 @@ from shipcosim.diagnose.numerics import gaussian_filter
 __all__ = ["leaps", "mislabelled_wind"]
 
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
-BOW, MIRRORED, NORTH = "from the bow", "mirrored", "from north"
+BOW = "from the bow"
+MIRRORED = "mirrored"
+NORTH = "from north"
 SLOPES = {BOW: {"apparent": 1.0, "kn": 1852.0 / 3600.0, "m/s": 3600.0 / 1852.0, "over ground": 0.0}}
 SLOPES |= {MIRRORED: {"apparent": 1.0}, NORTH: {"apparent": 1.0, "over ground": 0.0}}
 LABEL = {
@@ -64,7 +66,9 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     levels = np.stack([wind - slow for wind in winds.values()], axis=2)
     filters = dict(zip(winds, filter_for(motion, levels), strict=True))
     frame, segment, gain = _frame(time, winds, slow, filters)
-    return _finding(time, winds[frame], motion.slow(winds[frame]), slow, filters[frame], frame, segment, gain)
+    return _finding(
+        time, winds[frame], motion.slow(winds[frame]), slow, filters[frame], frame, segment, gain
+    )
 
 
 def _axes(vector):
@@ -87,7 +91,9 @@ def _frame(time, winds, slow, filters):
     for name, whitener in filters.items():
         white = [whitener(wind_less) for wind_less in (winds[name] - slow, winds[name])]
         rows = [-0.5 * np.sum(np.clip(w, -LABEL_CLIP, LABEL_CLIP) ** 2, axis=1) for w in white]
-        likely[name] = rows[int(rows[1].sum() > rows[0].sum())] - 2.0 * np.log(whitener.std * whitener.scale)
+        likely[name] = rows[int(rows[1].sum() > rows[0].sum())] - 2.0 * np.log(
+            whitener.std * whitener.scale
+        )
     best = (BOW, None, 0.0)
     for name in (MIRRORED, NORTH):
         gain, segment = best_segment(time, likely[name] - likely[BOW])
@@ -106,12 +112,16 @@ def _steadiness(wind, time, segment):
 
 def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     """The mislabel that the slope on the ship's velocity leaves over."""
-    y, x = whitener(wind), whitener(slow)
+    y = whitener(wind)
+    x = whitener(slow)
     if frame == BOW:
         return _unit(time, y, x, whitener(smooth), wind, slow)
     slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
     kinds = SLOPES[frame]
-    weights = {kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12 for kind, b in kinds.items()}
+    weights = {
+        kind: np.exp(-0.5 * ((slope - b) / np.hypot(std, 0.1)) ** 2) + 1e-12
+        for kind, b in kinds.items()
+    }
     kind = max(weights, key=lambda one: weights[one])
     return [_named(LABEL[frame, kind], segment, gain, weights[kind] / sum(weights.values()))]
 
@@ -121,7 +131,9 @@ def _unit(time, y, x, smooth, wind, slow):
     found = []
     for kind, b in SLOPES[BOW].items():
         gains = 0.5 * np.sum(
-            np.clip(y - x, -LABEL_CLIP, LABEL_CLIP) ** 2 - np.clip(y - b * x, -LABEL_CLIP, LABEL_CLIP) ** 2, axis=1
+            np.clip(y - x, -LABEL_CLIP, LABEL_CLIP) ** 2
+            - np.clip(y - b * x, -LABEL_CLIP, LABEL_CLIP) ** 2,
+            axis=1,
         )
         gain, segment = best_segment(time, gains)
         rough = whiteness(in_segment(y - b * x, time, segment))
@@ -133,11 +145,15 @@ def _unit(time, y, x, smooth, wind, slow):
         near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
         near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
         if near and std < WIND_SLOPE_STD * max(b, 1.0) and abs(slope - 1.0) > 3.0 * std:
-            found.append(_named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0))
+            found.append(
+                _named(LABEL[BOW, kind], segment, gain / rough + (0.0 if segment else 6.0), 1.0)
+            )
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
 
-def leaps(time: np.ndarray, speed: np.ndarray, segment: tuple[float, float] | None, factor: float) -> bool:
+def leaps(
+    time: np.ndarray, speed: np.ndarray, segment: tuple[float, float] | None, factor: float
+) -> bool:
     """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log.
 
     Parameters
@@ -172,10 +188,8 @@ def _about(time, segment):
     """Rows of a segment that are near one of its ends, and those outside of it; none of the whole log."""
     if segment is None:
         return np.zeros((2, len(time)), bool)
-    here, near = (
-        inside(time, [segment]),
-        inside(time, [(end - BESIDE_SEGMENT, end + BESIDE_SEGMENT) for end in segment]),
-    )
+    here = inside(time, [segment])
+    near = inside(time, [(end - BESIDE_SEGMENT, end + BESIDE_SEGMENT) for end in segment])
     return near & here, near & ~here
 
 

@@ -39,7 +39,8 @@ def jumping_wind(log: dict) -> list[Finding]:
     if len(rows) < 4 * BETWEEN_JUMPS:
         return []
     part = {role: log[role][rows] for role in ("time", *ROLES)}
-    logged, found = _wind(part), []
+    logged = _wind(part)
+    found = []
     for label in WIND_LABELS:
         undone = _wind(part | label.undo(part))
         gain, first, last = _best_pair(logged, undone)
@@ -79,7 +80,8 @@ def _best_pair(logged, undone):
     if not np.isfinite(best).any():
         return -np.inf, 0, 0
     end = int(np.argmax(best))
-    first, last = int(np.argmax(begins[: end + 1])) + BESIDE_JUMP, end + BETWEEN_JUMPS + BESIDE_JUMP - 1
+    first = int(np.argmax(begins[: end + 1])) + BESIDE_JUMP
+    last = end + BETWEEN_JUMPS + BESIDE_JUMP - 1
     return float(best[end]) - 2.0 * np.log(len(begins)), first, last
 
 

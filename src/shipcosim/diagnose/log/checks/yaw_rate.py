@@ -32,7 +32,9 @@ def silent_rate(log: dict) -> list[Finding]:
     rate = motion.velocity[:, 0]
     fine = quantum(rate)
     bends = np.abs(np.diff(rate, n=2, prepend=rate[:2]))
-    if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(motion.slow(rate)):
+    if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(
+        motion.slow(rate)
+    ):
         return [finding_of(RADIAN, 0.98)] if _signs_turn(motion) else []
     windows = np.array_split(bends, max(4, len(bends) // 60))
     usual = float(np.quantile([window.mean() for window in windows], 0.8))
@@ -43,7 +45,8 @@ def silent_rate(log: dict) -> list[Finding]:
     gain, segment = best_segment(motion.time, gains)
     if segment is None or gain < QUIET_GAIN:
         return []
-    inner, outer = in_segment(bends, motion.time, segment).mean(), usual
+    inner = in_segment(bends, motion.time, segment).mean()
+    outer = usual
     told = np.std(in_segment(motion.slow(rate), motion.time, segment))
     if inner > QUIETER * outer or not _turns(motion, segment) > 3.0 * told:
         return []

@@ -13,7 +13,20 @@ __all__ = ["numbers_of", "with_unit", "without_fillers"]
 
 
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
-_FILLERS = (-99.0, -999.0, -9999.0, -99999.0, -999999.0, 99.0, 999.0, 9999.0, 99999.0, 999999.0, -32768.0, 32767.0)
+_FILLERS = (
+    -99.0,
+    -999.0,
+    -9999.0,
+    -99999.0,
+    -999999.0,
+    99.0,
+    999.0,
+    9999.0,
+    99999.0,
+    999999.0,
+    -32768.0,
+    32767.0,
+)
 """Numbers that loggers write where they have none."""
 
 
@@ -45,19 +58,24 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
     plain = text.str.replace("\u2212", "-", regex=False)
     plain = plain.str.replace(r"(?<=[\d.])[dD](?=[+-]?\d+$)", "e", regex=True)
     if decimal == "," or plain.str.contains(",", regex=False).any():
-        is_grouped = plain.str.fullmatch(rf"[+-]?\d{{1,3}}(?:[{grouping}]\d{{3}})+(?:[{decimal}]\d*)?")
+        is_grouped = plain.str.fullmatch(
+            rf"[+-]?\d{{1,3}}(?:[{grouping}]\d{{3}})+(?:[{decimal}]\d*)?"
+        )
         plain = plain.where(~is_grouped, plain.str.replace(grouping, "", regex=False))
         plain = plain.str.replace(decimal, ".", regex=False) if decimal == "," else plain
     numbers: Any = pandas.to_numeric(plain.where(~missing), errors="coerce")
     damaged: Any = numbers.isna() & ~missing
-    count, there = int(damaged.sum()), int((~missing).sum())
+    count = int(damaged.sum())
+    there = int((~missing).sum())
     if count > _MOST_DAMAGED * there and count > 0:
         return text.astype(object).where(~missing, None).to_numpy(object), []
     said = []
     if count:
         row = int(np.flatnonzero(damaged)[0])
         shown = text.iloc[row][:30]
-        said = [f"Column '{name}': {count} cells that are no number, the first '{shown}' in row {row + 2}: left empty."]
+        said = [
+            f"Column '{name}': {count} cells that are no number, the first '{shown}' in row {row + 2}: left empty."
+        ]
     return numbers.to_numpy(float), said
 
 
@@ -78,7 +96,9 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
         if filler not in _FILLERS or len(known) - len(rest) < 2 or not len(rest):
             continue
         if np.abs(rest - filler).min() > max(np.ptp(rest), 10.0):
-            said = f"Column '{name}': {filler:g} stands for nothing in {len(known) - len(rest)} rows."
+            said = (
+                f"Column '{name}': {filler:g} stands for nothing in {len(known) - len(rest)} rows."
+            )
             return np.where(values == filler, np.nan, values), [said]
     return values, []
 
@@ -93,7 +113,9 @@ def with_unit(cells: np.ndarray, decimal: str) -> tuple[np.ndarray, str] | None:
     """
     found = [None if cell is None else re.fullmatch(WITH_UNIT, cell) for cell in cells]
     told = {match["unit"] for match in found if match}
-    if len(told) != 1 or any(m is None and cell is not None for m, cell in zip(found, cells, strict=True)):
+    if len(told) != 1 or any(
+        m is None and cell is not None for m, cell in zip(found, cells, strict=True)
+    ):
         return None
     unit = told.pop()
     if unit in _SIDES:

@@ -34,17 +34,27 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
         import openpyxl
     except ImportError as error:
         remedy = "Install it by `pip install shipcosim[excel]`, or save the sheet as .csv."
-        raise ShipcosimError(Problem(str(path), "workbooks of Excel need openpyxl.", remedy)) from error
+        raise ShipcosimError(
+            Problem(str(path), "workbooks of Excel need openpyxl.", remedy)
+        ) from error
     try:
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-        sheets = {one.title: [row for row in one.iter_rows(values_only=True)] for one in book.worksheets}
+        sheets = {
+            one.title: [row for row in one.iter_rows(values_only=True)] for one in book.worksheets
+        }
     except Exception as error:  # openpyxl raises what zip, XML and its own code do
-        raise ShipcosimError(Problem(str(path), f"is no workbook that can be read: {error}.")) from error
+        raise ShipcosimError(
+            Problem(str(path), f"is no workbook that can be read: {error}.")
+        ) from error
     if sheet is not None and sheet not in sheets:
-        raise ShipcosimError(Problem(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets)))
+        raise ShipcosimError(
+            Problem(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
+        )
     used = sheet or max(sheets, key=lambda name: sum(len(row) for row in sheets[name]))
     rows = [[_text(cell) for cell in row] for row in sheets[used]]
-    said = [f"Sheet '{used}' of {len(sheets)} is read."] if sheet is None and len(sheets) > 1 else []
+    said = (
+        [f"Sheet '{used}' of {len(sheets)} is read."] if sheet is None and len(sheets) > 1 else []
+    )
     return "\n".join("\t".join(row) if any(row) else "" for row in rows), said
 
 

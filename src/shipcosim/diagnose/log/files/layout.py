@@ -39,7 +39,9 @@ class Layout:
     remarks: tuple[str, ...]
 
 
-def layout_of(source: str, lines: list[str], form: FileLayout, is_unit: Callable[[str], bool]) -> Layout:
+def layout_of(
+    source: str, lines: list[str], form: FileLayout, is_unit: Callable[[str], bool]
+) -> Layout:
     """Layout of the lines of a file.
 
     Parameters
@@ -60,15 +62,25 @@ def layout_of(source: str, lines: list[str], form: FileLayout, is_unit: Callable
     """
     separator = form.separator or separator_of(lines)
     first, width = _first_row(source, lines, separator)
-    above = [i for i in range(first) if lines[i].strip() and not lines[i].lower().startswith("sep=")]
+    above = [
+        i for i in range(first) if lines[i].strip() and not lines[i].lower().startswith("sep=")
+    ]
     if form.names is not None:
         return Layout(separator, form.names, (), first, _skipped(above))
     at, units, header = _header(lines, above, separator, width, is_unit)
     if header is None:
         names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
         found = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
-        raise ShipcosimError(Problem(source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."))
-    if separator != "," and len(header) == width - 1 and cells_in(lines[first], separator)[0] in ("0", "1"):
+        raise ShipcosimError(
+            Problem(
+                source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
+            )
+        )
+    if (
+        separator != ","
+        and len(header) == width - 1
+        and cells_in(lines[first], separator)[0] in ("0", "1")
+    ):
         header = ("", *header)
     rest = [i for i in above if i < at]
     return Layout(separator, tuple(header), tuple(units), first, _skipped(rest))
@@ -90,17 +102,27 @@ def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]
         told = [cell for cell in cells if not is_nothing(cell)]
         figures = sum(map(is_figure, told))
         is_message = figures > 1 and is_figure(cells[0])
-        if width > 1 and len(cells) == width and figures and (is_message or figures >= 0.5 * len(told)):
+        if (
+            width > 1
+            and len(cells) == width
+            and figures
+            and (is_message or figures >= 0.5 * len(told))
+        ):
             return i, width
     if rows and width > 1:
-        raise ShipcosimError(Problem(source, "has no row below its header.", "Each row is a time and its values."))
+        raise ShipcosimError(
+            Problem(source, "has no row below its header.", "Each row is a time and its values.")
+        )
     remedy = "It should be a table: a line of names, then rows of as many cells."
-    raise ShipcosimError(Problem(source, "no table is found in it: no rows of several numbers.", remedy))
+    raise ShipcosimError(
+        Problem(source, "no table is found in it: no rows of several numbers.", remedy)
+    )
 
 
 def _header(lines, above, separator, width, is_unit):
     """Line of the names, the units of a row of units, and the names; None without names."""
-    units, below = (), None
+    units = ()
+    below = None
     for i in reversed(above):
         text = lines[i].lstrip()
         if is_comment(text):
@@ -112,7 +134,8 @@ def _header(lines, above, separator, width, is_unit):
             continue
         told = [cell for cell in row if cell]
         if not units and told and _is_row_of_units(row, is_unit):
-            units, below = [cell.strip("[]() ") for cell in row], i
+            units = [cell.strip("[]() ") for cell in row]
+            below = i
             continue
         if sum(map(is_figure, told)) < 0.5 * len(told):
             return i, units, row
@@ -124,7 +147,9 @@ def _is_row_of_units(row, is_unit):
     told = [cell.strip("[]() ") for cell in row if cell.strip("[]() ")]
     marked = sum(cell[:1] in "([" and cell[-1:] in ")]" for cell in row if cell)
     known = sum(map(is_unit, told))
-    return bool(told) and (known >= 0.75 * len(told) or (marked == len(told) and known >= 0.5 * len(told)))
+    return bool(told) and (
+        known >= 0.75 * len(told) or (marked == len(told) and known >= 0.5 * len(told))
+    )
 
 
 def _header_cells(text, separator, width):
@@ -135,7 +160,12 @@ def _header_cells(text, separator, width):
             row.pop()
         return row if width - 1 <= len(row) <= width else None
     glued = re.sub(r"\s+(?=[\[(])", "", text)
-    for row in (text.split(), glued.split(), re.split(r"\s{2,}|\t", text.strip()), cells_in(text, ",")):
+    for row in (
+        text.split(),
+        glued.split(),
+        re.split(r"\s{2,}|\t", text.strip()),
+        cells_in(text, ","),
+    ):
         if len(row) == width:
             return row
     return text.split() if len(text.split()) == width - 1 else None

@@ -13,7 +13,19 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 __all__ = ["brought_together", "spread"]
 
-_NAMES = ("name", "topic", "signal", "channel", "variable", "tag", "key", "parameter", "quantity", "item", "field")
+_NAMES = (
+    "name",
+    "topic",
+    "signal",
+    "channel",
+    "variable",
+    "tag",
+    "key",
+    "parameter",
+    "quantity",
+    "item",
+    "field",
+)
 _NAMES += ("sensor", "message", "msg", "label", "source", "id", "measurement", "type")
 _VALUES = ("value", "val", "reading", "data", "measurement", "number", "v", "y")
 _MOST_NAMES = 500
@@ -47,7 +59,10 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
     clocks = [column for column in rest if column != unit and _is_clock(log.values[column])]
     if not clocks:
         return log
-    clock = next((c for c in clocks if "time" in c.lower() or c.lower() in ("t", "stamp", "timestamp")), clocks[0])
+    clock = next(
+        (c for c in clocks if "time" in c.lower() or c.lower() in ("t", "stamp", "timestamp")),
+        clocks[0],
+    )
     return _wide(log, names, value, clock, unit)
 
 
@@ -57,7 +72,9 @@ def _long(log, form):
         return [form.name], form.value
     lower = {column.strip().lower(): column for column in log.values}
     value = next((lower[word] for word in _VALUES if word in lower), None)
-    names = [lower[word] for word in _NAMES if word in lower and _is_of_names(log.values[lower[word]])]
+    names = [
+        lower[word] for word in _NAMES if word in lower and _is_of_names(log.values[lower[word]])
+    ]
     if form.name is not None:
         names = [form.name]
     return [name for name in names if name != value], form.value or value
@@ -89,7 +106,8 @@ def _wide(log, names, value, clock, unit):
     rows, times = pandas.factorize(frame[clock])
     count = len(times)
     values: dict[str, np.ndarray] = {clock: np.asarray(times)}
-    units, again = {clock: log.units[clock]}, 0
+    units = {clock: log.units[clock]}
+    again = 0
     for name, part in frame.groupby(key, sort=False):
         at = rows[frame.index.get_indexer(part.index)]
         again += len(at) - len(np.unique(at))
@@ -100,9 +118,13 @@ def _wide(log, names, value, clock, unit):
         values[str(name)] = column
         stated = part[unit].dropna().unique() if unit else ()
         units[str(name)] = str(stated[0]) if len(stated) == 1 else ""
-    said = [f"One value a row: '{' and '.join(names)}' names {len(values) - 1} channels, '{value}' holds them."]
+    said = [
+        f"One value a row: '{' and '.join(names)}' names {len(values) - 1} channels, '{value}' holds them."
+    ]
     if again:
-        said.append(f"{again} values of a channel at a time that it has one for already: the first is kept.")
+        said.append(
+            f"{again} values of a channel at a time that it has one for already: the first is kept."
+        )
     return LogColumns(log.source, values, units, (*log.remarks, *said))
 
 
@@ -128,7 +150,9 @@ def brought_together(
     counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
     if len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE:
         return time, signals, []
-    base = next((n for n in ("heading", "latitude", "north", "surge") if n in there), next(iter(there)))
+    base = next(
+        (n for n in ("heading", "latitude", "north", "surge") if n in there), next(iter(there))
+    )
     clock = np.unique(time[there[base] & np.isfinite(time)])
     found = {}
     for name, (values, unit) in signals.items():

@@ -22,8 +22,11 @@ __all__ = ["columns_of_sentences", "holds_sentences"]
 _SENTENCE = re.compile(
     r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?.*"
 )
-_SAMPLE, _MOST_OTHERS = 200, 0.3  # lines by which a file is judged; share of them that may be no sentences. Assumed.
-_MOST_DAMAGED = 0.2  # share of sentences with a wrong checksum above which the file is not trusted. Assumed.
+_SAMPLE = 200  # lines by which a file is judged; share of them that may be no sentences. Assumed.
+_MOST_OTHERS = 0.3
+_MOST_DAMAGED = (
+    0.2  # share of sentences with a wrong checksum above which the file is not trusted. Assumed.
+)
 _ENOUGH = 0.9  # of the values of the fullest source that a preferred one needs. Assumed.
 _SPEEDS = {"N": 1852.0 / 3600.0, "K": 1.0 / 3.6, "M": 1.0, "S": 1609.344 / 3600.0}  # of MWV, in m/s
 
@@ -42,7 +45,10 @@ def _clock(text: str) -> float:
 def _position(fields: list[str]) -> Values:
     """Latitude, its hemisphere, longitude and its hemisphere, as degrees."""
     found = {}
-    for name, text, side, sides in (("latitude", *fields[:2], "NS"), ("longitude", *fields[2:4], "EW")):
+    for name, text, side, sides in (
+        ("latitude", *fields[:2], "NS"),
+        ("longitude", *fields[2:4], "EW"),
+    ):
         if text and side not in sides:
             raise ValueError(side)
         whole, minutes = divmod(_of(text), 100.0)
@@ -74,11 +80,17 @@ def _zda(f: list[str]) -> Values:
 
 
 def _day(year: str, month: str, day: str) -> float:
-    return float(date(int(year) + (2000 if len(year) == 2 else 0), int(month), int(day)).toordinal())
+    return float(
+        date(int(year) + (2000 if len(year) == 2 else 0), int(month), int(day)).toordinal()
+    )
 
 
 def _vtg(f: list[str]) -> Values:
-    return {} if f[9:10] == ["N"] else {"course_over_ground": _of(f[1]), "speed_over_ground": _of(f[5])}
+    return (
+        {}
+        if f[9:10] == ["N"]
+        else {"course_over_ground": _of(f[1]), "speed_over_ground": _of(f[5])}
+    )
 
 
 def _mwv(f: list[str]) -> Values:
@@ -140,10 +152,14 @@ def holds_sentences(lines: list[str]) -> bool:
     (True, False)
     """
     some = [line for line in lines[: 10 * _SAMPLE] if line.strip()][:_SAMPLE]
-    return bool(some) and sum(map(bool, map(_SENTENCE.fullmatch, some))) > (1.0 - _MOST_OTHERS) * len(some)
+    return bool(some) and sum(map(bool, map(_SENTENCE.fullmatch, some))) > (
+        1.0 - _MOST_OTHERS
+    ) * len(some)
 
 
-def columns_of_sentences(source: str, lines: list[str]) -> tuple[dict[str, np.ndarray], dict[str, str], list[str]]:
+def columns_of_sentences(
+    source: str, lines: list[str]
+) -> tuple[dict[str, np.ndarray], dict[str, str], list[str]]:
     """Values and units by role, and what is to be said.
 
     Parameters
@@ -163,17 +179,23 @@ def columns_of_sentences(source: str, lines: list[str]) -> tuple[dict[str, np.nd
     if len(read.damaged) > _MOST_DAMAGED * count:
         found = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
         raise ShipcosimError(
-            Problem(f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table.")
+            Problem(
+                f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table."
+            )
         )
     said = _told(read)
     times, more = _times(source, read)
     channels, used = _channels(read, times)
     if not channels:
-        found = f"holds sentences of NMEA, and none gives a channel: {', '.join(read.unread) or 'ZDA'}."
+        found = (
+            f"holds sentences of NMEA, and none gives a channel: {', '.join(read.unread) or 'ZDA'}."
+        )
         raise ShipcosimError(Problem(source, found, f"Read are {', '.join(_KINDS)}."))
     base = next(name for name in ("heading", "latitude", *channels) if name in channels)
     clock = channels[base][0]
-    values = {"time": clock} | {name: at_times(clock, *channels[name], _UNITS[name]) for name in channels}
+    values = {"time": clock} | {
+        name: at_times(clock, *channels[name], _UNITS[name]) for name in channels
+    }
     sources = "; ".join(f"{', '.join(names)} from {one}" for one, names in used.items())
     said += [*more, f"Sentences of NMEA, at the {len(clock)} times of {base}: {sources}."]
     return values, {name: _UNITS[name] for name in values}, said
@@ -215,13 +237,17 @@ def _told(read: _Read) -> list[str]:
     """What was left out."""
     said = []
     if lines := read.damaged:
-        what = f"{len(lines)} sentence{'s do' if len(lines) > 1 else ' does'} not fit checksum or form"
+        what = (
+            f"{len(lines)} sentence{'s do' if len(lines) > 1 else ' does'} not fit checksum or form"
+        )
         said.append(f"{what}, the first in line {lines[0] + 1}: left out.")
     if lines := read.others:
         what = f"{len(lines)} line{'s that are' if len(lines) > 1 else ' that is'} no sentence"
         said.append(f"{what} left out, the first is line {lines[0] + 1}.")
     if read.unread:
-        said.append(f"Sentences not read: {', '.join(f'{kind} ({n})' for kind, n in sorted(read.unread.items()))}.")
+        said.append(
+            f"Sentences not read: {', '.join(f'{kind} ({n})' for kind, n in sorted(read.unread.items()))}."
+        )
     winds = sum(kind.endswith("MWV") and not values for _, kind, values in read.sentences)
     if winds:
         said.append(f"{winds} MWV without a valid wind relative to the ship left out.")
@@ -252,9 +278,17 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
     for k, (_, kind, _) in enumerate(read.sentences):
         if kind.endswith("VTG") and (before := np.searchsorted(rows, k)):
             times[k] = seconds[before - 1]  # of the fix that the same receiver has just given
-    without = sorted({kind for k, (_, kind, _) in enumerate(read.sentences) if "clock" not in read.sentences[k][2]})
+    without = sorted(
+        {
+            kind
+            for k, (_, kind, _) in enumerate(read.sentences)
+            if "clock" not in read.sentences[k][2]
+        }
+    )
     if without:
-        said.append(f"{', '.join(without)} have no time: it lies between those of the sentences around.")
+        said.append(
+            f"{', '.join(without)} have no time: it lies between those of the sentences around."
+        )
     return times, said
 
 
@@ -274,11 +308,15 @@ def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]
     nearest = np.where(apart[1] < apart[0], after, before)
     lacking = lacking - lacking[0]
     if lacking.any():
-        said.append(f"By their dates the sentences go on after {int(lacking.max() / DAY)} whole days more.")
+        said.append(
+            f"By their dates the sentences go on after {int(lacking.max() / DAY)} whole days more."
+        )
     return seconds + lacking[nearest], said
 
 
-def _channels(read: _Read, times: np.ndarray) -> tuple[dict[str, tuple[np.ndarray, np.ndarray]], dict[str, list[str]]]:
+def _channels(
+    read: _Read, times: np.ndarray
+) -> tuple[dict[str, tuple[np.ndarray, np.ndarray]], dict[str, list[str]]]:
     """Times and values of each channel by one source, and which channels a source gives."""
     found: dict[str, dict[str, list[tuple[float, float]]]] = {}
     for (_, kind, values), time in zip(read.sentences, times, strict=True):
@@ -286,12 +324,15 @@ def _channels(read: _Read, times: np.ndarray) -> tuple[dict[str, tuple[np.ndarra
             if name in _UNITS and np.isfinite(value) and np.isfinite(time):
                 found.setdefault(name, {}).setdefault(kind, []).append((float(time), value))
     order = list(_KINDS)
-    channels, used = {}, {}
+    channels = {}
+    used = {}
     for name in _UNITS:
         if name not in found:
             continue
         most = max(map(len, found[name].values()))
-        enough = {kind: pairs for kind, pairs in found[name].items() if len(pairs) >= _ENOUGH * most}
+        enough = {
+            kind: pairs for kind, pairs in found[name].items() if len(pairs) >= _ENOUGH * most
+        }
         kind = min(enough, key=lambda one: (order.index(one[-3:]), -len(enough[one])))
         moments, values = np.array(enough[kind]).T
         moments, first = np.unique(moments, return_index=True)

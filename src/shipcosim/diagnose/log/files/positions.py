@@ -6,7 +6,14 @@ import re
 
 import numpy as np
 
-__all__ = ["HEMISPHERES", "MINUTES", "degrees_of_minutes", "degrees_of_texts", "hemisphere_signs", "is_minutes"]
+__all__ = [
+    "HEMISPHERES",
+    "MINUTES",
+    "degrees_of_minutes",
+    "degrees_of_texts",
+    "hemisphere_signs",
+    "is_minutes",
+]
 
 MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
@@ -35,7 +42,10 @@ def is_minutes(values: np.ndarray, largest: float) -> bool:
     known = np.abs(values[np.isfinite(values)])
     if not len(known) or (known > largest).mean() < 0.5:
         return False
-    return bool((np.mod(known, 100.0) < 60.0).mean() > 0.99 and (known < 100.0 * largest + 60.0).mean() > 0.99)
+    return bool(
+        (np.mod(known, 100.0) < 60.0).mean() > 0.99
+        and (known < 100.0 * largest + 60.0).mean() > 0.99
+    )
 
 
 def degrees_of_minutes(values: np.ndarray) -> np.ndarray:
@@ -63,7 +73,9 @@ def hemisphere_signs(cells: np.ndarray, role: str) -> np.ndarray | None:
     if cells.dtype.kind == "f":
         return None
     known = HEMISPHERES[role]
-    signs = np.array([known.get(str(cell).strip().upper()[:1], np.nan) if cell else np.nan for cell in cells])
+    signs = np.array(
+        [known.get(str(cell).strip().upper()[:1], np.nan) if cell else np.nan for cell in cells]
+    )
     told = np.array([cell is not None for cell in cells])
     words = {str(cell).strip().upper() for cell in cells if cell}
     allowed = {*known, "NORTH", "SOUTH", "EAST", "WEST"}
@@ -91,5 +103,7 @@ def degrees_of_texts(cells: np.ndarray, largest: float) -> np.ndarray | None:
             degrees = float(degrees_of_minutes(np.array([degrees]))[0])
         parts = float(match["minutes"] or 0.0) / 60.0 + float(match["seconds"] or 0.0) / 3600.0
         hemisphere = (match["before"] or match["after"] or "N").upper()
-        found[row] = np.copysign(abs(degrees) + parts, degrees) * (-1.0 if hemisphere in "SW" else 1.0)
+        found[row] = np.copysign(abs(degrees) + parts, degrees) * (
+            -1.0 if hemisphere in "SW" else 1.0
+        )
     return found

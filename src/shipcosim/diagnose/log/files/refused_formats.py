@@ -25,16 +25,28 @@ _BY_NAME = {
     ".db3": ("a bag of ROS 2", _ROS),
     ".mcap": ("a bag of ROS 2", _ROS),
     ".ulg": ("a log of PX4", "Convert it: `ulog2csv FILE`."),
-    ".bin": ("a binary log, as of ArduPilot", "Convert it: `mavlogdump.py --format csv FILE > log.csv`."),
-    ".tdms": ("a file of LabVIEW", "Convert it: `tdmsinfo`, or `nptdms` in Python and `as_dataframe().to_csv(...)`."),
+    ".bin": (
+        "a binary log, as of ArduPilot",
+        "Convert it: `mavlogdump.py --format csv FILE > log.csv`.",
+    ),
+    ".tdms": (
+        "a file of LabVIEW",
+        "Convert it: `tdmsinfo`, or `nptdms` in Python and `as_dataframe().to_csv(...)`.",
+    ),
     ".mf4": ("a measurement in MDF", "Convert it: `asammdf export --format csv FILE`."),
-    ".feather": ("a table of Arrow", "Write it as .parquet or .csv: `pandas.read_feather(FILE).to_csv('log.csv')`."),
+    ".feather": (
+        "a table of Arrow",
+        "Write it as .parquet or .csv: `pandas.read_feather(FILE).to_csv('log.csv')`.",
+    ),
     ".h5": ("a file of HDF5", _HDF5),
     ".hdf5": ("a file of HDF5", _HDF5),
     ".pkl": ("a pickle of Python, which could run code", "Write the table as .csv or .nc."),
     ".zip": ("an archive", "Unpack it, and name the log in it."),
     ".json": ("JSON", "Write a table: `pandas.read_json(FILE).to_csv('log.csv')`."),
-    ".jsonl": ("JSON, one value a line", "Write a table: `pandas.read_json(FILE, lines=True).to_csv('log.csv')`."),
+    ".jsonl": (
+        "JSON, one value a line",
+        "Write a table: `pandas.read_json(FILE, lines=True).to_csv('log.csv')`.",
+    ),
 }
 _BY_CONTENT = (
     (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", ".xls"),
@@ -75,4 +87,6 @@ def refuse_foreign(path: Path) -> None:
         kind = suffix
     if kind is not None:
         what, remedy = _BY_NAME[kind]
-        raise ShipcosimError(Problem(str(path), f"is {what}, which is not read.", remedy.replace("FILE", path.name)))
+        raise ShipcosimError(
+            Problem(str(path), f"is {what}, which is not read.", remedy.replace("FILE", path.name))
+        )

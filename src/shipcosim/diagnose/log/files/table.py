@@ -23,7 +23,9 @@ from shipcosim.errors import Problem, ShipcosimError
 
 __all__ = ["LogColumns", "read_file"]
 
-_FEW = 0.01  # share of rows of another length that are left out; more make the file no table. Assumed.
+_FEW = (
+    0.01  # share of rows of another length that are left out; more make the file no table. Assumed.
+)
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,9 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
     """
     form = form or FileLayout()
     if path.is_dir():
-        raise ShipcosimError(Problem(str(path), "is a folder, no table.", "Name the file of a log."))
+        raise ShipcosimError(
+            Problem(str(path), "is a folder, no table.", "Name the file of a log.")
+        )
     if not path.is_file():
         raise ShipcosimError(Problem(str(path), "there is no such file."))
     if path.suffix.lower() in (".nc", ".parquet"):
@@ -103,7 +107,11 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
     for i, name in enumerate(names):
         values[name], more = _column(name, frame[i], decimal)
         said += more
-        if values[name].dtype.kind == "O" and not units[name] and (found := with_unit(values[name], decimal)):
+        if (
+            values[name].dtype.kind == "O"
+            and not units[name]
+            and (found := with_unit(values[name], decimal))
+        ):
             values[name], units[name] = found
     if decimal == ",":
         said.append("Numbers are read with a decimal comma.")
@@ -112,7 +120,9 @@ def _of_text(source: str, text: str, form: FileLayout) -> LogColumns:
 
 def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
     """Names that differ, their units, and those that stand there more than once."""
-    names, units, seen = [], {}, Counter()
+    names = []
+    units = {}
+    seen = Counter()
     for i, header in enumerate(layout.header):
         name, unit = name_and_unit(header)
         name = name or f"column {i + 1}"
@@ -126,24 +136,35 @@ def _names(layout: Layout) -> tuple[list[str], dict[str, str], tuple[str, ...]]:
 
 def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], list[str]]:
     """Lines of values of the right length, and what was left out."""
-    rest, separator, width = lines[layout.first :], layout.separator, len(layout.header)
+    rest = lines[layout.first :]
+    separator = layout.separator
+    width = len(layout.header)
     rows = [line for line in rest if line.strip() and not (line[0] in "#%/! " and is_comment(line))]
-    said, comments = [], sum(1 for line in rest if line.strip()) - len(rows)
+    said = []
+    comments = sum(1 for line in rest if line.strip()) - len(rows)
     if comments:
         said.append(f"{_count(comments, 'comment line')} between rows left out.")
     rows, counts = _without_last_separator(rows, separator, width)
     bad = counts != width
     if (counts < width).mean() > _FEW and bad.sum() > 1 and not (counts > width).any():
-        said.append(f"{_count(bad.sum(), 'row')} with fewer cells than the header: what they lack is left empty.")
+        said.append(
+            f"{_count(bad.sum(), 'row')} with fewer cells than the header: what they lack is left empty."
+        )
         return rows, said
     if bad.mean() > max(_FEW, 1.5 / len(rows)):
         raise ShipcosimError(_ragged(source, lines, layout, rows, counts, width))
     if bad.any():
         shown = rows[int(np.flatnonzero(bad)[0])][:40]
-        said.append(f"{_count(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'.")
+        said.append(
+            f"{_count(bad.sum(), 'row')} without {width} cells left out, the first '{shown}'."
+        )
         rows = [line for line, wrong in zip(rows, bad, strict=True) if not wrong]
     header = list(layout.header)
-    again = {i for i, line in enumerate(rows) if header[-1] in line and cells_in(line, separator) == header}
+    again = {
+        i
+        for i, line in enumerate(rows)
+        if header[-1] in line and cells_in(line, separator) == header
+    }
     if again:
         said.append(f"The header stands there again in {_count(len(again), 'row')}: left out.")
         rows = [line for i, line in enumerate(rows) if i not in again]
@@ -158,7 +179,9 @@ def _count(number: int, what: str) -> str:
 def _without_last_separator(rows, separator, width):
     """Rows without the separator that each ends with, where that makes one cell too many, and their lengths."""
     counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
-    if (counts == width + 1).mean() > 0.5 and all(line.rstrip(" ").endswith(separator) for line in rows[:50]):
+    if (counts == width + 1).mean() > 0.5 and all(
+        line.rstrip(" ").endswith(separator) for line in rows[:50]
+    ):
         rows = [line.rstrip(" ").removesuffix(separator) for line in rows]
         counts = np.fromiter((_width(line, separator) for line in rows), int, len(rows))
     return rows, counts
@@ -187,9 +210,11 @@ def _checked_frame(source: str, rows: list[str], separator: str, width: int) -> 
     from pandas.errors import ParserError
 
     try:
-        frame, why = _frame(rows, separator, width), ""
+        frame = _frame(rows, separator, width)
+        why = ""
     except ParserError as error:
-        frame, why = None, f" ({error})"
+        frame = None
+        why = f" ({error})"
     if frame is None or len(frame) != len(rows):
         row = next((row for row in rows if row.count('"') % 2), rows[0])
         found = f"a quotation mark is opened in a row and not closed in it: '{row[:60]}'{why}."
@@ -200,8 +225,13 @@ def _checked_frame(source: str, rows: list[str], separator: str, width: int) -> 
 def _frame(rows: list[str], separator: str, width: int, texts: Any = None) -> Any:
     import pandas
 
-    splits: dict[str, Any] = {"sep": r"\s+"} if separator == " " else {"sep": separator, "skipinitialspace": True}
-    words = sorted({w for word in NOTHING for w in (word, word.upper(), word.capitalize())} | {"NaN", "NaT", "N/a"})
+    splits: dict[str, Any] = (
+        {"sep": r"\s+"} if separator == " " else {"sep": separator, "skipinitialspace": True}
+    )
+    words = sorted(
+        {w for word in NOTHING for w in (word, word.upper(), word.capitalize())}
+        | {"NaN", "NaT", "N/a"}
+    )
     return pandas.read_csv(
         io.StringIO("\n".join(rows)),
         header=None,
@@ -234,7 +264,9 @@ def _with_decimal_sign(source, frame, rows, separator, form):
         if len(dotted) and form.decimal is None:
             cell = dotted.iloc[0].strip()
             found = f"'{cell}' can be {cell} or {cell.replace('.', '')}, as other numbers have a decimal comma."
-            remedy = 'Say which in a channel file: file = {decimal = ","} groups thousands by points.'
+            remedy = (
+                'Say which in a channel file: file = {decimal = ","} groups thousands by points.'
+            )
             raise ShipcosimError(Problem(source, found, remedy))
         frame[i] = anew[i]
     return decimal, frame

@@ -11,7 +11,11 @@ from shipcosim.errors import Problem, ShipcosimError
 
 __all__ = ["text_of"]
 
-_MARKS = ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16"))
+_MARKS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
 
 
 def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
@@ -36,7 +40,9 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     except (OSError, EOFError, zlib.error) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
     except MemoryError as error:
-        raise ShipcosimError(Problem(str(path), "is larger than the memory.", "Read a part of it.")) from error
+        raise ShipcosimError(
+            Problem(str(path), "is larger than the memory.", "Read a part of it.")
+        ) from error
     if not content.strip(b"\x00 \r\n\t"):
         raise ShipcosimError(Problem(str(path), "is empty.", "Each row is a time and its values."))
     used = encoding or _encoding_of(content)
@@ -44,9 +50,13 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
         text = content.decode(used)
     except (UnicodeDecodeError, LookupError) as error:
         remedy = 'Say its encoding in a channel file: file = {encoding = "latin-1"}.'
-        raise ShipcosimError(Problem(str(path), f"is no text in {used}: {error}.", remedy)) from error
+        raise ShipcosimError(
+            Problem(str(path), f"is no text in {used}: {error}.", remedy)
+        ) from error
     if "\x00" in text[:4096]:
-        raise ShipcosimError(Problem(str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc."))
+        raise ShipcosimError(
+            Problem(str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc.")
+        )
     is_usual = encoding is not None or used in ("utf-8", "utf-8-sig")
     return text.removeprefix("\ufeff"), [] if is_usual else [f"Read as {used}, as it is not UTF-8."]
 

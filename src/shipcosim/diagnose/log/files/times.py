@@ -15,15 +15,54 @@ from shipcosim.errors import Problem, ShipcosimError
 __all__ = ["EPOCHS", "epoch_unit", "seconds_of", "seconds_of_clock"]
 
 EPOCHS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
-_SINCE, _UNTIL = 3e8, 4.2e9  # s after 1970 that a log can be from: 1979 to 2103
+_SINCE = 3e8  # s after 1970 that a log can be from: 1979 to 2103
+_UNTIL = 4.2e9
 DAY = 86400.0
 _DATES = {
-    "ymd": ("%Y-%m-%d", "%Y/%m/%d", "%Y.%m.%d", "%Y%m%d", "%Y:%m:%d", "%y-%m-%d", "%y/%m/%d", "%y%m%d", "%Y %m %d"),
-    "dmy": ("%d/%m/%Y", "%d-%m-%Y", "%d.%m.%Y", "%d/%m/%y", "%d-%m-%y", "%d.%m.%y", "%d-%b-%Y", "%d %b %Y", "%d-%b-%y")
+    "ymd": (
+        "%Y-%m-%d",
+        "%Y/%m/%d",
+        "%Y.%m.%d",
+        "%Y%m%d",
+        "%Y:%m:%d",
+        "%y-%m-%d",
+        "%y/%m/%d",
+        "%y%m%d",
+        "%Y %m %d",
+    ),
+    "dmy": (
+        "%d/%m/%Y",
+        "%d-%m-%Y",
+        "%d.%m.%Y",
+        "%d/%m/%y",
+        "%d-%m-%y",
+        "%d.%m.%y",
+        "%d-%b-%Y",
+        "%d %b %Y",
+        "%d-%b-%y",
+    )
     + ("%d/%b/%Y", "%d %B %Y", "%d. %b %Y", "%a %d %b %Y", "%d%m%Y", "%d%m%y"),
-    "mdy": ("%m/%d/%Y", "%m-%d-%Y", "%m/%d/%y", "%m-%d-%y", "%b %d %Y", "%b %d, %Y", "%B %d, %Y", "%a %b %d %Y"),
+    "mdy": (
+        "%m/%d/%Y",
+        "%m-%d-%Y",
+        "%m/%d/%y",
+        "%m-%d-%y",
+        "%b %d %Y",
+        "%b %d, %Y",
+        "%B %d, %Y",
+        "%a %b %d %Y",
+    ),
 }
-_CLOCKS = ("%H:%M:%S.%f", "%H:%M:%S", "%H:%M", "%I:%M:%S.%f %p", "%I:%M:%S %p", "%I:%M %p", "%H%M%S.%f", "%H%M%S")
+_CLOCKS = (
+    "%H:%M:%S.%f",
+    "%H:%M:%S",
+    "%H:%M",
+    "%I:%M:%S.%f %p",
+    "%I:%M:%S %p",
+    "%I:%M %p",
+    "%H%M%S.%f",
+    "%H%M%S",
+)
 _BETWEEN = (" ", "T", "_", ", ", ",", "-", "  ")
 _ZONE = re.compile(r"\s*(?:Z|UTC|GMT|[+-]00:?00)$", re.IGNORECASE)
 _OTHER_ZONE = re.compile(r"(?<=:\d\d)(?P<fraction>\.\d+)?\s*(?P<zone>[+-]\d\d:?\d\d)$")
@@ -45,10 +84,15 @@ def epoch_unit(values: np.ndarray) -> str | None:
     if not len(known):
         return None
     first, last = np.quantile(known, [0.02, 0.98])
-    return next((unit for unit, size in EPOCHS.items() if _SINCE < first / size and last / size < _UNTIL), None)
+    return next(
+        (unit for unit, size in EPOCHS.items() if _SINCE < first / size and last / size < _UNTIL),
+        None,
+    )
 
 
-def seconds_of(texts: np.ndarray, order: str | None = None, unit: str = "") -> tuple[np.ndarray, list[str]] | None:
+def seconds_of(
+    texts: np.ndarray, order: str | None = None, unit: str = ""
+) -> tuple[np.ndarray, list[str]] | None:
     """Stamps of date and time, or of time alone, as seconds after the first; None where they are none.
 
     Parameters
@@ -82,7 +126,9 @@ def seconds_of(texts: np.ndarray, order: str | None = None, unit: str = "") -> t
         return short
     for clock in _CLOCKS:
         if _fits(known, clock):
-            parsed = pandas.to_datetime("2000-01-01 " + cells, format=f"%Y-%m-%d {clock}", errors="coerce")
+            parsed = pandas.to_datetime(
+                "2000-01-01 " + cells, format=f"%Y-%m-%d {clock}", errors="coerce"
+            )
             if _whole(parsed, cells):
                 return seconds_of_clock(_since_first(parsed, "2000-01-01"))
     readings = {}
@@ -136,7 +182,9 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     if _OTHER_ZONE.search(first):
         zones = texts.str.extract(_OTHER_ZONE)["zone"].str.replace(":", "")
         sign = np.where(zones.str.startswith("-"), -1.0, 1.0)
-        ahead = (sign * (zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60)).to_numpy(float)
+        ahead = (
+            sign * (zones.str[1:3].astype(float) * 3600 + zones.str[3:5].astype(float) * 60)
+        ).to_numpy(float)
         texts = texts.str.replace(_OTHER_ZONE, lambda found: found["fraction"] or "", regex=True)
     if _COLON_FRACTION.match(first):
         texts = _with_point(texts)
@@ -145,10 +193,15 @@ def _uniform(cells) -> tuple[Any, np.ndarray | None]:
     if has_point.any() and not has_point.all():
         bare = ~has_point & texts.notna()
         texts = texts.where(
-            ~bare, texts.str.replace(r"(:\d\d)(?!:|\d)", r"\1.0", n=1, regex=True) if first.count(":") else texts + ".0"
+            ~bare,
+            texts.str.replace(r"(:\d\d)(?!:|\d)", r"\1.0", n=1, regex=True)
+            if first.count(":")
+            else texts + ".0",
         )
         texts = texts.str.replace(r"(:\d\d)\.0(:\d\d)", r"\1\2.0", regex=True)
-    texts = texts.str.replace(r"\s*([AaPp])\.?[Mm]\.?$", lambda found: f" {found[1].upper()}M", regex=True)
+    texts = texts.str.replace(
+        r"\s*([AaPp])\.?[Mm]\.?$", lambda found: f" {found[1].upper()}M", regex=True
+    )
     return texts, ahead
 
 
@@ -157,7 +210,11 @@ def _with_point(texts):
     parts = texts.str.extract(_COLON_FRACTION)
     lengths = parts["fraction"].str.len()
     longest = int(lengths.max())
-    if lengths.nunique() > 1 and longest in (3, 6) and not parts["fraction"].str.match(r"0\d+").any():
+    if (
+        lengths.nunique() > 1
+        and longest in (3, 6)
+        and not parts["fraction"].str.match(r"0\d+").any()
+    ):
         parts["fraction"] = parts["fraction"].str.zfill(longest)
     return (parts["clock"] + "." + parts["fraction"]).where(parts["clock"].notna(), texts)
 
@@ -168,7 +225,8 @@ def _minutes_and_seconds(cells, unit):
     if parts["minutes"].isna().any() and (parts["minutes"].isna() & cells.notna()).any():
         return None
     has_fraction = parts["fraction"].notna().any()
-    minutes, seconds = parts["minutes"].astype(float), parts["seconds"].astype(float)
+    minutes = parts["minutes"].astype(float)
+    seconds = parts["seconds"].astype(float)
     if unit == "hh:mm" or not minutes.notna().any():
         return None
     if not has_fraction and unit != "mm:ss" and minutes.max() < 24:
@@ -211,10 +269,15 @@ def _decided(readings: dict[str, np.ndarray], shown: str) -> tuple[np.ndarray, l
     leaps = {order: _largest_step(values) for order, values in readings.items()}
     smooth = [order for order, leap in leaps.items() if leap < 20 * DAY]
     if len(smooth) == 1 and len(orders) > 1:
-        return readings[smooth[0]], [f"Dates such as '{shown}' are {_NAMES[smooth[0]]}, else the log would leap."]
+        return readings[smooth[0]], [
+            f"Dates such as '{shown}' are {_NAMES[smooth[0]]}, else the log would leap."
+        ]
     if len(orders) == 1:
         return first, []
-    both = " or ".join(f"{_NAMES[order]} (lasting {np.nanmax(v) - np.nanmin(v):g} s)" for order, v in readings.items())
+    both = " or ".join(
+        f"{_NAMES[order]} (lasting {np.nanmax(v) - np.nanmin(v):g} s)"
+        for order, v in readings.items()
+    )
     remedy = f'Say which in a channel file: file = {{dates = "{orders[0]}"}}.'
     raise ShipcosimError(Problem("", f"dates such as '{shown}' can be {both}.", remedy))
 
@@ -246,4 +309,6 @@ def seconds_of_clock(seconds: np.ndarray, period: float = DAY) -> tuple[np.ndarr
     times[known[1:]] += period * days
     passed = int(days[-1]) if len(days) else 0
     turn = "midnight" if period == DAY else "the hour"
-    return times, [f"Clock times pass {turn} {passed} time{'s' * (passed > 1)}: they go on."] if passed else []
+    return times, [
+        f"Clock times pass {turn} {passed} time{'s' * (passed > 1)}: they go on."
+    ] if passed else []

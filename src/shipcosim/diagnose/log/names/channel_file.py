@@ -25,14 +25,18 @@ def channel_file(source: str, proposal: Proposal, remarks: Iterable[str] = ()) -
     remarks : iterable of str
         How it is read.
     """
-    lines = [f"# Proposed by `shipcosim channels` for {_line(source)}. Confirm or correct the guesses."]
+    lines = [
+        f"# Proposed by `shipcosim channels` for {_line(source)}. Confirm or correct the guesses."
+    ]
     lines += [f"# {_line(said)}" for said in remarks]
     if form := _entry(proposal.form):
         lines += ["", f"file = {form}"]
     lines.append("")
     width = max((len(_key(guess.role)) for guess in proposal.used), default=0)
     for guess in proposal.used:
-        told = "; ".join(filter(None, (f"guess: {guess.why}" if guess.is_guess else "", *guess.said)))
+        told = "; ".join(
+            filter(None, (f"guess: {guess.why}" if guess.is_guess else "", *guess.said))
+        )
         plain = guess.channel.model_dump(exclude_defaults=True)
         entry = _text(guess.channel.column) if set(plain) == {"column"} else _entry(guess.channel)
         lines.append(f"{_key(guess.role):{width}} = {entry}{f'  # {_line(told)}' if told else ''}")
@@ -55,7 +59,11 @@ def _key(role: str) -> str:
 def _entry(record: BaseModel) -> str:
     """What a record says beside its defaults as an inline table; empty for nothing."""
     told = record.model_dump(exclude_defaults=True)
-    return "{" + ", ".join(f"{key} = {_text(value)}" for key, value in told.items()) + "}" if told else ""
+    return (
+        "{" + ", ".join(f"{key} = {_text(value)}" for key, value in told.items()) + "}"
+        if told
+        else ""
+    )
 
 
 def _text(value: Any) -> str:

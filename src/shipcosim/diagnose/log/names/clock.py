@@ -21,7 +21,9 @@ _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assu
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 
 
-def time_of(guesses: list[Guess], log: LogColumns, form: FileLayout) -> tuple[Guess | None, list[Guess]]:
+def time_of(
+    guesses: list[Guess], log: LogColumns, form: FileLayout
+) -> tuple[Guess | None, list[Guess]]:
     """The guess that is the time, and the others with why they are not.
 
     Parameters
@@ -43,7 +45,9 @@ def time_of(guesses: list[Guess], log: LogColumns, form: FileLayout) -> tuple[Gu
     usable = [one for guess in guesses if (one := _usable(guess, log, form))]
     if not usable:
         usable = [one for name in log.values if (one := _stamps(name, log, form))]
-    usable.sort(key=lambda g: (g.rank, log.values[g.column].dtype.kind == "O" and _is_date(g.column)))
+    usable.sort(
+        key=lambda g: (g.rank, log.values[g.column].dtype.kind == "O" and _is_date(g.column))
+    )
     best = usable[0] if usable else None
     rest = [g for g in guesses if best is None or g.column not in best.channel.columns]
     why = f"'{best.column}' is the time" if best else "it cannot be read as times"
@@ -73,7 +77,11 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     values = log.values[guess.column]
     if values.dtype.kind == "O":
         return _stamps(guess.column, log, form, guess)
-    if values.dtype.kind == "M" or guess.unit and guess.unit.lower() not in ("utc", "local", "date"):
+    if (
+        values.dtype.kind == "M"
+        or guess.unit
+        and guess.unit.lower() not in ("utc", "local", "date")
+    ):
         return guess
     if guess.channel.nanoseconds:
         return guess
@@ -84,10 +92,22 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
         return replace(guess, rank=min(guess.rank, SURE), why="")
     if guess.rank == EXACT:
         return guess
-    if _is_clock_number(known) and set(words_of(guess.column)) & {"utc", "hhmmss", "clock", "gps", "day"}:
+    if _is_clock_number(known) and set(words_of(guess.column)) & {
+        "utc",
+        "hhmmss",
+        "clock",
+        "gps",
+        "day",
+    }:
         unit = {"unit": CLOCK_NUMBER}
         why = "123519 is taken for 12:35:19"
-        return replace(guess, channel=guess.channel.model_copy(update=unit), rank=GUESS, why=why, unit=CLOCK_NUMBER)
+        return replace(
+            guess,
+            channel=guess.channel.model_copy(update=unit),
+            rank=GUESS,
+            why=why,
+            unit=CLOCK_NUMBER,
+        )
     if _is_date(guess.column):
         return None
     steps = np.diff(known)
@@ -98,21 +118,34 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
     if unit is None:
         return guess
     why = f"no unit is stated: rows are {step * _UNITS[unit]:g} s apart in {unit}, and {step:g} s in s"
-    return replace(guess, channel=guess.channel.model_copy(update={"unit": unit}), rank=GUESS, why=why, unit=unit)
+    return replace(
+        guess,
+        channel=guess.channel.model_copy(update={"unit": unit}),
+        rank=GUESS,
+        why=why,
+        unit=unit,
+    )
 
 
 def _is_clock_number(known):
     """Whether numbers can be hhmmss, and are no seconds, as minutes and seconds end at 60."""
     whole = np.floor(known)
     inside = known.min() >= 0.0 and known.max() < 240000.0
-    return bool(inside and (whole % 100 < 60).all() and (whole // 100 % 100 < 60).all() and known.max() > 100.0)
+    return bool(
+        inside
+        and (whole % 100 < 60).all()
+        and (whole // 100 % 100 < 60).all()
+        and known.max() > 100.0
+    )
 
 
 def _is_date(name):
     return "date" in words_of(name) and "time" not in words_of(name)
 
 
-def _stamps(name: str, log: LogColumns, form: FileLayout, guess: Guess | None = None) -> Guess | None:
+def _stamps(
+    name: str, log: LogColumns, form: FileLayout, guess: Guess | None = None
+) -> Guess | None:
     """A column of texts that are stamps, with the column of dates beside it where they are clock times."""
     values = log.values[name]
     told = [value for value in values if value is not None] if values.dtype.kind == "O" else []

@@ -14,11 +14,16 @@ _FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of sp
 _ALIKE = 0.9  # correlation of two ways to tell a motion, from which on they are compared. Assumed.
 _SPANS = (3, 10, 30, 100)  # rows
 _LEAP = 3.0  # times what nine in ten changes stay below, from which on one is no motion. Assumed.
-_CLEAR, _UNCLEAR = 0.85, 0.6  # length of the mean direction between course and bow that holds, that does not. Assumed.
+_CLEAR = (
+    0.85  # length of the mean direction between course and bow that holds, that does not. Assumed.
+)
+_UNCLEAR = 0.6
 _BESIDE = 60.0  # deg, by which a course may be off the bow throughout
 
 
-def unit_of_speed(time: np.ndarray, north: np.ndarray, east: np.ndarray, speed: np.ndarray) -> str | None:
+def unit_of_speed(
+    time: np.ndarray, north: np.ndarray, east: np.ndarray, speed: np.ndarray
+) -> str | None:
     """Unit of a speed, by the way that positions tell; None where they do not tell it.
 
     Parameters
@@ -29,7 +34,8 @@ def unit_of_speed(time: np.ndarray, north: np.ndarray, east: np.ndarray, speed: 
         In the unknown unit.
     """
     rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(speed)
-    t, way = time[rows], (north + 1j * east)[rows]
+    t = time[rows]
+    way = (north + 1j * east)[rows]
     return _unit_by(t, speed[rows], lambda k: np.abs(way[k:] - way[:-k]), _SPEEDS)
 
 
@@ -55,14 +61,16 @@ def _unit_by(time, rate, change, units):
     if len(time) < 4 * _SPANS[0] or not (steps > 0.0).all():
         return None
     told = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps)))
-    best, ratio = 0.0, None
+    best = 0.0
+    ratio = None
     for k in _SPANS:
         if len(time) < 4 * k:
             break
         x, y = _without_leaps(told[k:] - told[:-k], change(k))
         norm = float(np.sqrt((x @ x) * (y @ y)))
         if norm > 0.0 and (x @ y) / norm > max(best, _ALIKE):
-            best, ratio = (x @ y) / norm, (y @ y) / (x @ y)
+            best = (x @ y) / norm
+            ratio = (y @ y) / (x @ y)
     if ratio is None:
         return None
     unit = min(units, key=lambda name: abs(np.log(ratio / units[name])))
@@ -102,16 +110,19 @@ def frame_of_angle(
     >>> frame_of_angle(t, way.real, way.imag, {"NED": heading, "ENU": 90 - heading})
     'NED'
     """
-    clear, unclear = [], []
+    clear = []
+    unclear = []
     for name, heading in readings.items():
         course = np.radians(heading) + (0.0 if drift is None else drift)
         rows = np.isfinite(time) & np.isfinite(north) & np.isfinite(east) & np.isfinite(course)
-        way, bow = (north + 1j * east)[rows], np.exp(1j * course[rows])
+        way = (north + 1j * east)[rows]
+        bow = np.exp(1j * course[rows])
         best = 0.0 + 0.0j
         for k in _SPANS:
             if len(way) < 4 * k:
                 break
-            moved, middle = way[k:] - way[:-k], bow[k // 2 : len(bow) - k + k // 2]
+            moved = way[k:] - way[:-k]
+            middle = bow[k // 2 : len(bow) - k + k // 2]
             total = np.abs(moved).sum()
             mean = (moved * np.conj(middle)).sum() / total if total > 0.0 else 0.0
             best = max(best, complex(mean), key=abs)

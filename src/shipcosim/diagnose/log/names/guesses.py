@@ -19,7 +19,9 @@ __all__ = ["EXACT", "GUESS", "SURE", "UNUSED", "Guess", "Thrusters", "guesses_of
 
 Thrusters = Mapping[str, tuple[str, ...]]
 """Thrusters of a system by name, with what drives each: ``"rpm"``, ``"azimuth"``, ``"thrust"``."""
-EXACT, SURE, GUESS = 0, 1, 2
+EXACT = 0
+SURE = 1
+GUESS = 2
 UNUSED = Channel(column="-")
 _THRUSTER_UNITS = {"rpm": "rpm", "azimuth": "deg", "thrust": "N"}
 _TO_STARBOARD = ("sway", "yaw_rate")  # roles that are positive to starboard
@@ -82,7 +84,8 @@ def guesses_of(column: str, log: LogColumns, thrusters: Thrusters | None) -> lis
     thrusters : mapping, optional
         Of the system; without, any name of a thruster is one.
     """
-    values, stated = log.values[column], log.units[column]
+    values = log.values[column]
+    stated = log.units[column]
     role = role_of(column)
     if role and (column in ROLES or thrusters is None or column.rpartition("_")[0] in thrusters):
         if refused := _of_a_map(column, stated, thrusters):
@@ -108,13 +111,15 @@ def _is_empty(values):
 
 def _by_meaning(column, words, stated, values):
     """By the words of the name, with a unit at its end or without."""
-    meaning, unit = meaning_of(words), stated
+    meaning = meaning_of(words)
+    unit = stated
     if (meaning.role is None or meaning.doubt) and not stated:
         for target in _SUFFIXES:
             rest, suffix = unit_after(words, target)
             again = meaning_of(rest) if suffix else meaning
             if again.role and _measures(unit_for(suffix, ROLES[again.role].unit), again.role):
-                meaning, unit = again, unit_for(suffix, ROLES[again.role].unit)
+                meaning = again
+                unit = unit_for(suffix, ROLES[again.role].unit)
                 break
             if suffix and again.reason and not meaning.reason:
                 meaning = again
@@ -122,15 +127,21 @@ def _by_meaning(column, words, stated, values):
         return Guess(column, why=meaning.reason or "its name is not known")
     role = meaning.role
     if unit and role not in ("time", "latitude", "longitude") and not _measures(unit, role):
-        return Guess(column, why=f"its unit '{unit}' is none of {role}, which is in {ROLES[role].unit}")
+        return Guess(
+            column, why=f"its unit '{unit}' is none of {role}, which is in {ROLES[role].unit}"
+        )
     if values.dtype.kind == "O" and role not in ("time", "latitude", "longitude"):
         shown = next(str(value) for value in values if value is not None)[:20]
         return Guess(column, why=f"it holds texts such as '{shown}'")
     given = unit if unit and not stated else None
-    doubt, sign = meaning.doubt, 1
+    doubt = meaning.doubt
+    sign = 1
     if doubt and role in _TO_STARBOARD and "port" in words:
-        doubt, sign = "by its name positive to port", -1
-    channel = Channel(column=column, unit=unit_for(given, ROLES[role].unit) if given else None, sign=sign)
+        doubt = "by its name positive to port"
+        sign = -1
+    channel = Channel(
+        column=column, unit=unit_for(given, ROLES[role].unit) if given else None, sign=sign
+    )
     return Guess(column, role, channel, GUESS if doubt else SURE, doubt, unit=unit)
 
 
@@ -139,15 +150,23 @@ def _measures(unit, role):
 
 
 def _converts(unit, target):
-    given, wanted = spelled_unit(unit_for(unit, target)), spelled_unit(target)
-    return given is not None and wanted is not None and relation(given, wanted) in ("same", "convertible")
+    given = spelled_unit(unit_for(unit, target))
+    wanted = spelled_unit(target)
+    return (
+        given is not None
+        and wanted is not None
+        and relation(given, wanted) in ("same", "convertible")
+    )
 
 
-def _of_thruster(column: str, drive: Drive, stated: str, thrusters: Thrusters | None) -> list[Guess]:
+def _of_thruster(
+    column: str, drive: Drive, stated: str, thrusters: Thrusters | None
+) -> list[Guess]:
     """What a thruster's column may be."""
     if thrusters is None:
         name = "_".join(sorted(drive.place)) or "propeller"
-        names, doubt = [name], ""
+        names = [name]
+        doubt = ""
     else:
         names, doubt = thrusters_named(drive.place, thrusters)
     there = ", ".join(thrusters) if thrusters else ""
@@ -166,22 +185,38 @@ def _of_thruster(column: str, drive: Drive, stated: str, thrusters: Thrusters | 
         unit = _THRUSTER_UNITS[drive.quantity]
         wanted = (thrusters or {}).get(name, (drive.quantity,))
         if drive.quantity not in wanted:
-            found.append(Guess(column, why=f"the system drives {name} by {' and '.join(wanted) or 'nothing logged'}"))
+            found.append(
+                Guess(
+                    column,
+                    why=f"the system drives {name} by {' and '.join(wanted) or 'nothing logged'}",
+                )
+            )
             continue
         if stated and not _converts(stated, unit):
-            found.append(Guess(column, why=f"its unit '{stated}' is none of {role}, which is in {unit}"))
+            found.append(
+                Guess(column, why=f"its unit '{stated}' is none of {role}, which is in {unit}")
+            )
             continue
         why = doubt or drive.doubt
         channel = Channel(column=column)
         said = ("a command; there is no feedback",) if drive.kind == "command" else ()
-        found.append(Guess(column, role, channel, GUESS if why else SURE, why, drive.kind, stated, said))
+        found.append(
+            Guess(column, role, channel, GUESS if why else SURE, why, drive.kind, stated, said)
+        )
     used = [guess for guess in found if guess.role]
     return used or found[:1]
 
 
 def _of_a_map(column, stated, thrusters):
     """A guess without a role for a thruster's channel in per cent or pulses, None for others."""
-    quantity = {"%": "percent", "pct": "percent", "percent": "percent", "us": "pwm", "µs": "pwm", "pwm": "pwm"}
+    quantity = {
+        "%": "percent",
+        "pct": "percent",
+        "percent": "percent",
+        "us": "pwm",
+        "µs": "pwm",
+        "pwm": "pwm",
+    }
     kind = quantity.get(stated.strip().lower())
     if kind is None or column in ROLES:
         return None
@@ -192,7 +227,11 @@ def _needs_a_map(column, quantity, name, thrusters):
     """Why a command in pulses or per cent is not used, and what to write."""
     wanted = next(iter((thrusters or {}).get(name, ())), "rpm")
     unit = _THRUSTER_UNITS[wanted]
-    pairs = "[[1100, A], [1500, 0], [1900, B]]" if quantity == "pwm" else "[[-100, A], [0, 0], [100, B]]"
+    pairs = (
+        "[[1100, A], [1500, 0], [1900, B]]"
+        if quantity == "pwm"
+        else "[[-100, A], [0, 0], [100, B]]"
+    )
     word = "pulses (PWM)" if quantity == "pwm" else "per cent"
     entry = f'{name}_{wanted} = {{column = "{column}", map = {pairs}}}'
     return f"{word} become {wanted} by a map only: write {entry}, A and B in {unit}"

@@ -11,7 +11,15 @@ from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.positions import hemisphere_signs
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.names.clock import time_of
-from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, UNUSED, Guess, Thrusters, guesses_of
+from shipcosim.diagnose.log.names.guesses import (
+    EXACT,
+    GUESS,
+    SURE,
+    UNUSED,
+    Guess,
+    Thrusters,
+    guesses_of,
+)
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
@@ -19,7 +27,11 @@ from shipcosim.diagnose.log.names.vocabulary import words_of
 __all__ = ["Proposal", "propose"]
 
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
-_PAIRS = (*_POSITIONS, ("speed_over_ground", "course_over_ground"), ("north_velocity", "east_velocity"))
+_PAIRS = (
+    *_POSITIONS,
+    ("speed_over_ground", "course_over_ground"),
+    ("north_velocity", "east_velocity"),
+)
 
 
 @dataclass(frozen=True)
@@ -47,11 +59,17 @@ class Proposal:
         """
         if guessed:
             return {g.role: g.channel for g in self.used}
-        plain = {g.role: Channel(column=g.column) for g in self.used if g.rank == EXACT and g.role == "yaw_rate"}
+        plain = {
+            g.role: Channel(column=g.column)
+            for g in self.used
+            if g.rank == EXACT and g.role == "yaw_rate"
+        }
         return {g.role: g.channel for g in self.used if g.rank < GUESS} | plain
 
 
-def propose(log: LogColumns, thrusters: Thrusters | None = None, form: FileLayout | None = None) -> Proposal:
+def propose(
+    log: LogColumns, thrusters: Thrusters | None = None, form: FileLayout | None = None
+) -> Proposal:
     """Roles of the columns of a log, by their names, units and values.
 
     Parameters
@@ -97,22 +115,36 @@ def _known_together(every):
     for guess in every:
         words = letters[guess.column]
         letter = words[0] if len(words) == 1 else ""
-        if letter in sure and (guess.role not in ("", roles.get(letter, guess.role)) or not guess.role):
-            guess = Guess(guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit)
-        found.append(replace(guess, rank=min(guess.rank, SURE), why="") if letter in sure and guess.role else guess)
+        if letter in sure and (
+            guess.role not in ("", roles.get(letter, guess.role)) or not guess.role
+        ):
+            guess = Guess(
+                guess.column, roles.get(letter, ""), Channel(column=guess.column), unit=guess.unit
+            )
+        found.append(
+            replace(guess, rank=min(guess.rank, SURE), why="")
+            if letter in sure and guess.role
+            else guess
+        )
     return found
 
 
 def _chosen(guesses):
     """The best guess for each role, and the others with why they are not used."""
     kinds = {"feedback": 0, "": 1, "command": 2}
-    chosen, left = {}, []
+    chosen = {}
+    left = []
     for role in dict.fromkeys(guess.role for guess in guesses):
-        ranked = sorted((g for g in guesses if g.role == role), key=lambda g: (g.rank, kinds[g.kind]))
-        best, rest = ranked[0], ranked[1:]
+        ranked = sorted(
+            (g for g in guesses if g.role == role), key=lambda g: (g.rank, kinds[g.kind])
+        )
+        best = ranked[0]
+        rest = ranked[1:]
         beside = [g for g in rest if g.kind == "command" and best.kind != "command"]
         if beside and best.rank != EXACT:
-            best = replace(best, said=(f"measured; the command beside it, '{beside[0].column}', is not used",))
+            best = replace(
+                best, said=(f"measured; the command beside it, '{beside[0].column}', is not used",)
+            )
         elif best.kind == "command" and rest:
             best = replace(best, said=())
         same = [g for g in rest if g.rank == best.rank == SURE and g.kind == best.kind]
@@ -120,7 +152,11 @@ def _chosen(guesses):
             best = replace(best, rank=GUESS, why=f"'{same[0].column}' says the same")
         chosen[role] = best
         for guess in rest:
-            why = "a command, and there is what was measured" if guess in beside else f"'{best.column}' is the {role}"
+            why = (
+                "a command, and there is what was measured"
+                if guess in beside
+                else f"'{best.column}' is the {role}"
+            )
             left.append(replace(guess, role="", why=why))
     return chosen, left
 
@@ -136,11 +172,16 @@ def _with_quaternion(chosen, log, left):
         last = words[-1] if words else ""
         before = words[:-1]
         if len(words) == 1 and len(last) == 2 and last[0] == "q" and last[1] in "wxyz":
-            before, last = ("q",), last[1]
-        if last in ends and (set(before) & {"q", "quaternion", "quat", "orientation", "attitude", "qw", "qx"}):
+            before = ("q",)
+            last = last[1]
+        if last in ends and (
+            set(before) & {"q", "quaternion", "quat", "orientation", "attitude", "qw", "qx"}
+        ):
             groups.setdefault(before, {})[ends[last]] = column
     for parts in groups.values():
-        if set(parts) == set("wxyz") and all(log.values[c].dtype.kind == "f" for c in parts.values()):
+        if set(parts) == set("wxyz") and all(
+            log.values[c].dtype.kind == "f" for c in parts.values()
+        ):
             channel = Channel(quaternion=(parts["w"], parts["x"], parts["y"], parts["z"]))
             why = "of a quaternion; it may be of another frame (ENU)"
             chosen["heading"] = Guess(parts["w"], "heading", channel, GUESS, why)
@@ -155,11 +196,16 @@ def _by_convention_of_ros(chosen, log):
 
     def turned(role, why, **update):
         guess = chosen[role]
-        chosen[role] = replace(guess, channel=guess.channel.model_copy(update=update), why=f"{why} (REP 103)")
+        chosen[role] = replace(
+            guess, channel=guess.channel.model_copy(update=update), why=f"{why} (REP 103)"
+        )
 
     is_open = {role for role, guess in chosen.items() if guess.rank == GUESS}
-    if {"north", "east"} <= is_open and all(chosen[role].why.startswith("x north") for role in ("north", "east")):
-        north, east = chosen["north"], chosen["east"]
+    if {"north", "east"} <= is_open and all(
+        chosen[role].why.startswith("x north") for role in ("north", "east")
+    ):
+        north = chosen["north"]
+        east = chosen["east"]
         chosen["north"] = replace(north, column=east.column, channel=east.channel)
         chosen["east"] = replace(east, column=north.column, channel=north.channel)
         turned("north", "y is assumed to be north")
@@ -185,7 +231,11 @@ def _with_hemispheres(chosen, log, left):
             continue
         guess = chosen[role]
         after = order[order.index(guess.column) + 1 :][:1]
-        named = [name for name in order if set(words_of(name)) & {"hemisphere", "hemi", "ns", "ew", "hem"}]
+        named = [
+            name
+            for name in order
+            if set(words_of(name)) & {"hemisphere", "hemi", "ns", "ew", "hem"}
+        ]
         for name in (*after, *named):
             if hemisphere_signs(log.values[name], role) is not None:
                 channel = guess.channel.model_copy(update={"hemisphere": name})
@@ -213,18 +263,29 @@ def _of_one_kind(chosen, log):
         there = [role for role in pair if role in chosen]
         if len(there) == 1:
             other = next(role for role in pair if role not in there)
-            drop(there, f"it is {there[0].replace('_', ' ')}, and no column is {other.replace('_', ' ')}")
+            drop(
+                there,
+                f"it is {there[0].replace('_', ' ')}, and no column is {other.replace('_', ' ')}",
+            )
     whole = [pair for pair in _POSITIONS if pair[0] in chosen]
     if len(whole) == 2:
         ranks = [max(chosen[role].rank for role in pair) for pair in whole]
         worse = whole[1] if ranks[0] <= ranks[1] or ranks[0] < GUESS else whole[0]
         best = whole[0] if worse is whole[1] else whole[1]
         drop(worse, f"{best[0]} and {best[1]} are used instead")
-    ways = [pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)]
+    ways = [
+        pair for pair in (("surge", "sway"), *_PAIRS[:1:-1]) if all(role in chosen for role in pair)
+    ]
     dead = {pair: all(_never_changes(chosen[role], log) for role in pair) for pair in ways}
     ways.sort(key=lambda pair: (dead[pair], max(chosen[role].rank for role in pair) == GUESS))
     for pair in ways[1:]:
-        drop(pair, f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead")
+        drop(
+            pair,
+            f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead",
+        )
     if ways and ways[0] != ("surge", "sway"):
-        drop(("surge", "sway"), f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead")
+        drop(
+            ("surge", "sway"),
+            f"{ways[0][0].replace('_', ' ')} and {ways[0][1].replace('_', ' ')} are used instead",
+        )
     return left

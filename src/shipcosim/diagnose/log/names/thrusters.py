@@ -59,7 +59,11 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     """
     told = vocabulary()["words"]
     kind = next((k for k in ("feedback", "command") if any(w in told[k] for w in words)), "")
-    rest = [w for w in words if w not in told["command"] and w not in told["feedback"] and w not in told["filler"]]
+    rest = [
+        w
+        for w in words
+        if w not in told["command"] and w not in told["feedback"] and w not in told["filler"]
+    ]
     if any(word in told["other"] for word in rest):
         return None
     generic = set(vocabulary()["thruster"]["generic"]["words"])
@@ -76,7 +80,9 @@ def drive_of(words: tuple[str, ...], unit: str, values: np.ndarray) -> Drive | N
     return Drive(quantity, place, kind, doubt)
 
 
-def thrusters_named(place: frozenset[str], thrusters: Mapping[str, tuple[str, ...]]) -> tuple[list[str], str]:
+def thrusters_named(
+    place: frozenset[str], thrusters: Mapping[str, tuple[str, ...]]
+) -> tuple[list[str], str]:
     """Thrusters of a system that some words can mean, and why that is a guess; empty where it is none.
 
     Parameters
@@ -98,12 +104,20 @@ def thrusters_named(place: frozenset[str], thrusters: Mapping[str, tuple[str, ..
     if same := [name for name, words in placed.items() if words == place]:
         return same, "" if len(same) == 1 else "it names several"
     if not place:
-        main = [name for name, drives in thrusters.items() if len(thrusters) == 1 or "azimuth" in drives]
-        return main or list(thrusters), "" if len(thrusters) == 1 else "one value for all of these is assumed"
+        main = [
+            name for name, drives in thrusters.items() if len(thrusters) == 1 or "azimuth" in drives
+        ]
+        return main or list(thrusters), "" if len(
+            thrusters
+        ) == 1 else "one value for all of these is assumed"
     near = [name for name, words in placed.items() if words and (words < place or place < words)]
     if len(near) == 1:
         return near, ""
-    if len(place) == 1 and (number := next(iter(place))).isdigit() and 0 < int(number) <= len(thrusters):
+    if (
+        len(place) == 1
+        and (number := next(iter(place))).isdigit()
+        and 0 < int(number) <= len(thrusters)
+    ):
         return [
             list(thrusters)[int(number) - 1]
         ], f"they are counted in the order of the system: {', '.join(thrusters)}"
@@ -115,13 +129,17 @@ def thrusters_named(place: frozenset[str], thrusters: Mapping[str, tuple[str, ..
 
 
 def _place_of(name):
-    generic = set(vocabulary()["thruster"]["generic"]["words"]) | set(vocabulary()["words"]["filler"])
+    generic = set(vocabulary()["thruster"]["generic"]["words"]) | set(
+        vocabulary()["words"]["filler"]
+    )
     return frozenset(_places().get(word, word) for word in words_of(name) if word not in generic)
 
 
 @cache
 def _places() -> dict[str, str]:
-    return {word: place for place, words in vocabulary()["thruster"]["places"].items() for word in words}
+    return {
+        word: place for place, words in vocabulary()["thruster"]["places"].items() for word in words
+    }
 
 
 @cache
@@ -129,7 +147,9 @@ def _phrases() -> list[tuple[tuple[str, ...], str]]:
     """Words that name a quantity of a thruster, those of many words first."""
     told = vocabulary()["thruster"]
     quantities = ("rpm", "azimuth", "thrust", "pwm", "percent")
-    phrases = sorted((words_of(phrase), quantity) for quantity in quantities for phrase in told[quantity])
+    phrases = sorted(
+        (words_of(phrase), quantity) for quantity in quantities for phrase in told[quantity]
+    )
     return sorted(phrases, key=lambda pair: -len(pair[0]))
 
 
@@ -155,5 +175,20 @@ def _by_values(quantity, word, unit, values):
         return "pwm", ""
     if quantity == "" and len(known) and np.abs(known).max() <= 100.0:
         return "percent", ""
-    is_sure = word in _SURE or unit in ("rpm", "1/min", "deg", "°", "rad", "n", "kn", "rev/s", "rps", "1/s")
-    return quantity, "" if is_sure or quantity in ("", "pwm", "percent") else f"'{word}' may be something else"
+    is_sure = word in _SURE or unit in (
+        "rpm",
+        "1/min",
+        "deg",
+        "°",
+        "rad",
+        "n",
+        "kn",
+        "rev/s",
+        "rps",
+        "1/s",
+    )
+    return quantity, "" if is_sure or quantity in (
+        "",
+        "pwm",
+        "percent",
+    ) else f"'{word}' may be something else"

@@ -15,7 +15,23 @@ _OTHERS = re.compile(
     r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$"
 )
 _LONGEST_SUFFIX = 3  # words
-_NO_SUFFIX = {"n", "rpm", "1", "none", "raw", "date", "utc", "local", "iso", "text", "h", "d", "int", "grad", "flag"}
+_NO_SUFFIX = {
+    "n",
+    "rpm",
+    "1",
+    "none",
+    "raw",
+    "date",
+    "utc",
+    "local",
+    "iso",
+    "text",
+    "h",
+    "d",
+    "int",
+    "grad",
+    "flag",
+}
 """Spellings of units that at the end of a name, after an underscore, mean something else."""
 
 
@@ -39,7 +55,9 @@ def name_and_unit(header: str) -> tuple[str, str]:
 
 def is_unit(text: str) -> bool:
     """Whether a text is the spelling of a unit, as headers have them."""
-    return bool(text.strip()) and (_plain(text) in _spellings() or spelled_unit(text.strip()) is not None)
+    return bool(text.strip()) and (
+        _plain(text) in _spellings() or spelled_unit(text.strip()) is not None
+    )
 
 
 def unit_for(spelling: str, target: str) -> str:
@@ -54,7 +72,11 @@ def unit_for(spelling: str, target: str) -> str:
     """
     spelling = spelling.strip()
     wanted = spelled_unit(target)
-    options = [unit for unit in (spelling, *_spellings().get(_plain(spelling), ())) if spelled_unit(unit) is not None]
+    options = [
+        unit
+        for unit in (spelling, *_spellings().get(_plain(spelling), ()))
+        if spelled_unit(unit) is not None
+    ]
     for unit in options:
         given = spelled_unit(unit)
         if wanted is None or given is None or relation(given, wanted) in ("same", "convertible"):

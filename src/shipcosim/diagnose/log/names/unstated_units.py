@@ -21,7 +21,12 @@ __all__ = ["settled"]
 
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
 _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
-_LEFT_OPEN = {"yaw_rate": "deg/s", "speed_over_ground": "kn", "wind_speed": "kn", "true_wind_speed": "kn"}
+_LEFT_OPEN = {
+    "yaw_rate": "deg/s",
+    "speed_over_ground": "kn",
+    "wind_speed": "kn",
+    "true_wind_speed": "kn",
+}
 
 
 def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None:
@@ -49,7 +54,9 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
         if _is_open(chosen, role) and _is_short(chosen[role]):
             _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
     for role, guess in list(chosen.items()):
-        is_angle = role in ("wind_from", "true_wind_from", "course_over_ground") or role.endswith("_azimuth")
+        is_angle = role in ("wind_from", "true_wind_from", "course_over_ground") or role.endswith(
+            "_azimuth"
+        )
         if is_angle and _is_open(chosen, role):
             known = np.abs(_finite(log.values[guess.column]))
             if len(known) and known.max() <= np.pi + 0.01 and known.max() > 0.0:
@@ -60,7 +67,9 @@ def _settle_degrees(chosen, log):
     """Whole numbers beyond all degrees as ten millionths of them, as autopilots write."""
     for role, largest in LARGEST.items():
         guess = chosen.get(role)
-        known = np.abs(_finite(log.values[guess.column])) if guess and not guess.unit else np.empty(0)
+        known = (
+            np.abs(_finite(log.values[guess.column])) if guess and not guess.unit else np.empty(0)
+        )
         beyond = len(known) and np.median(known) > 1e4 * largest and known.max() <= 1e7 * largest
         other = chosen.get("longitude" if role == "latitude" else "latitude")
         follows = len(known) and other is not None and other.channel.unit == TEN_MILLIONTHS
@@ -76,7 +85,9 @@ def _settle_degrees(chosen, log):
 def _is_open(chosen, role):
     """Whether a channel's unit is stated nowhere, and its column is not named by its role."""
     guess = chosen.get(role)
-    return bool(guess and guess.rank != EXACT and not guess.unit and guess.channel.quaternion is None)
+    return bool(
+        guess and guess.rank != EXACT and not guess.unit and guess.channel.quaternion is None
+    )
 
 
 def _is_short(guess):
@@ -91,7 +102,9 @@ def _finite(values):
 def _guess(chosen, role, unit, why):
     guess = chosen[role]
     channel = guess.channel.model_copy(update={"unit": unit})
-    chosen[role] = replace(guess, channel=channel, rank=GUESS, why="; ".join(filter(None, (guess.why, why))))
+    chosen[role] = replace(
+        guess, channel=channel, rank=GUESS, why="; ".join(filter(None, (guess.why, why)))
+    )
 
 
 def _told(chosen, role, why, **update):
@@ -117,10 +130,14 @@ def _motion(chosen, log, form) -> Any:
         return None
     position = [_values(chosen, role, log, form) for role in ("north", "east")]
     if any(values is None for values in position):
-        latitude, longitude = (_values(chosen, role, log, form) for role in ("latitude", "longitude"))
+        latitude, longitude = (
+            _values(chosen, role, log, form) for role in ("latitude", "longitude")
+        )
         if latitude is None or longitude is None:
             return time, None, None
-        known = np.flatnonzero(np.isfinite(latitude) & np.isfinite(longitude) & (np.abs(latitude) < 90.0))
+        known = np.flatnonzero(
+            np.isfinite(latitude) & np.isfinite(longitude) & (np.abs(latitude) < 90.0)
+        )
         if not len(known):
             return time, None, None
         meridian, parallel = metres_per_degree(float(latitude[known[0]]))
@@ -151,24 +168,39 @@ def _settle_heading(chosen, log, form, motion):
     if len(readings) == 1:
         return
     found = None
-    is_placed = all(chosen[role].rank < GUESS for role in ("north", "east", "latitude", "longitude") if role in chosen)
+    is_placed = all(
+        chosen[role].rank < GUESS
+        for role in ("north", "east", "latitude", "longitude")
+        if role in chosen
+    )
     if motion is not None and motion[1] is not None and is_placed:
         body: list[Any] = [_values(chosen, role, log, form) for role in ("surge", "sway")]
-        is_known = all(v is not None for v in body) and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
+        is_known = (
+            all(v is not None for v in body)
+            and max(chosen[r].rank for r in ("surge", "sway")) < GUESS
+        )
         found = frame_of_angle(
-            motion[0], motion[1], motion[2], readings, np.arctan2(body[1], body[0]) if is_known else None
+            motion[0],
+            motion[1],
+            motion[2],
+            readings,
+            np.arctan2(body[1], body[0]) if is_known else None,
         )
     if found is None:
         if is_open and len(units) == 2:
-            _guess(chosen, "heading", "rad", "no unit is stated, and no value is beyond 2 pi: rad or deg")
+            _guess(
+                chosen,
+                "heading",
+                "rad",
+                "no unit is stated, and no value is beyond 2 pi: rad or deg",
+            )
         return
     unit, frame = found
-    said = (
-        f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
-    )
+    said = f"in {unit} and {'clockwise from north' if frame == 'NED' else 'anticlockwise from east'}, as the course says"
     update = {} if not is_open else {"unit": unit}
     if guess.channel.quaternion is not None:
-        update, said = {"frame": frame}, f"the quaternion is of {frame}, as the course says"
+        update = {"frame": frame}
+        said = f"the quaternion is of {frame}, as the course says"
     elif frame == "ENU":
         update |= {"sign": -1, "offset": 90.0 if unit == "deg" else np.pi / 2}
     _told(chosen, "heading", said, **update)
@@ -205,8 +237,12 @@ def _settle_speed(chosen, role, log, form, motion):
     if motion is not None and motion[1] is not None and raw.dtype.kind == "f":
         speed = raw
         if role in ("surge", "sway", "north_velocity", "east_velocity"):
-            other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(role, "north_velocity")
-            beside = log.values[chosen[other].column] if _is_open(chosen, other) else np.zeros_like(raw)
+            other = {"surge": "sway", "sway": "surge", "north_velocity": "east_velocity"}.get(
+                role, "north_velocity"
+            )
+            beside = (
+                log.values[chosen[other].column] if _is_open(chosen, other) else np.zeros_like(raw)
+            )
             speed = np.hypot(raw, beside) if beside.dtype.kind == "f" else np.abs(raw)
         unit = unit_of_speed(motion[0], motion[1], motion[2], speed)
     if unit == "m/s":
@@ -214,14 +250,17 @@ def _settle_speed(chosen, role, log, form, motion):
     elif unit is not None:
         guess = chosen[role]
         channel = guess.channel.model_copy(update={"unit": unit})
-        chosen[role] = replace(guess, channel=channel, said=(*guess.said, f"in {unit}, as positions say"))
+        chosen[role] = replace(
+            guess, channel=channel, said=(*guess.said, f"in {unit}, as positions say")
+        )
     elif role in _IN_KNOTS:
         _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
 
 
 def _settle_rate(chosen, log, form, motion):
     """Unit of a yaw rate by the heading."""
-    heading, raw = _values(chosen, "heading", log, form), log.values[chosen["yaw_rate"].column]
+    heading = _values(chosen, "heading", log, form)
+    raw = log.values[chosen["yaw_rate"].column]
     unit = None
     if heading is not None and motion is not None and raw.dtype.kind == "f":
         unit = unit_of_rate(motion[0], heading, raw)
@@ -229,8 +268,17 @@ def _settle_rate(chosen, log, form, motion):
     if guess.rank == EXACT and unit in (None, "deg/s"):
         return
     if unit is None:
-        is_rot = guess.column.strip().lower() in ("rot", "rateofturn", "rate of turn", "rate_of_turn")
-        _guess(chosen, "yaw_rate", "deg/min" if is_rot else ROLES["yaw_rate"].unit, "no unit is stated")
+        is_rot = guess.column.strip().lower() in (
+            "rot",
+            "rateofturn",
+            "rate of turn",
+            "rate_of_turn",
+        )
+        _guess(
+            chosen, "yaw_rate", "deg/min" if is_rot else ROLES["yaw_rate"].unit, "no unit is stated"
+        )
         return
     channel = guess.channel.model_copy(update={"unit": unit})
-    chosen["yaw_rate"] = replace(guess, channel=channel, said=(*guess.said, f"in {unit}, as the heading says"))
+    chosen["yaw_rate"] = replace(
+        guess, channel=channel, said=(*guess.said, f"in {unit}, as the heading says")
+    )

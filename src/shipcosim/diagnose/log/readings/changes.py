@@ -87,7 +87,8 @@ class LogInterpretation:
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """
-        flipped, mirrored = "velocity" in self.mirrored, "heading" in self.mirrored
+        flipped = "velocity" in self.mirrored
+        mirrored = "heading" in self.mirrored
         course = courses[self.earth, self.earth and (mirrored != flipped)]
         course = course.conjugate() if flipped else course
         turn = complex(self.velocity) * (complex(self.heading).conjugate() if self.earth else 1.0)
@@ -146,10 +147,21 @@ class LogMistake:
     @property
     def cause(self) -> str:
         """What it is called."""
-        return self.mislabel.cause if self.mislabel is not None else "clock" if self.slot == "time" else "frame"
+        return (
+            self.mislabel.cause
+            if self.mislabel is not None
+            else "clock"
+            if self.slot == "time"
+            else "frame"
+        )
 
 
-FACTOR_OF = {VELOCITY: "velocity", POSITION: "position", ("heading",): "heading_unit", ("yaw_rate",): "rate"}
+FACTOR_OF = {
+    VELOCITY: "velocity",
+    POSITION: "position",
+    ("heading",): "heading_unit",
+    ("yaw_rate",): "rate",
+}
 SLOT_CHANNELS = {"unit of velocity": VELOCITY, "unit of rate": ("yaw_rate",), "turned": POSITION}
 SLOT_CHANNELS |= {"axes turned": VELOCITY}
 CLOCK = "the clock runs wrong throughout"
@@ -157,8 +169,18 @@ STATED = 2.0  # more, where a header or a channel file states the unit [nats]; a
 UNIT_COSTS = {"kn": 5.0, "km/h": 5.0, "m/s": 5.0, "ft/s": 6.5, "mph": 7.0, "cm/s": 6.5, "mm/s": 7.0}
 UNIT_COSTS |= {"m": 6.0, "km": 6.0, "ft": 6.5, "nmi": 7.0, "cm": 7.0, "mm": 7.0}
 UNIT_COSTS |= {"deg": 5.0, "rad": 5.0, "deg/s": 5.0, "rad/s": 4.5, "deg/min": 6.0, "rpm": 7.5}
-TIME_COSTS = {"ms": (1e-3, 5.5), "s": (1.0, 5.5), "min": (60.0, 6.5), "h": (3600.0, 8.0), "us": (1e-6, 7.0)}
-TIME_COSTS |= {"ns": (1e-9, 8.0), "tenths of a second": (0.1, 7.0), "hundredths of a second": (0.01, 8.0)}
+TIME_COSTS = {
+    "ms": (1e-3, 5.5),
+    "s": (1.0, 5.5),
+    "min": (60.0, 6.5),
+    "h": (3600.0, 8.0),
+    "us": (1e-6, 7.0),
+}
+TIME_COSTS |= {
+    "ns": (1e-9, 8.0),
+    "tenths of a second": (0.1, 7.0),
+    "hundredths of a second": (0.01, 8.0),
+}
 FACTORS = {2.0: 6.5, 0.5: 6.5, 10.0: 8.0}  # of true over logged time
 ODD_FACTORS = {2.0: 8.0, 0.5: 8.0, 10.0: 8.0, 0.1: 8.0}  # of a velocity or a rate
 
@@ -184,7 +206,8 @@ def changes(stated: dict[str, str]) -> list[LogMistake]:
 
 
 def _time(stated):
-    own, extra = TIME_COSTS.get(stated or "s", (1.0, 0.0))[0], STATED * bool(stated)
+    own = TIME_COSTS.get(stated or "s", (1.0, 0.0))[0]
+    extra = STATED * bool(stated)
     for unit, (factor, cost) in TIME_COSTS.items():
         if factor != own:
             sentence = f"time is in {unit}, not {stated or 's'}"
@@ -194,7 +217,9 @@ def _time(stated):
         yield LogMistake("time", cost, _factor_of("time", factor), None, said)
     said = CLOCK
     for std, cost in ((0.05, 5.5), (1.5, 8.0)):
-        yield LogMistake("time", cost, lambda reading: _freed(reading, "time"), None, said, Slab("time", std))
+        yield LogMistake(
+            "time", cost, lambda reading: _freed(reading, "time"), None, said, Slab("time", std)
+        )
 
 
 def _units(stated) -> Iterator[LogMistake]:
@@ -206,7 +231,12 @@ def _units(stated) -> Iterator[LogMistake]:
             if unit != own:
                 label = mislabel_of_unit(channels, unit, own)
                 name = FACTOR_OF[channels]
-                yield _label(f"unit of {name}", UNIT_COSTS[unit] + extra, _factor_of(name, label.scale), label)
+                yield _label(
+                    f"unit of {name}",
+                    UNIT_COSTS[unit] + extra,
+                    _factor_of(name, label.scale),
+                    label,
+                )
 
 
 def _frames() -> Iterator[LogMistake]:
@@ -220,7 +250,9 @@ def _frames() -> Iterator[LogMistake]:
     yield _label("velocity", 5.5, _mirrored("velocity", 1j), swap_of(*VELOCITY))
     yield _label("velocity", 5.0, _mirrored("velocity", -1.0), negative("surge"))
     yield _label("velocity", 5.0, _mirrored("velocity"), negative("sway"))
-    yield _label("axes", 5.0, lambda reading: replace(reading, earth=True), velocity_frame("north", "east"))
+    yield _label(
+        "axes", 5.0, lambda reading: replace(reading, earth=True), velocity_frame("north", "east")
+    )
     east_north = lambda reading: _mirrored("velocity", 1j)(replace(reading, earth=True))  # noqa: E731
     yield _label("velocity", 6.0, east_north, velocity_frame("east", "north"))
     yield _label("sign of rate", 4.5, _factor_of("rate", -1.0), negative("yaw_rate"))
@@ -238,18 +270,36 @@ def _odd(stated) -> Iterator[LogMistake]:
     for factor, cost in ODD_FACTORS.items():
         said = f"surge and sway must be multiplied by {factor:.3g}"
         yield LogMistake(
-            "unit of velocity", cost + of_velocity, _factor_of("velocity", factor), None, said, None, lengths
+            "unit of velocity",
+            cost + of_velocity,
+            _factor_of("velocity", factor),
+            None,
+            said,
+            None,
+            lengths,
         )
         said = f"yaw_rate must be multiplied by {factor:.3g}"
-        yield LogMistake("unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles)
+        yield LogMistake(
+            "unit of rate", cost + of_rate, _factor_of("rate", factor), None, said, None, angles
+        )
     said = "surge and sway are in an unknown unit, or badly scaled"
-    free, cost = Slab("scale", 1.5), 8.0 + of_velocity
-    yield LogMistake("unit of velocity", cost, lambda r: _freed(r, "scale"), None, said, free, lengths)
+    free = Slab("scale", 1.5)
+    cost = 8.0 + of_velocity
+    yield LogMistake(
+        "unit of velocity", cost, lambda r: _freed(r, "scale"), None, said, free, lengths
+    )
     said = "yaw_rate is in an unknown unit, or badly scaled"
-    free, cost = Slab("rate", 1.5), 8.0 + of_rate
+    free = Slab("rate", 1.5)
+    cost = 8.0 + of_rate
     yield LogMistake("unit of rate", cost, lambda r: _freed(r, "rate"), None, said, free, angles)
     yield LogMistake(
-        "turned", 6.5, lambda r: _freed(r, "angle"), None, TURNED, None, ("the heading is off by that angle",)
+        "turned",
+        6.5,
+        lambda r: _freed(r, "angle"),
+        None,
+        TURNED,
+        None,
+        ("the heading is off by that angle",),
     )
     said = "surge and sway are turned against the ship"
     yield LogMistake("axes turned", 8.5, lambda r: _freed(_freed(r, "angle"), "axes"), None, said)

@@ -33,7 +33,9 @@ from shipcosim.diagnose.log.thresholds import (
 __all__ = ["Relation", "RowsFit", "fit_rows", "fitted"]
 
 
-ROUGHNESS = 5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
+ROUGHNESS = (
+    5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
+)
 _Key = TypeVar("_Key", bound=Hashable)
 
 
@@ -80,7 +82,9 @@ class RowsFit:
         return self.seen - self.factor * self.told
 
 
-def fitted(time: np.ndarray, pairs: dict[_Key, tuple[np.ndarray, np.ndarray]], axes: int = 2) -> dict[_Key, Relation]:
+def fitted(
+    time: np.ndarray, pairs: dict[_Key, tuple[np.ndarray, np.ndarray]], axes: int = 2
+) -> dict[_Key, Relation]:
     """The relation of each pair of what is seen and told; none where no pair tells anything.
 
     Parameters
@@ -90,12 +94,17 @@ def fitted(time: np.ndarray, pairs: dict[_Key, tuple[np.ndarray, np.ndarray]], a
     axes : int
         2, or 1 where both are real.
     """
-    pairs = {key: pair for key, pair in pairs.items() if all(np.ptp(np.abs(np.diff(one))) for one in pair)}
+    pairs = {
+        key: pair
+        for key, pair in pairs.items()
+        if all(np.ptp(np.abs(np.diff(one))) for one in pair)
+    }
     if not pairs:
         return {}
     rows = _rows(len(time), [seen for seen, _ in pairs.values()])
     thinned = {id(one): one[rows] for pair in pairs.values() for one in pair}
-    time, pairs = time[rows], {key: (thinned[id(seen)], thinned[id(told)]) for key, (seen, told) in pairs.items()}
+    time = time[rows]
+    pairs = {key: (thinned[id(seen)], thinned[id(told)]) for key, (seen, told) in pairs.items()}
     steps = np.diff(time, prepend=-np.inf)
     starts = steps > LONGEST_BRIDGE * np.median(steps[1:])
     if (~starts).sum() < FEWEST_FITTED:
@@ -103,14 +112,20 @@ def fitted(time: np.ndarray, pairs: dict[_Key, tuple[np.ndarray, np.ndarray]], a
     fits, alone = _fits(filters(time, starts), pairs, axes)
     best = max(fits, key=lambda key: fits[key].likelihood - alone[key])
     rough = whiteness(np.column_stack([fits[best].rest.real, fits[best].rest.imag][:axes]))
-    found = {key: _relation(fit, (fit.likelihood - alone[key]) / rough, rough) for key, fit in fits.items()}
+    found = {
+        key: _relation(fit, (fit.likelihood - alone[key]) / rough, rough)
+        for key, fit in fits.items()
+    }
     return found if found[best].evidence > HEARD else {}
 
 
 def _rows(count, series):
     """Every so many rows that there are not too many, and that a position of coarse resolution changes between them."""
     stride = max(1, math.ceil(count / MOST_FITTED))
-    while count / stride > 4 * FEWEST_FITTED and min(np.mean(np.diff(one[::stride]) != 0.0) for one in series) < 0.5:
+    while (
+        count / stride > 4 * FEWEST_FITTED
+        and min(np.mean(np.diff(one[::stride]) != 0.0) for one in series) < 0.5
+    ):
         stride *= 2
     return slice(None, None, stride)
 
@@ -134,9 +149,13 @@ def _fits(drafts: list[Filter], pairs, axes):
             fit = fit_rows(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
                 gain = float(np.median(draft.gains[known]))
-                adds_up = 1.0 / (gain * (2.0 - gain) * np.median(scale) ** 2)  # white noise that adds up, whitened
+                adds_up = 1.0 / (
+                    gain * (2.0 - gain) * np.median(scale) ** 2
+                )  # white noise that adds up, whitened
                 rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(told)]
-                fits[key] = replace(fit, wander=axes * adds_up * ratio * fit.variance, rows_noise=rows_noise)
+                fits[key] = replace(
+                    fit, wander=axes * adds_up * ratio * fit.variance, rows_noise=rows_noise
+                )
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
 
 
@@ -205,9 +224,16 @@ def _too_small(per_row, fit):
 
 def _jackknife(fit, windows):
     """Deviation of the factor by what the windows of a log say, relative to its size."""
-    sums = np.array([[np.vdot(fit.told[w], fit.told[w]).real, np.vdot(fit.told[w], fit.rest[w])] for w in windows])
+    sums = np.array(
+        [
+            [np.vdot(fit.told[w], fit.told[w]).real, np.vdot(fit.told[w], fit.rest[w])]
+            for w in windows
+        ]
+    )
     tame = np.minimum(np.abs(sums[:, 1]), 4.0 * np.quantile(np.abs(sums[:, 1]), ROBUST_SHARE))
-    return float(np.sqrt(np.sum(tame**2)) / max(np.real(sums[:, 0]).sum() * abs(fit.factor), 1e-300))
+    return float(
+        np.sqrt(np.sum(tame**2)) / max(np.real(sums[:, 0]).sum() * abs(fit.factor), 1e-300)
+    )
 
 
 def _throughout(fit, windows):
@@ -217,6 +243,9 @@ def _throughout(fit, windows):
     noise = float(np.quantile([rest[w].mean() for w in windows], CALM_SHARE))
     told = np.array([seen[w].sum() - rest[w].sum() for w in windows])
     left = np.array([rest[w].sum() - NOISIER * noise * len(w) for w in windows])
-    most = max(float(np.quantile(np.abs(told), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise)  # noise itself says less
-    explained, more = np.clip(told, 0.0, most).sum(), np.clip(left, 0.0, most).sum()
+    most = max(
+        float(np.quantile(np.abs(told), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise
+    )  # noise itself says less
+    explained = np.clip(told, 0.0, most).sum()
+    more = np.clip(left, 0.0, most).sum()
     return float(explained / max(explained + more, 1e-300))

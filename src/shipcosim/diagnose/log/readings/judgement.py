@@ -93,7 +93,10 @@ def judged(evidence: Evidence, changes: Sequence[LogMistake]) -> tuple[list[Judg
     likely = np.array([*(score for score, _ in scored), best - UNEXPLAINED_COST])
     shares = np.exp(likely - likely.max())
     shares = shares / shares.sum()
-    found = [Judged(c, float(p), rate) for c, p, (_, rate) in zip(tried, shares[:-1], scored, strict=True)]
+    found = [
+        Judged(c, float(p), rate)
+        for c, p, (_, rate) in zip(tried, shares[:-1], scored, strict=True)
+    ]
     return sorted(found, key=lambda one: -one.probability), float(shares[-1])
 
 
@@ -116,7 +119,9 @@ def _combinations(changes) -> Iterator[tuple[LogMistake, ...]]:
 
 def _best_forms(evidence):
     """What the likeliest forms say, whatever their factors."""
-    position = max((r.evidence for forms in evidence.position.values() for r in forms.values()), default=0.0)
+    position = max(
+        (r.evidence for forms in evidence.position.values() for r in forms.values()), default=0.0
+    )
     rate = max((r.evidence for r in evidence.rate.values()), default=0.0)
     usual = _usual(evidence.speed, 1.0, USUAL_SPEED) + _usual(evidence.step, 1.0, USUAL_STEP)
     return position + rate + usual
@@ -124,18 +129,28 @@ def _best_forms(evidence):
 
 def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     """Log of the probability of a combination, but for a constant, and the rate of the clock with its deviation."""
-    reading, cost = reading_of(combination), sum(change.cost for change in combination)
-    relation, rate = evidence.relation_of(reading), evidence.rate.get(reading.heading_unit)
+    reading = reading_of(combination)
+    cost = sum(change.cost for change in combination)
+    relation = evidence.relation_of(reading)
+    rate = evidence.rate.get(reading.heading_unit)
     if (evidence.position and relation is None) or (evidence.rate and rate is None):
         return -np.inf, (1.0, 0.0)
-    said = evidence.wind.likelihood(reading, off_angle(relation, reading) if relation is not None else 0.0)
+    said = evidence.wind.likelihood(
+        reading, off_angle(relation, reading) if relation is not None else 0.0
+    )
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
     off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
     if relation is not None:
-        said += relation.evidence + _angle(relation, reading) + _ahead(relation, reading, evidence.courses)
+        said += (
+            relation.evidence
+            + _angle(relation, reading)
+            + _ahead(relation, reading, evidence.courses)
+        )
     if rate is not None:
         said += _direction(rate, reading)
-    said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(evidence.step, reading.time, USUAL_STEP)
+    said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(
+        evidence.step, reading.time, USUAL_STEP
+    )
     factors, clock = _factors([one for one in off if one], slabs.get("time"))
     return said + factors - cost, (reading.time * math.exp(clock[0]), reading.time * clock[1])
 
@@ -152,7 +167,9 @@ def _angle(relation, reading):
     """Log-density of the angle of a factor that was found."""
     if "angle" in reading.free:
         return -math.log(2.0 * math.pi)
-    return _log_density(np.array([off_angle(relation, reading)]), relation.std[1], ANGLE_TOLERANCE)[0]
+    return _log_density(np.array([off_angle(relation, reading)]), relation.std[1], ANGLE_TOLERANCE)[
+        0
+    ]
 
 
 def _ahead(relation, reading, courses):
@@ -164,7 +181,11 @@ def _ahead(relation, reading, courses):
         return 0.0
     spread = math.hypot(DRIFT, math.sqrt(-2.0 * math.log(min(abs(course), 1.0))))
     shares = [
-        share * 2.0 * math.pi * math.exp(-0.5 * (off / spread) ** 2) / (spread * math.sqrt(2.0 * math.pi))
+        share
+        * 2.0
+        * math.pi
+        * math.exp(-0.5 * (off / spread) ** 2)
+        / (spread * math.sqrt(2.0 * math.pi))
         for share, off in ((GOES_AHEAD, cmath.phase(course)), (GOES_ASTERN, cmath.phase(-course)))
     ]
     return math.log(sum(shares) + 1.0 - GOES_AHEAD - GOES_ASTERN)
@@ -185,13 +206,23 @@ def _off_position(relation, reading, slabs):
     """How far the size of the factor is from what a reading predicts: (value, density of the rest)."""
     if relation is None:
         return None
-    return relation.factor.real - reading.factor.real, relation.std[0], SCALE_TOLERANCE, slabs.get("scale")
+    return (
+        relation.factor.real - reading.factor.real,
+        relation.std[0],
+        SCALE_TOLERANCE,
+        slabs.get("scale"),
+    )
 
 
 def _off_rate(rate, reading, slabs):
     if rate is None:
         return None
-    return rate.factor.real - math.log(abs(reading.rate_factor)), rate.std[0], RATE_TOLERANCE, slabs.get("rate")
+    return (
+        rate.factor.real - math.log(abs(reading.rate_factor)),
+        rate.std[0],
+        RATE_TOLERANCE,
+        slabs.get("rate"),
+    )
 
 
 def _factors(offs, slab):
@@ -200,7 +231,8 @@ def _factors(offs, slab):
         return sum(_one_factor(*off)[0] for off in offs), (0.0, 0.0)
     stds = np.array([np.hypot(std, tolerance[0]) for _, std, tolerance, _ in offs])
     weights = stds**-2 / np.sum(stds**-2)
-    centre, spread = float(weights @ [off[0] for off in offs]), float(np.sum(stds**-2) ** -0.5)
+    centre = float(weights @ [off[0] for off in offs])
+    spread = float(np.sum(stds**-2) ** -0.5)
     at = centre + 2.0 * max(stds) * GRID
     log = sum(_one_factor(value - at, std, tolerance, free) for value, std, tolerance, free in offs)
     log = log - 0.5 * (at / slab) ** 2 - math.log(slab * math.sqrt(2.0 * math.pi))
@@ -217,7 +249,8 @@ def _one_factor(value, std, tolerance, free):
 
 def _log_density(value, std, tolerance):
     """Of a deviation as measured, and as instruments differ: mostly by the first tolerance, a few by the second."""
-    near, far = math.hypot(std, tolerance[0]), math.hypot(std, tolerance[1])
+    near = math.hypot(std, tolerance[0])
+    far = math.hypot(std, tolerance[1])
     densities = [
         share * np.exp(-0.5 * (value / width) ** 2) / (width * math.sqrt(2.0 * math.pi))
         for share, width in ((1.0 - FAR_SHARE, near), (FAR_SHARE, far))

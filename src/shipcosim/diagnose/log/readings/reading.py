@@ -9,7 +9,13 @@ import numpy as np
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of, turned_grid
 from shipcosim.diagnose.log.readings.changes import CLOCK, LogMistake, changes
-from shipcosim.diagnose.log.readings.judgement import Evidence, Judged, judged, off_angle, reading_of
+from shipcosim.diagnose.log.readings.judgement import (
+    Evidence,
+    Judged,
+    judged,
+    off_angle,
+    reading_of,
+)
 from shipcosim.diagnose.log.readings.relations import position_relations, rate_relations
 from shipcosim.diagnose.log.readings.wind import wind_relations
 from shipcosim.diagnose.log.thresholds import (
@@ -48,7 +54,9 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
         return []  # what is usual alone says nothing
     readings, unexplained = judged(evidence, changes(stated))
     angle = _angle(readings[0], evidence) if "latitude" not in stated else None
-    return _findings(readings, unexplained, angle) if _holds_throughout(readings[0], evidence) else []
+    return (
+        _findings(readings, unexplained, angle) if _holds_throughout(readings[0], evidence) else []
+    )
 
 
 def explained(log: dict) -> float:
@@ -60,8 +68,12 @@ def explained(log: dict) -> float:
         As in `misread`.
     """
     evidence = evidence_of(log)
-    position = [relation.evidence for forms in evidence.position.values() for relation in forms.values()]
-    return max(position, default=0.0) + max((relation.evidence for relation in evidence.rate.values()), default=0.0)
+    position = [
+        relation.evidence for forms in evidence.position.values() for relation in forms.values()
+    ]
+    return max(position, default=0.0) + max(
+        (relation.evidence for relation in evidence.rate.values()), default=0.0
+    )
 
 
 def is_as_labelled(log: dict, stated: dict[str, str]) -> bool:
@@ -90,7 +102,9 @@ def evidence_of(log: dict) -> Evidence:
         return Evidence({}, {})
     headings = {unit: unit * log["heading"] for unit in (1.0, DEGREE, 1.0 / DEGREE)}
     rate = rate_relations(log["time"], headings, log["yaw_rate"]) if "yaw_rate" in log else {}
-    position, speed, courses = {}, None, {}
+    position = {}
+    speed = None
+    courses = {}
     if {"north", "east", "surge", "sway"} <= set(log):
         positions = {False: log["north"] + 1j * log["east"]}
         if _can_be_degrees(log):
@@ -98,12 +112,24 @@ def evidence_of(log: dict) -> Evidence:
             positions[True] = metres["north"] + 1j * metres["east"]
         position = position_relations(log, headings, positions)
         speeds = np.hypot(log["surge"], log["sway"])
-        speed = float(np.sqrt(np.mean(speeds[np.isfinite(speeds)] ** 2))) if np.isfinite(speeds).any() else None
-        courses = {unit: _courses(log["surge"] + 1j * log["sway"], values) for unit, values in headings.items()}
+        speed = (
+            float(np.sqrt(np.mean(speeds[np.isfinite(speeds)] ** 2)))
+            if np.isfinite(speeds).any()
+            else None
+        )
+        courses = {
+            unit: _courses(log["surge"] + 1j * log["sway"], values)
+            for unit, values in headings.items()
+        }
     units = {*rate, *(unit for unit, _ in position)}
     followed = {unit: heading for unit, heading in headings.items() if unit in units}
     return Evidence(
-        position, rate, wind_relations(log, followed), speed, float(np.median(np.diff(log["time"]))), courses
+        position,
+        rate,
+        wind_relations(log, followed),
+        speed,
+        float(np.median(np.diff(log["time"]))),
+        courses,
     )
 
 
@@ -111,7 +137,8 @@ def _courses(velocity, heading):
     """Mean direction of the velocity against the bow, as `Reading.course` takes it; fast rows count for more."""
     turn = np.exp(1j * np.radians(heading))
     velocity, turn = (one[np.isfinite(velocity) & np.isfinite(turn)] for one in (velocity, turn))
-    weights, energy = np.abs(velocity), max(float(np.sum(np.abs(velocity) ** 2)), 1e-300)
+    weights = np.abs(velocity)
+    energy = max(float(np.sum(np.abs(velocity) ** 2)), 1e-300)
     ways = {(False, False): 1.0, (True, False): np.conj(turn), (True, True): turn}
     return {way: complex(np.sum(weights * velocity * of) / energy) for way, of in ways.items()}
 
@@ -120,7 +147,11 @@ def _can_be_degrees(log):
     north, east = (log[role][np.isfinite(log[role])] for role in ("north", "east"))
     if not len(north) or not len(east):
         return False
-    return bool(np.abs(north).max() <= 90.0 and np.abs(east).max() <= 180.0 and max(np.ptp(north), np.ptp(east)) < 5.0)
+    return bool(
+        np.abs(north).max() <= 90.0
+        and np.abs(east).max() <= 180.0
+        and max(np.ptp(north), np.ptp(east)) < 5.0
+    )
 
 
 def _holds_throughout(best, evidence):
@@ -142,21 +173,31 @@ def _angle(best, evidence):
     return angle if abs(angle.estimate) > COMPASS_OFF else None
 
 
-def _findings(readings: list[Judged], unexplained: float, angle: ParameterEstimate | None) -> list[Finding]:
+def _findings(
+    readings: list[Judged], unexplained: float, angle: ParameterEstimate | None
+) -> list[Finding]:
     """Findings of the changes that are sure, and one of what is left open; `angle`: of a grid that can be put right."""
     readings = _with_known_rates(readings)
     shares: dict[str, float] = {}
     for one in readings:
         for said in {change.sentence for change in one.changes}:
             shares[said] = shares.get(said, 0.0) + one.probability
-    first = {change.sentence: change for one in reversed(readings) for change in one.changes}  # likeliest last
-    sure = [said for said, share in shares.items() if share > READING_SURE and (not first[said].or_else or angle)]
+    first = {
+        change.sentence: change for one in reversed(readings) for change in one.changes
+    }  # likeliest last
+    sure = [
+        said
+        for said, share in shares.items()
+        if share > READING_SURE and (not first[said].or_else or angle)
+    ]
     found = [_named(first[said], shares[said], readings, angle) for said in sure]
     rests: dict[tuple[LogMistake, ...], float] = {}
     rates: dict[tuple[LogMistake, ...], float] = {}
     for one in readings:
         if set(sure) <= {change.sentence for change in one.changes}:
-            rest = tuple(first[change.sentence] for change in one.changes if change.sentence not in sure)
+            rest = tuple(
+                first[change.sentence] for change in one.changes if change.sentence not in sure
+            )
             rests[rest] = rests.get(rest, 0.0) + one.probability
             rates.setdefault(rest, one.rate[0])
     if unexplained + rests.get((), 0.0) > LEFT_OPEN:
@@ -166,11 +207,16 @@ def _findings(readings: list[Judged], unexplained: float, angle: ParameterEstima
 
 def _with_known_rates(readings):
     """Readings in which a clock of any rate is one of a usual rate, where that explains as much."""
-    usual = {_beside_clock(one): one for one in reversed(readings) if _clock_of(one) not in (None, CLOCK)}
+    usual = {
+        _beside_clock(one): one for one in reversed(readings) if _clock_of(one) not in (None, CLOCK)
+    }
     found = []
     for one in readings:
         other = usual.get(_beside_clock(one)) if _clock_of(one) == CLOCK else None
-        if other is not None and abs(np.log(one.rate[0] / other.rate[0])) < 3.0 * one.rate[1] / one.rate[0]:
+        if (
+            other is not None
+            and abs(np.log(one.rate[0] / other.rate[0])) < 3.0 * one.rate[1] / one.rate[0]
+        ):
             one = replace(other, probability=one.probability)
         found.append(one)
     return sorted(found, key=lambda one: -one.probability)
@@ -190,7 +236,11 @@ def _named(change, probability, readings, angle):
     if change.or_else:
         both = "both have the other sign, or " if abs(angle.estimate) > 180.0 - COMPASS_OFF else ""
         said = f"{change.sentence}; it looks the same if {both}{' or '.join(change.or_else)}"
-        return replace(finding_of(turned_grid(angle.estimate), probability), parameters={"angle": angle}, note=said)
+        return replace(
+            finding_of(turned_grid(angle.estimate), probability),
+            parameters={"angle": angle},
+            note=said,
+        )
     if change.mislabel is not None:
         return finding_of(change.mislabel, probability)
     return replace(_clock(change, readings), probability=probability)
@@ -206,16 +256,31 @@ def _left_open(rests, rates):
     """One finding of several readings that explain a log alike: the likeliest, and the others beside it."""
     (first, share), *others = sorted(rests.items(), key=lambda entry: (not entry[0], -entry[1]))
     words = {rest: _words(rest, rates[rest]) for rest in rests}
-    likely = [rest for rest, p in others if p > UNLIKELY_READING] or [rest for rest, _ in others[:1]]
+    likely = [rest for rest, p in others if p > UNLIKELY_READING] or [
+        rest for rest, _ in others[:1]
+    ]
     beside = [said for change in first for said in change.or_else]
     beside += [words[rest] or NOTHING_ELSE for rest in likely if words[rest] != words[first]]
     channels = tuple(dict.fromkeys(role for change in first for role in change.channels))
     share = share / (1 + len(first[0].or_else))
     alternatives = tuple(dict.fromkeys(beside))[:MOST_ALTERNATIVES]
-    return Finding(first[0].cause, None, "data", share, {}, (), channels, note=words[first], alternatives=alternatives)
+    return Finding(
+        first[0].cause,
+        None,
+        "data",
+        share,
+        {},
+        (),
+        channels,
+        note=words[first],
+        alternatives=alternatives,
+    )
 
 
 def _words(rest, rate):
     """A reading in words, with the rate of a clock that can have any."""
-    said = (f"{c.sentence}, {rate:.3g} s in each logged second" if c.sentence == CLOCK else c.sentence for c in rest)
+    said = (
+        f"{c.sentence}, {rate:.3g} s in each logged second" if c.sentence == CLOCK else c.sentence
+        for c in rest
+    )
     return " and ".join(said)

@@ -12,7 +12,12 @@ import numpy as np
 
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.log.readings.fit import fitted
-from shipcosim.diagnose.log.thresholds import ALONGSIDE, FEWEST_INCREMENTS, LARGEST_TURN, TURNED_TOO_FAR
+from shipcosim.diagnose.log.thresholds import (
+    ALONGSIDE,
+    FEWEST_INCREMENTS,
+    LARGEST_TURN,
+    TURNED_TOO_FAR,
+)
 from shipcosim.diagnose.numerics import spline_integral
 
 __all__ = ["FORMS", "position_relations", "rate_relations"]
@@ -45,7 +50,9 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     dict of (heading, position) to dict of form to Relation
     """
     velocity = log["surge"] + 1j * log["sway"]
-    known = np.isfinite(velocity) & np.all([np.isfinite(v) for v in (*headings.values(), *positions.values())], axis=0)
+    known = np.isfinite(velocity) & np.all(
+        [np.isfinite(v) for v in (*headings.values(), *positions.values())], axis=0
+    )
     rows = np.flatnonzero(known)
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
@@ -55,7 +62,9 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         if not _can_be_followed(wrap_series(np.diff(values[rows]))):
             continue
         turn = np.exp(1j * np.radians(values[rows]))
-        ways = {form: _integral(time, change(velocity[rows], turn)) for form, change in FORMS.items()}
+        ways = {
+            form: _integral(time, change(velocity[rows], turn)) for form, change in FORMS.items()
+        }
         for position, seen in positions.items():
             pairs |= {(heading, position, form): (seen[rows], way) for form, way in ways.items()}
     found: dict = {}
@@ -78,14 +87,19 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
     -------
     dict of heading to Relation
     """
-    rows = np.flatnonzero(np.isfinite(rate) & np.all([np.isfinite(v) for v in headings.values()], axis=0))
+    rows = np.flatnonzero(
+        np.isfinite(rate) & np.all([np.isfinite(v) for v in headings.values()], axis=0)
+    )
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
-    told, pairs = _integral(time[rows], rate[rows]), {}
+    told = _integral(time[rows], rate[rows])
+    pairs = {}
     for name, heading in headings.items():
         change = wrap_series(np.diff(heading[rows]))
         if _can_be_followed(change):
-            beside = wrap_series(np.diff(heading[rows] - told))  # she can turn by more than half a turn between rows
+            beside = wrap_series(
+                np.diff(heading[rows] - told)
+            )  # she can turn by more than half a turn between rows
             if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
             pairs[name] = np.r_[0.0, np.cumsum(change)].astype(complex), told.astype(complex)

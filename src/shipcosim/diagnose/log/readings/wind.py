@@ -59,8 +59,11 @@ class WindRelations:
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """
-        mirrored, flipped = "heading" in reading.mirrored, "velocity" in reading.mirrored
-        told = complex(reading.velocity) * (cmath.exp(1j * angle) if "axes" in reading.free else 1.0)
+        mirrored = "heading" in reading.mirrored
+        flipped = "velocity" in reading.mirrored
+        told = complex(reading.velocity) * (
+            cmath.exp(1j * angle) if "axes" in reading.free else 1.0
+        )
         said = []
         for seen, cost in SEEN.items():
             key = (reading.heading_unit, mirrored, seen, (flipped, reading.earth))
@@ -69,7 +72,9 @@ class WindRelations:
             turned = reading.earth and seen != "north"
             factor = told * (complex(reading.heading).conjugate() if turned else 1.0)
             factor *= complex(reading.heading) if seen == "north" and not reading.earth else 1.0
-            said += [_at(self.fits[key], factor / unit) - cost - more for unit, more in UNITS.items()]
+            said += [
+                _at(self.fits[key], factor / unit) - cost - more for unit, more in UNITS.items()
+            ]
             said.append(_at(self.fits[key], 0.0) - cost - WIND_LABEL_COST)
         top = max(said)
         return max(top + math.log(sum(math.exp(one - top) for one in said)), -MOST_OF_WIND)
@@ -99,7 +104,9 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
     roles = ("wind_speed", "wind_from", "surge", "sway")
     if not set(roles) <= set(log):
         return WindRelations({})
-    rows = np.flatnonzero(np.all([np.isfinite(log[r]) for r in roles] + [np.isfinite(log["heading"])], axis=0))
+    rows = np.flatnonzero(
+        np.all([np.isfinite(log[r]) for r in roles] + [np.isfinite(log["heading"])], axis=0)
+    )
     rows = rows[:: max(1, math.ceil(len(rows) / MOST_FITTED))]
     if len(rows) < FEWEST_WIND_ROWS:
         return WindRelations({})

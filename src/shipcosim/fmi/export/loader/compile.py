@@ -15,9 +15,27 @@ SOURCES = {
     "linux64": ("fmu.c", "interpreter.c", "system_posix.c"),
     "win64": ("fmu.c", "interpreter.c", "system_windows.c"),
 }
-OPTIONS = ("-shared", "-O2", "-g0", "-s", "-std=c11", "-Wall", "-Wextra", "-Werror", "-fvisibility=hidden")
+OPTIONS = (
+    "-shared",
+    "-O2",
+    "-g0",
+    "-s",
+    "-std=c11",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-fvisibility=hidden",
+)
 OPTIONS_FOR = {
-    "linux64": ("-target", "x86_64-linux-gnu.2.17", "-fPIC", "-Wl,-z,nodelete", "-Wl,-z,now", "-ldl", "-lpthread"),
+    "linux64": (
+        "-target",
+        "x86_64-linux-gnu.2.17",
+        "-fPIC",
+        "-Wl,-z,nodelete",
+        "-Wl,-z,now",
+        "-ldl",
+        "-lpthread",
+    ),
     "win64": ("-target", "x86_64-windows-gnu", "-lpsapi"),
 }
 
@@ -46,9 +64,19 @@ def compile_loader(platform: str, out: Path) -> Path:
         The library.
     """
     target = out / f"{platform}{SUFFIXES[platform]}"
-    with tempfile.TemporaryDirectory() as folder:  # takes the import library that the linker leaves for Windows
+    with (
+        tempfile.TemporaryDirectory() as folder
+    ):  # takes the import library that the linker leaves for Windows
         library = Path(folder, target.name)
-        command = [sys.executable, "-m", "ziglang", "cc", *SOURCES[platform], *OPTIONS, *OPTIONS_FOR[platform]]
+        command = [
+            sys.executable,
+            "-m",
+            "ziglang",
+            "cc",
+            *SOURCES[platform],
+            *OPTIONS,
+            *OPTIONS_FOR[platform],
+        ]
         command += [f'-DSOURCES="{digest(platform)}"', "-o", str(library)]
         subprocess.run(command, cwd=FOLDER, check=True)
         target.write_bytes(library.read_bytes())
