@@ -89,7 +89,8 @@ def static_optimum(
     tau = np.asarray(tau, float)
     found = [_convex(tau, units, chosen, yaw_lever) for chosen in product(*choices)]
     cost = [one.power + (one.missed**2 / _slack(units, yaw_lever)).sum(-1) / 2.0 for one in found]
-    rows, best = np.arange(len(tau)), np.argmin(cost, axis=0)
+    rows = np.arange(len(tau))
+    best = np.argmin(cost, axis=0)
     return Optimum(*(np.stack(values)[best, rows] for values in zip(*found, strict=True)))
 
 
@@ -136,7 +137,8 @@ def _convex(tau, units, cones, yaw_lever):
 
 def _load(units, thrusts, angles):
     """Load of commands."""
-    X, Y = thrusts * np.cos(angles), thrusts * np.sin(angles)
+    X = thrusts * np.cos(angles)
+    Y = thrusts * np.sin(angles)
     x, y = np.array([[unit.x, unit.y] for unit in units]).T
     return np.stack([X.sum(-1), Y.sum(-1), (x * Y - y * X).sum(-1)], -1)
 
@@ -152,12 +154,15 @@ def _dual(prices, tau, units, cones, yaw_lever):
     """Value of the dual, its slope and negative curvature, and the thrust and angle that each unit takes."""
     slack = _slack(units, yaw_lever)
     value = (prices * tau).sum(-1) - 0.5 * (prices**2 * slack).sum(-1)
-    slope, curve = tau - prices * slack, np.zeros((len(tau), 3, 3)) + np.diag(slack)
-    thrusts, angles = [], []
+    slope = tau - prices * slack
+    curve = np.zeros((len(tau), 3, 3)) + np.diag(slack)
+    thrusts = []
+    angles = []
     for unit, cone in zip(units, cones, strict=True):
         effect = np.array([[1.0, 0.0], [0.0, 1.0], [-unit.y, unit.x]])
         gain, vector, f, angle, bend = _taken(unit, cone, prices @ effect)
-        value, slope = value - gain, slope - vector @ effect.T
+        value = value - gain
+        slope = slope - vector @ effect.T
         curve = curve + effect @ bend @ effect.T
         thrusts.append(f)
         angles.append(angle)
@@ -169,14 +174,16 @@ def _taken(unit, cone, g):
     middle, half = 0.5 * (cone[0] + cone[1]), min(0.5 * (cone[1] - cone[0]), np.pi)
     off = wrap_series(np.arctan2(g[:, 1], g[:, 0]) - middle, TURN)
     turned = np.clip(off, -half, half)
-    angle, size = middle + turned, np.hypot(g[:, 0], g[:, 1])
+    angle = middle + turned
+    size = np.hypot(g[:, 0], g[:, 1])
     along = size * np.cos(off - turned)
     turns = unit.azimuth_rate > 0.0
     along = np.maximum(along, 0.0) if turns else along
     price = _price(unit, along)
     f = (along / (1.5 * price)) ** 2
     most = np.where(along < 0.0, -min(unit.least, 0.0), unit.most)
-    free, f = f < most, np.sign(along) * np.minimum(f, most)
+    free = f < most
+    f = np.sign(along) * np.minimum(f, most)
     gain = along * f - price * np.abs(f) ** 1.5
     u, t = (
         np.stack([np.cos(angle), np.sin(angle)], -1),

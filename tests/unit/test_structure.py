@@ -6,7 +6,9 @@ from statistics import median
 
 import pytest
 
-MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 45, 250  # lines, docstring not counted
+# Lines without the docstring. A line is 100 characters wide and holds one statement: the package has 1.24 times the
+# lines that it had at 120 characters and with packed assignments, where the limits were 45 and 250.
+MEDIAN_FUNCTION, LARGEST_FUNCTION, LARGEST_CLASS = (5, 14), 56, 310
 MOST_FILES = 20  # in a folder, of Python
 NAMES_A_SHIP = {
     "calls/arguments.py",

@@ -63,14 +63,16 @@ def stretches(sailed: Sailed, ship: Ship, first: int = 10, every: int = 8) -> St
     air = np.stack(air_velocity(everything), axis=-1)
     thrusters = np.stack(everything.thrusters, axis=-1)
     places = np.stack(everything.ship[:3], axis=-1)
-    past, parts = paper_iv.begin(mapped(lambda array: array[0], everything)), []
+    past = paper_iv.begin(mapped(lambda array: array[0], everything))
+    parts = []
     for row in range(1, sailed.lost - LENGTH + 1):
         now = mapped(lambda array, row=row: array[row], everything)
         past = paper_iv.step(past, now, hull=ship.hull, wind=ship.wind)
         if row >= first and (row - first) % every == 0:
             psi, *nu = (sum(one) / paper_iv.WINDOW for one in zip(*past.states, strict=True))
             start = np.stack([now.ship.x, now.ship.y, psi, *nu, *past.residual], axis=-1)
-            seconds, ends = slice(row, row + LENGTH), [row + int(horizon) for horizon in HORIZONS]
+            seconds = slice(row, row + LENGTH)
+            ends = [row + int(horizon) for horizon in HORIZONS]
             parts.append((start, air[seconds], thrusters[seconds], places[ends]))
     starts, *series = zip(*parts, strict=True)
     joined = [np.concatenate(starts), *(np.concatenate(one, axis=1) for one in series)]
@@ -99,7 +101,8 @@ def ahead(
         Place and heading. [m, m, rad]
     """
     mean, std, out_mean, out_std = (torch.from_numpy(scales[name]) for name in SCALE_NAMES)
-    shape, found = (len(weights[0]), len(data.first)), []
+    shape = (len(weights[0]), len(data.first))
+    found = []
     x, y, psi, *nu = (one.expand(shape) for one in data.first[:, :6].unbind(-1))
     residual = [one.expand(shape) for one in data.first[:, 6:].unbind(-1)]
     for second in range(LENGTH):
@@ -177,7 +180,8 @@ def fit(
     """
     with repeatable(recipe.seed):
         weights = first_weights((9, recipe.width, recipe.width, 3), recipe.members)
-    optimiser, history = torch.optim.Adam(weights, lr=recipe.learning_rate), []
+    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    history = []
     for step in range(steps):
         optimiser.zero_grad()
         value = loss(weights, scales, data, ship)

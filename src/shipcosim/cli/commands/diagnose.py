@@ -57,13 +57,8 @@ def diagnose(
     from shipcosim.diagnose.pipeline import STEPS
 
     folder = out or default_folder(data[0])
-    asked = {
-        "channels": channels,
-        "causes": effects,
-        "reference": reference,
-        "out": folder,
-        "force": force,
-    }
+    asked = {"channels": channels, "causes": effects, "reference": reference}
+    asked |= {"out": folder, "force": force}
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
             joint = diagnose_logs(data, system, progress=progress, **asked)

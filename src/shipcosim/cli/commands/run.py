@@ -90,13 +90,9 @@ def run(
             raise ShipcosimError(
                 Problem(scenario, found, "Name one scenario, or leave out --store and --from.")
             )
-        folder = out or Path("results") / files[0].resolve().parent.name
-        _run_all(
-            [prepare_run(file, **asked) for file in files],
-            folder,
-            files[0].resolve().parent.name,
-            force,
-        )
+        name = files[0].resolve().parent.name
+        prepared = [prepare_run(file, **asked) for file in files]
+        _run_all(prepared, out or Path("results") / name, name, force)
         return
     prepared = prepare_run(scenario, store=store, **asked)
     exit_if_failed(run_and_print(prepared, out or Path("results") / prepared.scenario.name, force))

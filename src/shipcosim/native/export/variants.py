@@ -115,6 +115,53 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
         else set()
     )
     recording = ExportRecording([*example, 0.0], settled)
+    root, clone, flat = _recorded_start(cls, fixed, recording)
+
+    # Every number of the state has a place: that of the FMU's variable of its name, or one of its own behind them.
+    references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
+    state = iter(range(n + STATE, n + STATE + len(flat.leaves)))
+    places = [
+        references[leaf.path[0]]
+        if len(leaf.path) == 1 and leaf.path[0] in references
+        else next(state)
+        for leaf in flat.leaves
+    ]
+
+    # Choices are numbers by which the code takes one way or another, and which no step changes.
+    numbers = _numbers(flat, recording)
+    pairs = enumerate(zip(flat.leaves, places, strict=True))
+    choices = {
+        number for number, (leaf, place) in pairs if leaf.path[0] in unchanging or place in settled
+    }
+    shape = Shape(
+        _widest(flat, root),
+        numbers,
+        constant,
+        unchanging,
+        frozenset(choices) if decided else frozenset(),
+    )
+
+    # The step is recorded on the state that the start left.
+    step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
+    for end in ends(root):
+        if isinstance(end.result, Flat):
+            end.result = _written(end.result, flat, places)
+    size = max([n + STATE, *(place + 1 for place in places)])
+    names = [text_of(leaf.path) for leaf in flat.leaves]
+    return Variant(
+        fixed,
+        Step(recording, root, frozenset()),
+        step,
+        [*places, n + TIME, n + STEP_SIZE],
+        names,
+        size,
+    )
+
+
+def _recorded_start(cls, fixed, recording):
+    """The tree of ways that the start can go, and instance and flat state of the first that gets to its end."""
+    constant = frozenset(fixed)
+    unchanging = frozenset(group.name for group in cls.groups)
     made = []
 
     def run():
@@ -133,41 +180,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
     root = recording.record(run)
     if not made:
         raise next(end.result for end in ends(root))
-    clone, flat = made[0]
-    references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
-    state = iter(range(n + STATE, n + STATE + len(flat.leaves)))
-    places = [
-        references[leaf.path[0]]
-        if len(leaf.path) == 1 and leaf.path[0] in references
-        else next(state)
-        for leaf in flat.leaves
-    ]
-    numbers = _numbers(flat, recording)
-    pairs = enumerate(zip(flat.leaves, places, strict=True))
-    choices = {
-        number for number, (leaf, place) in pairs if leaf.path[0] in unchanging or place in settled
-    }
-    shape = Shape(
-        _widest(flat, root),
-        numbers,
-        constant,
-        unchanging,
-        frozenset(choices) if decided else frozenset(),
-    )
-    step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
-    for end in ends(root):
-        if isinstance(end.result, Flat):
-            end.result = _written(end.result, flat, places)
-    size = max([n + STATE, *(place + 1 for place in places)])
-    names = [text_of(leaf.path) for leaf in flat.leaves]
-    return Variant(
-        fixed,
-        Step(recording, root, frozenset()),
-        step,
-        [*places, n + TIME, n + STEP_SIZE],
-        names,
-        size,
-    )
+    return root, *made[0]
 
 
 def _put_in_order(clone):

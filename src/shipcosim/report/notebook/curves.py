@@ -167,18 +167,7 @@ def _draw(
         _LEFT,
         top + 30.0,
     )
-    for at in ticks(low, high, most=5):
-        sheet.draw("line", x1=_LEFT, x2=WIDTH - _RIGHT, y1=down(at), y2=down(at), stroke=GRID)
-        sheet.write(tick_text(at), _LEFT - 6.0, down(at) + 4.0, text_anchor="end")
-    for at in ticks(*span, most=10):
-        sheet.draw(
-            "line",
-            x1=_across(at, span),
-            x2=_across(at, span),
-            y1=bottom - _PLOT,
-            y2=bottom,
-            stroke=GRID,
-        )
+    _draw_grid(sheet, (low, high), down, span, bottom)
     for at in events:
         x = _across(at, span)
         sheet.draw(
@@ -197,6 +186,23 @@ def _draw(
             down(np.asarray(curve.values, float)),
             COLOURS.get(curve.colour, curve.colour),
             curve.dash,
+        )
+
+
+def _draw_grid(sheet, limits, down, span, bottom):
+    """Lines and numbers at round values and times."""
+    low, high = limits
+    for at in ticks(low, high, most=5):
+        sheet.draw("line", x1=_LEFT, x2=WIDTH - _RIGHT, y1=down(at), y2=down(at), stroke=GRID)
+        sheet.write(tick_text(at), _LEFT - 6.0, down(at) + 4.0, text_anchor="end")
+    for at in ticks(*span, most=10):
+        sheet.draw(
+            "line",
+            x1=_across(at, span),
+            x2=_across(at, span),
+            y1=bottom - _PLOT,
+            y2=bottom,
+            stroke=GRID,
         )
 
 
