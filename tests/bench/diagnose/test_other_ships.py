@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from diagnose import ferry, usv
 from diagnose.test_other_ships import along, short_ferry
-from shipcosim.diagnose.inference.null_distribution import healthy_records
 
+from shipcosim.diagnose.explanation.null_distribution import healthy_records
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.pipeline import find_causes
