@@ -1,0 +1,45 @@
+"""Every option of a command is an argument of its call, by its name or by the one listed here."""
+
+import importlib
+import inspect
+
+import pytest
+
+import shipcosim as sc
+from shipcosim.options import RunKeywords
+
+COMMANDS = (
+    "run",
+    "simulate",
+    "sweep",
+    "compare",
+    "check",
+    "diagnose",
+    "replay",
+    "sea_trials",
+    "calibrate",
+    "capability",
+)
+OTHER_NAMES = {
+    "settings": "set",
+    "effects": "causes",
+    "failure": "failures",
+    "ssp": "system",
+    "data": "log",
+}
+OF_THE_TERMINAL = {"debug", "as_json", "number", "serve", "port"}
+"""How a command prints, and what it does beside its call: `StudyResult.run(number)` is another call."""
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_of_a_command_is_an_argument_of_its_call(name):
+    command = getattr(importlib.import_module(f"shipcosim.cli.commands.{name}"), name)
+    call = getattr(sc, name)
+    taken = set(inspect.signature(getattr(call, "__wrapped__", call)).parameters)
+    if "options" in taken:
+        taken |= set(RunKeywords.__annotations__)
+    # `--scenario` of `simulate` is a scenario of OSP, which the call takes as its scenario.
+    names = {"events": "scenario"} if name == "simulate" else {}
+    options = set(inspect.signature(command).parameters) - OF_THE_TERMINAL
+    asked = {(OTHER_NAMES | names).get(option, option) for option in options}
+    assert asked <= taken, f"{name}: the call lacks {asked - taken}"
