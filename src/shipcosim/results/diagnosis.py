@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.results.shown import HtmlPage, Picture, Result
+from shipcosim.results.shown import HtmlPage, Picture, SavedResult
 from shipcosim.series import write_json
-from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     from shipcosim.report.notebook.card import Card
@@ -22,8 +20,8 @@ if TYPE_CHECKING:
 __all__ = ["DiagnosisOfLog", "DiagnosisOfLogs"]
 
 
-class _Saved(Result):
-    """A result that can be written as the command writes it, but for the extended system."""
+class _DiagnosisResult(SavedResult):
+    """A diagnosis that can be written as the command writes it; the extended system is in `extension`."""
 
     as_json: Callable[[], dict[str, Any]]
 
@@ -31,33 +29,14 @@ class _Saved(Result):
     def page(self) -> HtmlPage:
         """Its page."""
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write diagnosis.json and report.html; returns the folder. The extended system is in `extension`.
-
-        Parameters
-        ----------
-        folder : path
-            Made if needed.
-        force : bool
-            Replace files of these names there, instead of keeping them in a numbered folder beside it.
-
-        Raises
-        ------
-        ShipcosimError
-            If they cannot be written.
-        """
-        with staged(Path(folder), force=force) as stage:
-            self.write(stage)
-        return Path(folder)
-
     def write(self, stage: Path) -> None:
-        """Write the files of `save` into a folder that is there."""
+        """Write diagnosis.json and report.html into a folder that is there."""
         write_json(self.as_json(), stage / "diagnosis.json")
         self.page().save(stage / "report.html")
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class DiagnosisOfLog(_Saved, Diagnosis):
+class DiagnosisOfLog(_DiagnosisResult, Diagnosis):
     """What `shipcosim.diagnose` gives back of one log: a `Diagnosis` with a card, its page and its track.
 
     To start with: ``.verdict``, ``.findings``, ``.gain``, ``.extended`` (the system with the causes in it, which
@@ -98,7 +77,7 @@ class DiagnosisOfLog(_Saved, Diagnosis):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class DiagnosisOfLogs(_Saved, JointDiagnosis):
+class DiagnosisOfLogs(_DiagnosisResult, JointDiagnosis):
     """What `shipcosim.diagnose` gives back of several logs: a `JointDiagnosis` with a card and its page."""
 
     def page(self) -> HtmlPage:

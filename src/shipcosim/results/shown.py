@@ -13,13 +13,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.series import write_file
+from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     import xarray
 
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["HtmlPage", "LikeTable", "Picture", "Result", "page_of", "parts_of"]
+__all__ = ["HtmlPage", "LikeTable", "Picture", "Result", "SavedResult", "page_of", "parts_of"]
 
 HEIGHT = 820  # px, of a page within a notebook
 
@@ -119,6 +120,33 @@ class Result(ABC):
         from shipcosim.report.notebook.card import card_html
 
         return card_html(self._card())
+
+
+class SavedResult(Result):
+    """A result whose files can be written, as its command writes them."""
+
+    @abstractmethod
+    def write(self, stage: Path) -> None:
+        """Write the files of `save` into a folder that is there."""
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Write the files that the command of the same name leaves; returns the folder.
+
+        Parameters
+        ----------
+        folder : path
+            Made if needed.
+        force : bool
+            Replace files of these names there, instead of keeping them in a numbered folder beside it.
+
+        Raises
+        ------
+        ShipcosimError
+            If they cannot be written.
+        """
+        with staged(Path(folder), force=force) as stage:
+            self.write(stage)
+        return Path(folder)
 
 
 class LikeTable:

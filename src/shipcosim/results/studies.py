@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import math
-import os
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,9 +14,8 @@ from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.errors import Problem
-from shipcosim.results.shown import HtmlPage, Picture, Result, page_of
+from shipcosim.results.shown import HtmlPage, Picture, Result, SavedResult, page_of
 from shipcosim.series import write_file, write_json, write_table
-from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     import pandas
@@ -63,7 +61,7 @@ class EngineComparison(Result, Comparison):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Replay(Result, LogReplay):
+class Replay(SavedResult, LogReplay):
     """What `shipcosim.replay` gives back: a log, and predictions of it. ``.tracks`` has the numbers."""
 
     name: str = "log"
@@ -97,28 +95,14 @@ class Replay(Result, LogReplay):
         return replay_card(self, self.name, self.track().svg)
 
     def write(self, stage: Path) -> None:
-        """Write the files of `save` into a folder that is there."""
+        """Write report.html, errors.csv and replay.nc into a folder that is there."""
         self.to_pandas().reset_index().to_csv(stage / "errors.csv", index=False)
         series_of(self.tracks).to_netcdf(stage / "replay.nc", engine="h5netcdf")
         self.page().save(stage / "report.html")
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write report.html, errors.csv and replay.nc; returns the folder.
-
-        Parameters
-        ----------
-        folder : path
-            Made if needed.
-        force : bool
-            Replace files of these names there, instead of keeping them in a numbered folder beside it.
-        """
-        with staged(Path(folder), force=force) as stage:
-            self.write(stage)
-        return Path(folder)
-
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Calibration(Result, CalibratedShip):
+class Calibration(SavedResult, CalibratedShip):
     """What `shipcosim.calibrate` gives back. ``.reference`` is what `shipcosim.diagnose` takes."""
 
     def page(self) -> HtmlPage:
@@ -128,20 +112,6 @@ class Calibration(Result, CalibratedShip):
         return page_of(
             f"Calibration of {self.reference.system}", lambda path: write_calibration(self, path)
         )
-
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write report.html; ``calibrate(..., out=folder)`` leaves calibrated.ssv and reference.json beside it.
-
-        Parameters
-        ----------
-        folder : path
-            Made if needed.
-        force : bool
-            Replace files of these names there, instead of keeping them in a numbered folder beside it.
-        """
-        with staged(Path(folder), force=force) as stage:
-            self.write(stage)
-        return Path(folder)
 
     def write(self, stage: Path) -> None:
         """Write the page into a folder that is there."""
@@ -154,7 +124,7 @@ class Calibration(Result, CalibratedShip):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class CapabilityOfShip(Result, Capability):
+class CapabilityOfShip(SavedResult, Capability):
     """What `shipcosim.capability` gives back. To start with: ``.notation``, ``.elements()``, ``.numbers()``."""
 
     @property
@@ -185,21 +155,11 @@ class CapabilityOfShip(Result, Capability):
 
         return pandas.read_csv(io.StringIO(numbers_table(self)), index_col=0)
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
-        """Write report.html, capability.csv and capability.nc, as `shipcosim capability` does; returns the folder.
-
-        Parameters
-        ----------
-        folder : path
-            Made if needed.
-        force : bool
-            Replace files of these names there, instead of keeping them in a numbered folder beside it.
-        """
-        with staged(Path(folder), force=force) as stage:
-            write_file(stage / "capability.csv", numbers_table(self).encode())
-            write_table(self.table, stage / "capability.nc")
-            self.page().save(stage / "report.html")
-        return Path(folder)
+    def write(self, stage: Path) -> None:
+        """Write report.html, capability.csv and capability.nc into a folder that is there."""
+        write_file(stage / "capability.csv", numbers_table(self).encode())
+        write_table(self.table, stage / "capability.nc")
+        self.page().save(stage / "report.html")
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import capability_card
@@ -208,7 +168,7 @@ class CapabilityOfShip(Result, Capability):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class SeaTrials(Result, SeaTrialStudy):
+class SeaTrials(SavedResult, SeaTrialStudy):
     """What `shipcosim.sea_trials` gives back. To start with: ``.verdict``, ``.findings``, ``.as_json()``."""
 
     name: str = "log"
