@@ -15,8 +15,7 @@ from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.ship import inputs
-from shipcosim.diagnose.ship import model as plant_module
+from shipcosim.diagnose.ship import inputs, ship_of_system
 from shipcosim.diagnose.ship.dynamics import loads
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
@@ -174,9 +173,9 @@ def test_a_law_is_kept_for_a_part_of_its_log_and_made_anew_for_other_drivers():
 def strange_azimuths(monkeypatch):
     """Our azimuth thrusters are taken for somebody else's, once the logs of our ship are made."""
     twin.model(), twin.logs()
-    known = plant_module._holds
+    known = ship_of_system._holds
     unmodelled = lambda c, kind: "azimuth_in" not in c.fmu.variables and known(c, kind)  # noqa: E731
-    monkeypatch.setattr(plant_module, "_holds", unmodelled)
+    monkeypatch.setattr(ship_of_system, "_holds", unmodelled)
 
 
 def test_our_azimuth_as_a_black_box_has_the_loads_of_the_array_form(strange_azimuths):
