@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -101,14 +100,15 @@ def _is_ship(path: Path) -> bool:
 def kind_of_toml(path: Path) -> str:
     """What a .toml describes, by its keys: ``"ship"``, ``"study"``, ``"cause"``, ``"channels"`` or ``"scenario"``."""
     from shipcosim.diagnose.log.roles import role_of
+    from shipcosim.scenario import toml_of
 
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (OSError, ValueError):
         return "scenario"  # its reader says what is wrong with the file
     try:
-        keys = set(tomllib.loads(text))
-    except (ValueError, RecursionError):
+        keys = set(toml_of(text))
+    except ValueError:
         keys = _top_keys(text)  # faulty TOML: the reader of its kind says where
     for kind, own in (
         ("ship", OF_SHIP),
@@ -123,9 +123,20 @@ def kind_of_toml(path: Path) -> str:
 
 def _top_keys(text: str) -> set[str]:
     """Keys of the outermost table of a text that may be no TOML: those before the first table, and the tables."""
-    tables = re.findall(r"^\s*\[{1,2}\s*\"?(\w+)", text, re.MULTILINE)
-    head = re.split(r"^\s*\[", text, maxsplit=1, flags=re.MULTILINE)[0]
-    return {*tables, *re.findall(r"^\s*(\w+)\s*=", head, re.MULTILINE)}
+    keys = set()
+    in_table = False
+    for line in text.splitlines():
+        name = _NAME.match(line[:LONGEST_NAME])
+        if name is None:
+            continue
+        in_table = in_table or bool(name["table"])
+        if name["table"] or not in_table:
+            keys.add(name["key"])
+    return keys
+
+
+_NAME = re.compile(r"\s{0,8}(?P<table>\[{0,2})\s{0,8}\"?(?P<key>\w+)")
+LONGEST_NAME = 100  # characters of a line in which its key is looked for
 
 
 def check_cause_file(path: Path) -> list[Problem]:

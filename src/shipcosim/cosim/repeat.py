@@ -82,7 +82,9 @@ def repeat(
         engine=engine, inputs=inputs, order=order, start_time=start_time, until=until
     )
     again = run(with_values(system, starts, "repeat"), scenario, options)
-    return again.assign_attrs(scenario=facts["scenario"])
+    # What the run was called, changed and did not reach is no part of the scenario that is made here.
+    about_run = ("scenario", "changed", "not_reached", "remarks")
+    return again.assign_attrs({name: facts[name] for name in about_run if name in facts})
 
 
 def _in(folders, file):

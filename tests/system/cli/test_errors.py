@@ -534,10 +534,6 @@ def test_files_of_windows_editors_are_read(call, gunnerus):
             ["Expected 2 columns, got 3", "Columns are separated by commas"],
         ),
         (
-            "time [s];tunnel_rpm [rpm]\n0;1,5\n1;1,5\n",
-            ["Columns are separated by commas, numbers have a decimal point"],
-        ),
-        (
             LEVELS + "0,full\n1,full\n",
             ["column 'tunnel_rpm':", "holds texts, not numbers, as 'full'."],
         ),

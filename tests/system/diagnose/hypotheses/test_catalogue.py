@@ -249,6 +249,9 @@ def test_everything_wrong_in_a_folder_is_said_with_file_and_field(tmp_path):
     with pytest.raises(ShipcosimError) as caught:
         read_catalogue(tmp_path)
     said = {problem.where.rpartition("/")[2]: str(problem) for problem in caught.value.problems}
-    assert set(said) == {"one.toml", "two.toml", "three.toml"}
-    assert "parameters.coefficient.typical" in said["one.toml"] and "foreach" in said["two.toml"]
+    assert set(said) == {
+        "one.toml, parameters.coefficient.typical",
+        "two.toml, foreach",
+        "three.toml",
+    }
     assert all("add-a-cause.md" in text for text in said.values())

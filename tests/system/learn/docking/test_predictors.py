@@ -203,7 +203,7 @@ def fmu_of(root, variant):
 def test_fmu_says_what_is_said_over_whole_records(root, variant, replayed):
     fmu, given = fmu_of(root, variant), record(1)
     weights = read_arrays(
-        root / WEIGHTS / ("paper-iii.npz" if variant == "paper-iii" else "distance_ensemble.npz")
+        root / WEIGHTS / ("paper-iii.npz" if variant == "paper-iii" else "ours.npz")
     )
     says = {
         "kinetic": lambda: predictions.kinetic(replayed),
