@@ -119,8 +119,7 @@ def _remedy(loop: AlgebraicLoop) -> str:
 
 
 def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) -> Iterator[Edge]:
-    """Edges from inputs to outputs of a component; an output without declared dependencies
-    follows all."""
+    """Edges from inputs to outputs; an output without declared dependencies follows all."""
     inputs = {target for _, target in links if target[0] == name}
     # One node for all inputs keeps the graph small: n + m edges instead of n × m.
     knot = name, None
@@ -189,8 +188,7 @@ def _graph(edges: Iterable[tuple]) -> dict:
 
 
 def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
-    """Strongly connected parts with at least one inner edge: Kosaraju's algorithm without
-    recursion."""
+    """Strongly connected parts with an inner edge: Kosaraju's algorithm, iterative."""
     done = set()
     order = []
     # First pass: order of completion of a depth-first search.

@@ -72,8 +72,7 @@ class OuterSignals:
         ]
 
     def _derived(self, ends: list[tuple[Variable, Connection]]) -> Value | None:
-        """Start of an input without a start value: that of the variables behind it, if they
-        agree."""
+        """Start of an input without one: that of the variables behind it, if they agree."""
         starts = set()
         for _, connection in ends:
             name, variable = connection.target

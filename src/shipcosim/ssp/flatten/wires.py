@@ -27,8 +27,7 @@ FEEDS = {
 
 
 class End(NamedTuple):
-    """One end of a connection: element (None: the system), connector, and the port that it
-    means."""
+    """One end of a connection: element (None: the system), connector, and its port."""
 
     element: str | None
     name: str
@@ -38,8 +37,7 @@ class End(NamedTuple):
         return signal(self.element, self.name)
 
     def gives(self, kind: str) -> bool:
-        """True if a connector of this kind gives a value: an element's output or the
-        system's input."""
+        """True if this kind gives a value: an element's output or the system's input."""
         return (kind in SOURCES_OUTSIDE) == (self.element is not None)
 
 
