@@ -62,16 +62,16 @@ class Capability:
     used: Mapping[str, NDArray]
 
     def numbers(self, method: str = LEVEL_1) -> NDArray:
-        """DP capability numbers, (cases, directions): the last condition before one is not
-        balanced."""
+        """DP capability numbers, (cases, directions): the condition before the first
+        unbalanced."""
         # A condition counts only if all lower ones hold too: the product turns 0 at the
         # first that fails.
         holds = np.cumprod(self.used[method] <= BALANCED, axis=1)
         return holds.sum(axis=1)
 
     def worst(self, method: str = LEVEL_1, *, most_lost: int | None = None) -> NDArray:
-        """The lowest number after any failure, (directions,); `most_lost` limits the
-        thrusters lost."""
+        """Lowest number after any failure, (directions,); `most_lost` limits the lost
+        thrusters."""
         lost = [len(case.failed) for case in self.cases]
         # The intact case loses none and does not count here.
         counts = [0 < number <= (most_lost or number) for number in lost]
@@ -103,8 +103,7 @@ def notation(capability: Capability) -> str:
 
 
 def numbers_table(capability: Capability) -> str:
-    """DP capability numbers as CSV: a row per direction, a column per case; then the
-    simulator's."""
+    """DP capability numbers as CSV: a row per direction, a column per case and method."""
     written = io.StringIO()
     rows = csv.writer(written, lineterminator="\n")
     columns = {
@@ -131,8 +130,7 @@ def _named(capability: Capability, method: str) -> list[tuple[str, NDArray]]:
 
 
 def dataset(capability: Capability) -> xarray.Dataset:
-    """Numbers and shares of thrust by basis (`LEVEL_1`, `SIMULATOR`), case, condition,
-    direction."""
+    """Numbers and shares of thrust by basis (method), case, condition and direction."""
     # Stack both methods along one axis, so that a plot can compare them.
     import xarray
 
