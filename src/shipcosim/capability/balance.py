@@ -53,8 +53,8 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
     # Balance: thrust + s · load = 0. The ship holds the load if s can reach 1.
     loads = np.asarray(loads, float)
     best = np.zeros(len(loads))
-    # Newton and newton metres differ in size; scaled alike they suit the tolerance of the
-    # linear programme.
+    # Newton and newton metres differ in size; scaled to one size they suit the tolerance of
+    # the linear programme.
     scale = _scale(actuators)
     if not len(loads) or scale is None:
         return best
@@ -81,6 +81,6 @@ def _scale(actuators: Sequence[Actuator]) -> NDArray | None:
 
 def _columns(actuator: Actuator, corners: NDArray) -> NDArray:
     """Forces and moment of the corners, (k, 3)."""
-    # N = x Y − y X, about the ship's origin.
+    # N = x Y - y X, about the ship's origin.
     moment = actuator.x * corners[:, 1] - actuator.y * corners[:, 0]
     return np.column_stack([corners, moment])

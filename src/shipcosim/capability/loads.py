@@ -64,17 +64,17 @@ def wind(hull: Hull, speed: float, wind_from: NDArray) -> NDArray:
     # The side force acts ahead of the side area's centre in head wind, behind it in following
     # wind: the moment follows from this lever.
     lever = hull.wind_centre_x + 0.3 * _ahead(wind_from) * hull.length
-    # X = −0.7 q A_front cos, Y = 0.9 q A_side sin (to port in the standard's axes).
+    # X = -0.7 q A_front cos, Y = 0.9 q A_side sin (to port in the standard's axes).
     across = q * hull.wind_area_side * 0.9 * np.sin(wind_from)
     return _load(hull, -0.7 * q * hull.wind_area_front * np.cos(wind_from), across, lever)
 
 
 def current(hull: Hull, speed: float, current_from: NDArray) -> NDArray:
     """Load of the current. Parameters and returns as `wind`."""
-    # As the wind: q with the density of water, and the lever limited to −0.2 L … 0.25 L.
+    # As the wind: q with the density of water, and the lever limited to -0.2 L … 0.25 L.
     q = 0.5 * WATER_DENSITY * speed**2
     lever = hull.current_centre_x + np.clip(0.4 * _ahead(current_from), -0.2, 0.25) * hull.length
-    # X = −0.07 q B T cos (a slender hull), Y = 0.6 q A_side sin.
+    # X = -0.07 q B T cos (a slender hull), Y = 0.6 q A_side sin.
     across = q * hull.current_area_side * 0.6 * np.sin(current_from)
     return _load(
         hull, -0.07 * q * hull.breadth * hull.draught * np.cos(current_from), across, lever
@@ -107,7 +107,7 @@ def waves(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
     bow = 0.8 * hull.bow_angle**0.45
     stern = 0.7 * np.clip(hull.waterplane_aft, 0.85, 1.15) ** 2
     shape = bow + turned / np.pi * (stern - bow)
-    # Along-ship factor of the direction: −1 about head seas, +1 about following seas.
+    # Along-ship factor of the direction: -1 about head seas, +1 about following seas.
     course = 0.05 + 0.95 * np.arctan(1.45 * (turned - 1.75))
     # Waves much longer than the ship lift her without drift: the factor depends on period
     # over ship size.

@@ -82,7 +82,7 @@ class Measure:
         if len(rows) == 0:
             return np.nan
         values = values_of(table, self.expect[0], rows, self.units.__getitem__)
-        # One signal by itself, or the distance √Σ(x − x₀)² of several from a point.
+        # One signal by itself, or the distance √Σ(x - x₀)² of several from a point.
         single: Any = (
             values[:, 0] if self.expect[0].near is None else np.linalg.norm(values, axis=1)
         )

@@ -239,6 +239,6 @@ def _interpolated(clock, values, times, turn):
     # Angles go the shorter way round: wrap each rise to half a turn either way.
     if turn is not None:
         rise = (rise + 0.5 * turn) % turn - 0.5 * turn
-    # Linear: x = x₀ + s (x₁ − x₀), s within 0 and 1.
+    # Linear: x = x₀ + s (x₁ - x₀), s within 0 and 1.
     share = np.clip((times - clock[row]) / np.diff(clock)[row], 0.0, 1.0)
     return values[row] + share * rise[row]

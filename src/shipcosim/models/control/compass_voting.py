@@ -1,4 +1,4 @@
-"""Which of two compasses is believed, and the heading that they give together.
+"""Vote on two compasses: which one is believed, and their common heading.
 
 Two compasses that disagree are told apart by the rate gyro: the one that turned otherwise than the gyro over the last
 minute is at fault. Where no compass is believed the heading is the observer's, carried by the gyro.
@@ -99,7 +99,7 @@ class CompassVote(NamedTuple):
 
 
 def start(headings: tuple[Heading, Heading]) -> CompassVote:
-    """Vote at the start: the mean of what is valid.
+    """State of the vote at the start: the mean of the valid compasses.
 
     Parameters
     ----------
@@ -157,16 +157,24 @@ def step(
     p = parameters
     (first, second) = headings
     (one, two) = state.headings
+    # First-order filters in discrete time: share kept over dt for a time constant T is
+    # exp(-dt/T).
     keep = exp(-dt / p.compass_memory)
     gain = 1.0 - exp(-dt / p.compass_filter)
+    # Deviation from the observer and movement since the last message, both along the shorter
+    # arc.
     off_one = wrap(first.psi - predicted)
     off_two = wrap(second.psi - predicted)
     moved_one = wrap(first.psi - one.psi)
     moved_two = wrap(second.psi - two.psi)
+    # Compass movement minus gyro movement, summed with forgetting. A compass that comes back
+    # starts with its deviation from the observer.
     memory = (
         where(one.valid > 0.5, keep * state.memory[0] + moved_one - dt * r, off_one),
         where(two.valid > 0.5, keep * state.memory[1] + moved_two - dt * r, off_two),
     )
+    # A frozen compass gives exactly the same value; noise makes this unlikely for a working
+    # one.
     unchanged = (
         where(moved_one == 0.0, state.unchanged[0] + dt, 0.0 * dt),
         where(moved_two == 0.0, state.unchanged[1] + dt, 0.0 * dt),
@@ -175,15 +183,22 @@ def step(
         _usable(first, unchanged[0], minimum(quiet, unchanged[1]), p.compass_freeze_time),
         _usable(second, unchanged[1], minimum(quiet, unchanged[0]), p.compass_freeze_time),
     )
+    # Low-pass filter of the difference: single wrong samples do not count, a lasting offset
+    # does.
     difference = wrap(first.psi - second.psi - state.apart)
     apart = usable[0] * usable[1] * (state.apart + gain * difference)
     passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
+    # Without a trusted heading the prediction gets worse by the gyro's drift, so its limit
+    # grows.
     limit = p.compass_gyro_max + p.gyro_drift * state.age
     between = abs(apart) - p.compass_apart_max
+    # A compass is compared with the other if that is used, else with the prediction.
     agreed = (
         _agreed(state.agreed[0] + dt, usable[0], passed[1], between, abs(off_one) - limit),
         _agreed(state.agreed[1] + dt, usable[1], passed[0], between, abs(off_two) - limit),
     )
+    # A rejected compass is believed again only after it has agreed for some time. While a
+    # compass is silent its state stays.
     believed = (
         where(
             (agreed[0] >= p.compass_return_time),
@@ -202,14 +217,16 @@ def step(
 
 
 def _usable(heading, unchanged, others, limit):
-    """1 of a compass that is valid, and not frozen: unchanged while others change."""
+    """1 for a valid compass that is not frozen (unchanged while other sensors change)."""
     return where((unchanged >= limit) & (others < limit), 0.0, heading.valid)
 
 
 def _passed(state, usable, memory, disagree, p):
-    """1 of each compass that is believed still: of two that disagree, the one that turned with the gyro."""
+    """1 for each believed compass; of two that disagree, the one that turned with the gyro."""
     first = usable[0] * state.believed[0]
     second = usable[1] * state.believed[1]
+    # With two compasses a majority cannot decide. The gyro is the third opinion: the compass
+    # farther from it is out.
     apart = disagree & (first * second > 0.5)
     one = abs(memory[0])
     two = abs(memory[1])
@@ -220,14 +237,16 @@ def _passed(state, usable, memory, disagree, p):
 
 
 def _agreed(time, usable, other, between, alone):
-    """How long a compass has agreed with the other where that is used, else with the prediction."""
+    """How long a compass has agreed with the other, if that is used, else with the
+    prediction."""
     return where(where(other > 0.5, between, alone) <= 0.0, usable * time, 0.0 * time)
 
 
 def _mean(headings, weights, otherwise):
-    """Mean of the headings with weight, or another heading where none has."""
+    """Mean of the headings with weight; another heading if none has weight."""
     (first, second) = headings
     (a, b) = weights
+    # The mean of two angles: half way along the shorter arc.
     half = 0.5 * wrap(second.psi - first.psi)
     only = where(a > 0.5, first.psi, where(b > 0.5, second.psi, otherwise))
     return where(a * b > 0.5, wrap(first.psi + half), only)

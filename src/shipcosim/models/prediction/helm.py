@@ -1,4 +1,4 @@
-"""A ship that is steered by hand, and her motion to come by her equations of motion while levers and wheel stay put.
+"""Predict the motion of a hand-steered ship by her equations of motion, with levers and wheel held.
 
 References
 ----------
@@ -155,6 +155,7 @@ def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
         [as its fields]
     """
     ship = Motion(*(known[name] for name in KNOWN[:6]))
+    # The wind loads refer to 10 m above the origin, the anemometer stands elsewhere.
     wind = wind_from_mast(
         known["wind_speed_meas"], known["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast
     )
@@ -169,7 +170,7 @@ def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
 
 
 def moved_on(ship: Motion, age: float) -> Motion:
-    """The ship with her measured place moved on by its age, with the velocity of now.
+    """The ship with her measured position moved on by its age, at the present velocity.
 
     Parameters
     ----------
@@ -192,7 +193,7 @@ Start = tuple[tuple[Arithmetic, Arithmetic, Arithmetic, Arithmetic], ...]
 
 
 def remembered(before: Start, ship: Motion) -> Start:
-    """What is averaged at the start of a prediction, with the newest sample.
+    """Samples to average at the start of a prediction, with the newest one.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ def remembered(before: Start, ship: Motion) -> Start:
 
 
 def smoothed(latest: Start, ship: Motion) -> Motion:
-    """The measured ship with heading and velocity averaged over the latest samples.
+    """The measured ship, with heading and velocity averaged over the latest samples.
 
     Parameters
     ----------
@@ -224,6 +225,7 @@ def smoothed(latest: Start, ship: Motion) -> Motion:
     Motion
         The place is that of now.
     """
+    # Headings are averaged as deviations from the newest one, since they wrap.
     share = 1.0 / len(latest)
     psi = wrap(ship.psi + share * sum(wrap(one[0] - ship.psi) for one in latest))
     u, v, r = (share * sum(one[k] for one in latest) for k in (1, 2, 3))
@@ -252,10 +254,12 @@ def thruster_loads(
     callable
         ``loads(t)(u_r, v_r, r)`` gives the load after t seconds. [N, N, N.m]
     """
+    # The tunnel now gives what its measured speed says, T = c n |n|.
     tunnel_now = helm.tunnel_thrust_coefficient * aboard.rpm[2] * abs(aboard.rpm[2])
     units = [_azimuth(aboard, k, y, water, helm) for k, y in enumerate((helm.y, -helm.y))]
 
     def loads(t):
+        # Thrusts move from their present values to the commands at their largest rates.
         tunnel = _towards(tunnel_now, aboard.thrust_cmd[2], t * helm.tunnel_thrust_rate)
         port, starboard = (unit(t) for unit in units)
 
@@ -270,16 +274,19 @@ def thruster_loads(
 
 
 def _azimuth(aboard, k, y, water, helm):
-    """Load of one azimuth over time and velocity, as `azimuth.azimuth_loads` without its losses."""
+    """Load of one azimuth over time and velocity, as `azimuth.azimuth_loads` without losses."""
     n = aboard.rpm[k] / 60.0
     azimuth = aboard.azimuth[k]
+    # The unit's own velocity through the water, by surge, sway and yaw, along its axis.
     u, v = velocity_at(helm.x, y, water[0], water[1], aboard.ship.r)
     thrust_now, _ = propeller_loads(
         cos(azimuth) * u + sin(azimuth) * v, n, propeller=helm.propeller
     )
+    # Shaft speed in excess of the bollard speed, since the ship has way on. It is kept.
     beyond = n - bollard_speed(
         thrust_now, propeller=helm.propeller
     )  # faster than at bollard, for the way that she has
+    # The azimuth turns the shorter way, at its largest rate.
     turn = wrap(aboard.azimuth_cmd[k] - azimuth)
     D = helm.diameter
     side_factor = -helm.side_force_coefficient * helm.propeller.water_density * D * D
@@ -287,10 +294,14 @@ def _azimuth(aboard, k, y, water, helm):
     def load(t):
         thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
         angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
+        # Side force F_s = -c ρ D² (V + |n| D) u_s: momentum drag of the water taken
+        # along.
         wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
         s = sin(angle)
         c = cos(angle)
 
+        # Thrust and direction are fixed in time; the side force follows the velocity
+        # within a step.
         def at(u_r, v_r, r):
             u, v = velocity_at(helm.x, y, u_r, v_r, r)
             u_s = c * v - s * u
@@ -316,7 +327,7 @@ def predict(
     helm: HelmParameters,
     seconds: int = LONGEST,
 ) -> tuple[Motion, ...]:
-    """Motion of the ship ahead by her equations of motion.
+    """Predict the motion of the ship by her equations of motion.
 
     Parameters
     ----------
@@ -341,12 +352,17 @@ def predict(
     Midpoint rule with steps of one second, thrusters at the middle of each.
     """
     ship = aboard.ship
+    # The air's velocity over ground is held, not the apparent wind, which changes with her
+    # motion.
     air = _air(aboard)
     x, y, psi, _, _, r = ship
+    # Hull loads depend on the velocity through the water, so it is integrated.
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
     loads = thruster_loads(aboard, (u_r, v_r), helm=helm)
     found = []
     for second in range(seconds):
+        # Loads at the middle of each second: second-order accuracy with one step a
+        # second.
         rates = _rates(loads(second + 0.5), psi + 0.5 * r, current, air, left, hull, wind)
         x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
         psi = wrap(psi)
@@ -356,7 +372,7 @@ def predict(
 
 
 def _rates(thrusters, heading, current, air, left, hull, wind):
-    """Rates of the velocity through the water at a heading, as `vessel.accelerations`."""
+    """Rates of the velocity through the water at a heading, as in `vessel.accelerations`."""
     u_c, v_c = to_body(heading, *current)
 
     def rates(u_r, v_r, r):
@@ -369,7 +385,8 @@ def _rates(thrusters, heading, current, air, left, hull, wind):
 
 
 def _air(aboard):
-    """Velocity of the air over ground, north and east, as `known.air_velocity`."""
+    """Velocity of the air over ground, north and east, as in `air_velocity`."""
+    # Air velocity = ship velocity - apparent wind (given by where it comes from).
     ship = aboard.ship
     speed = aboard.wind_speed
     return to_ned(

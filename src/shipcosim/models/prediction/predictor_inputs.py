@@ -1,4 +1,4 @@
-"""What a ship knows of herself and of the weather: all that a predictor is given, whatever it makes of it.
+"""What a ship knows of herself and the weather: the inputs of all predictors.
 
 A predictor is a state and two functions: `step` takes the state and a `Known` to the next sample, `predict` gives the
 motion to come from both. Dead reckoning has its state in `surroundings`, and `predict` in `dead_reckoning`.
@@ -65,6 +65,7 @@ def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:
     ----------
     Definition; the inverse of `wind_loads.apparent_wind`.
     """
+    # Invert the apparent wind: air = ship - wind from its direction, turned into north-east.
     ship = known.ship
     speed = known.wind_speed
     return to_ned(

@@ -76,7 +76,7 @@ class OuterSignals:
         starts = set()
         for _, connection in ends:
             name, variable = connection.target
-            # Invert the connection, source = (target − offset) / factor; a mapping
+            # Invert the connection, source = (target - offset) / factor; a mapping
             # cannot be inverted.
             value = self.components[name or ""].start_value(variable)
             if value is None or connection.mapping is not None or connection.factor == 0.0:
