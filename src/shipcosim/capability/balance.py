@@ -53,14 +53,14 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
     # Balance: thrust + s · load = 0. The ship holds the load if s can reach 1.
     loads = np.asarray(loads, float)
     best = np.zeros(len(loads))
-    # Newton and newton metres differ in size; scaled to one size they suit the tolerance of
-    # the linear programme.
+    # Newton and newton metres differ in size; scaled to one size they suit the tolerance of the
+    # linear programme.
     scale = _scale(actuators)
     if not len(loads) or scale is None:
         return best
     left = np.stack([a.left for a in actuators], axis=1)
-    # The reachable forces of a thruster may not be convex, but each of its pieces is. Try
-    # every choice of one piece each: its linear programme gives the largest share.
+    # The reachable forces of a thruster may not be convex, but each of its pieces is. Try every
+    # choice of one piece each: its linear programme gives the largest share.
     for choice in product(*(a.pieces for a in actuators)):
         sets = [_columns(a, piece) / scale for a, piece in zip(actuators, choice, strict=True)]
         best = np.maximum(best, np.minimum(largest_multiple(sets, left, -loads / scale), MOST))
@@ -69,8 +69,7 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
 
 def _scale(actuators: Sequence[Actuator]) -> NDArray | None:
     """Sizes of force and moment that make them of one size; None where there is no thrust."""
-    # Force: the sum of the largest thrusts. Moment: this force on the longest lever, at least
-    # 1 m.
+    # Force: the sum of the largest thrusts. Moment: this force on the longest lever, at least 1 m.
     force = sum(
         max((float(np.abs(piece).max(initial=0.0)) for piece in a.pieces), default=0.0)
         for a in actuators

@@ -19,8 +19,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 
 def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case, ...]:
-    """The ship intact, without each thruster, without each bus of several, and without each
-    group.
+    """The ship intact, without each thruster, without each bus of several, and without each group.
 
     Parameters
     ----------
@@ -106,8 +105,8 @@ def level_1_share(
     (directions,) array
         Weather from each of `DIRECTIONS`. [1]
     """
-    # Available thrust: nominal, times losses (beta_misc), times what ventilation leaves,
-    # without the forbidden sectors.
+    # Available thrust: nominal, times losses (beta_misc), times what ventilation leaves, without
+    # the forbidden sectors.
     actuators = [
         _actuator(
             t, BETA_MISC * ventilation(t, hull, condition, DIRECTIONS), sectors(t, working, failed)
@@ -120,8 +119,7 @@ def level_1_share(
 
 def simulated_share(ship: Simulated, working: Sequence[Thruster], condition: Condition) -> NDArray:
     """The same by the simulator's models; the thrusters give up to their limits."""
-    # The simulator's thrusters lose nothing by neighbours here: no sectors, and all of the
-    # thrust.
+    # The simulator's thrusters lose nothing by neighbours here: no sectors, and all of the thrust.
     asked = [replace(t, **vars(ship.limits[t.name])) for t in working]
     actuators = [_actuator(t, np.ones(len(DIRECTIONS)), ()) for t in asked]
     return largest_share(actuators, _load(simulated_parts(ship, condition, DIRECTIONS)))

@@ -61,8 +61,8 @@ def wind(hull: Hull, speed: float, wind_from: NDArray) -> NDArray:
     """
     # Dynamic pressure, q = ρ V² / 2.
     q = 0.5 * AIR_DENSITY * speed**2
-    # The side force acts ahead of the side area's centre in head wind, behind it in following
-    # wind: the moment follows from this lever.
+    # The side force acts ahead of the side area's centre in head wind, behind it in following wind:
+    # the moment follows from this lever.
     lever = hull.wind_centre_x + 0.3 * _ahead(wind_from) * hull.length
     # X = -0.7 q A_front cos, Y = 0.9 q A_side sin (to port in the standard's axes).
     across = q * hull.wind_area_side * 0.9 * np.sin(wind_from)
@@ -109,8 +109,8 @@ def waves(hull: Hull, condition: Condition, waves_from: NDArray) -> NDArray:
     shape = bow + turned / np.pi * (stern - bow)
     # Along-ship factor of the direction: -1 about head seas, +1 about following seas.
     course = 0.05 + 0.95 * np.arctan(1.45 * (turned - 1.75))
-    # Waves much longer than the ship lift her without drift: the factor depends on period
-    # over ship size.
+    # Waves much longer than the ship lift her without drift: the factor depends on period over ship
+    # size.
     along = q * hull.breadth * shape * course * _short(period / (0.9 * hull.length**0.33))
     across = (
         q
@@ -142,6 +142,6 @@ def _short(period: float) -> float:
 
 def _load(hull: Hull, along: NDArray, to_port: NDArray, lever: NDArray) -> NDArray:
     """Load of a force ahead and one to port that acts `lever` ahead of midship."""
-    # From the standard's axes (y to port) to ours (y to starboard); the moment is about the
-    # ship's origin.
+    # From the standard's axes (y to port) to ours (y to starboard); the moment is about the ship's
+    # origin.
     return np.stack([along, -to_port, -(hull.midship_x + lever) * to_port], axis=-1)

@@ -62,16 +62,14 @@ class Capability:
     used: Mapping[str, NDArray]
 
     def numbers(self, method: str = LEVEL_1) -> NDArray:
-        """DP capability numbers, (cases, directions): the condition before the first
-        unbalanced."""
-        # A condition counts only if all lower ones hold too: the product turns 0 at the
-        # first that fails.
+        """DP capability numbers, (cases, directions): the condition before the first unbalanced."""
+        # A condition counts only if all lower ones hold too: the product turns 0 at the first that
+        # fails.
         holds = np.cumprod(self.used[method] <= BALANCED, axis=1)
         return holds.sum(axis=1)
 
     def worst(self, method: str = LEVEL_1, *, most_lost: int | None = None) -> NDArray:
-        """Lowest number after any failure, (directions,); `most_lost` limits the lost
-        thrusters."""
+        """Lowest number after any failure, (directions,); `most_lost` limits the lost thrusters."""
         lost = [len(case.failed) for case in self.cases]
         # The intact case loses none and does not count here.
         counts = [0 < number <= (most_lost or number) for number in lost]

@@ -71,16 +71,16 @@ def _flushing(thruster: Thruster, other: Thruster, is_live: bool) -> Sector | No
     # A thruster cannot blow onto itself, and tunnels lie protected in the hull.
     if other is thruster or other.kind == "tunnel":
         return None
-    # The race goes opposite to the thrust: the critical thrust points away from the
-    # neighbour. Distance in diameters.
+    # The race goes opposite to the thrust: the critical thrust points away from the neighbour.
+    # Distance in diameters.
     x = thruster.x - other.x
     y = thruster.y - other.y
     distance = float(np.hypot(x, y)) / thruster.diameter
     if distance == 0.0:
         raise ValueError(f"{thruster.name} and {other.name} are in the same place")
     middle = float(np.arctan2(y, x))
-    # A working neighbour must not be blown at: within 15 D the sector is forbidden,
-    # arctan(0.1 + D / distance) to each side.
+    # A working neighbour must not be blown at: within 15 D the sector is forbidden, arctan(0.1 + D
+    # / distance) to each side.
     if is_live:
         return (
             Sector(middle, float(np.arctan(0.1 + 1.0 / distance)))
@@ -168,8 +168,8 @@ def _share_of(angle: float, sector: Sector) -> float:
         return 1.0
     if sector.share == 0.0:
         return 0.0
-    # The straight line in polar form: from full thrust at the edge (angle `half`) to `share`
-    # in the middle.
+    # The straight line in polar form: from full thrust at the edge (angle `half`) to `share` in the
+    # middle.
     sine = np.sin(sector.half)
     return float(sector.share * sine / (np.sin(sector.half - away) + sector.share * np.sin(away)))
 

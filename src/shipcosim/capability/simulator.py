@@ -39,13 +39,13 @@ def simulated_parts(
     flow = condition.current_speed
     # The waves of the condition as components; their mean drift follows from the drift table.
     sea = components(condition.wave_height, condition.wave_period, 0.0, PEAK_ENHANCEMENT, SEED)
-    # The ship is at rest, so the water flows past: a current from ahead is speed ahead
-    # through water.
+    # The ship is at rest, so the water flows past: a current from ahead is speed ahead through
+    # water.
     ahead = flow * np.cos(weather_from)
     across = flow * np.sin(weather_from)
     loads = {
-        # Each model at its own axes and arguments: apparent wind, speed through water,
-        # waves relative to the ship.
+        # Each model at its own axes and arguments: apparent wind, speed through water, waves
+        # relative to the ship.
         "wind": wind_loads(np.full_like(weather_from, speed), wrap(weather_from), wind=ship.wind),
         "current": hull_loads(ahead, across, np.zeros_like(ahead), hull=ship.hull),
         "waves": mean_drift(-weather_from, sea, drift_table(ship.drift.drift_table)),

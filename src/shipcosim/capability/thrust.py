@@ -118,15 +118,14 @@ def ventilation(
     x = thruster.x - hull.midship_x
     # Angle from the bow as a part of half a turn: the same on both sides.
     turned = np.abs(wrapped) / np.pi
-    # Relative motion: Hs, times factors of direction and of place along the ship, times a
-    # period ratio of at most 1.
+    # Relative motion: Hs, times factors of direction and of place along the ship, times a period
+    # ratio of at most 1.
     period = 0.64 * np.sqrt(hull.length) / condition.zero_crossing_period
     heave = 0.85 * np.where(turned <= 0.5, 1.0 + 0.38 * turned, 1.38 - 0.38 * turned)
     place = 1.0 + 0.4 * min(x, 0.0) / hull.length
     # A heavily loaded propeller draws air earlier: √(T / D³), beyond its limit of 15.2.
     load = np.sqrt(thruster.ahead / thruster.diameter**3) / 15.2
     sigma = 0.25 * (heave * place * condition.wave_height * min(period, 1.0) + max(load - 1.0, 0.0))
-    # Phi(depth - 1.5 sigma), with depth = 4 xi / D. The normal distribution is written with
-    # erfc.
+    # Phi(depth - 1.5 sigma), with depth = 4 xi / D. The normal distribution is written with erfc.
     depth = 4.0 * thruster.submergence / thruster.diameter
     return np.array([0.5 * erfc((1.5 * one - depth) / sqrt(2.0)) for one in sigma])

@@ -122,8 +122,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
                 system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
             )
         )
-    # All files of the ship are read before anything is checked, so that all errors come
-    # together.
+    # All files of the ship are read before anything is checked, so that all errors come together.
     said = ship.parameter_set(asked)
     values = {
         file: {name: q.value for name, q in entries.items()} for file, entries in said.items()
@@ -134,8 +133,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     if problems:
         raise ShipcosimError(problems)
     known = {name: _real(body, name) for name in ("length", "breadth", "draught")}
-    # Shape and areas come from the ship's file, main dimensions from the system's parameter
-    # set.
+    # Shape and areas come from the ship's file, main dimensions from the system's parameter set.
     hull = Hull(**values[HULL_FILE], **known)
     # Nominal thrust follows from diameter, power and kind of each thruster.
     made = [
@@ -232,8 +230,8 @@ def _problems(
 
 def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster:
     """A thruster with its nominal thrust."""
-    # The kind follows from the FMU: no azimuth is a tunnel, a rate of azimuth turns, else it
-    # is fixed.
+    # The kind follows from the FMU: no azimuth is a tunnel, a rate of azimuth turns, else it is
+    # fixed.
     has = unit.fmu.variables
     kind = (
         "tunnel"
@@ -245,8 +243,8 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
     diameter = own.diameter or _real(unit, "diameter")
     power = _real(unit, "power_max")
     ducted = own.propeller == "ducted" and kind != "tunnel"
-    # Factors of Level 1: by propeller (eta 1), by inlet or running astern (eta 2), by
-    # transmission (eta M).
+    # Factors of Level 1: by propeller (eta 1), by inlet or running astern (eta 2), by transmission
+    # (eta M).
     eta_1 = ETA_1["tunnel" if kind == "tunnel" else own.propeller]
     eta_2 = (
         (ETA_2_INLET[own.inlet],) * 2

@@ -125,34 +125,29 @@ def compare(
     ShipcosimError
         If our own engine cannot run it.
     """
-    # Engines that are not installed are no error: the comparison reports why they are
-    # missing.
+    # Engines that are not installed are no error: the comparison reports why they are missing.
     left_out = {name: str(problem) for name, problem in engines_missing().items()}
     names = [name for name in readers or ENGINES if name not in left_out and name not in OWN]
-    # Three parts beside the engines: our run, and our run with half the step, which takes
-    # twice as long.
+    # Three parts beside the engines: our run, and the one with half the step (twice as long).
     runs = _Runs(system, options or RunOptions(), len(names) + 3)
     # Engines are compared at every step: a coarse table would hide where a difference begins.
     scenario = scenario.model_copy(update={"output_interval": None})
     ours = runs.run(OURS, scenario)
     tables = {}
-    # The change with half the step estimates the error that the step size causes. A
-    # difference between engines below it is no fault of an engine.
+    # The change with half the step estimates the error that the step size causes. A difference
+    # between engines below it is no fault of an engine.
     half = runs.run(OURS, halved(scenario), weight=2)
     seconds = {OURS: runs.seconds[0]}
     failed = []
-    # An engine that fails is a result too. The others go on.
     for name in names:
         try:
             tables[name] = runs.run(name, scenario, reader=(readers or {}).get(name))
             seconds[name] = runs.seconds[-1]
         except ShipcosimError as error:
             left_out[name] = str(error)
-            # Only a run that started counts as failed; an engine that refuses the
-            # system does not.
+            # Only a run that started counts as failed; an engine that refuses the system does not.
             failed += [name] if isinstance(error, RunError) else []
-    # With no other engine, report the step-size error of every signal; else the signals that
-    # at least one engine returns.
+    # Without another engine report all signals, else those that some engine returns.
     known = [
         name
         for name in ours.data_vars

@@ -104,8 +104,7 @@ def explained(
             first[str(name)] = int(beyond[0])
     if not first:
         return []
-    # What differs later may follow from the first difference, so only the first row is
-    # explained.
+    # What differs later may follow from the first difference, so only the first row is explained.
     row = min(first.values())
     names = [name for name in first if first[name] == row]
     time = float(ours["time"].values[row])
@@ -122,8 +121,8 @@ def _cause(name, ours, theirs, step_size):
     largest = np.max(np.abs(distance))
     if not np.isfinite(largest):
         return f"{name} is no number somewhere."
-    # The relations need a signal that moves. Each counts if it leaves less than 1 % of the
-    # largest difference.
+    # The relations need a signal that moves. Each counts if it leaves less than 1 % of the largest
+    # difference.
     if len(x) > 2 and np.ptp(x) > 0.0:
         # Shifted by a row: a connection passes the value on a step later or earlier.
         if np.max(np.abs(y[1:] - x[:-1])) < 0.01 * largest:
@@ -143,8 +142,8 @@ def _cause(name, ours, theirs, step_size):
         counts = np.rint(time / step_size).astype(int)
         summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
         drift = summed[counts] - time
-        # A time error dt changes a signal by about its rate times dt. The rate from the
-        # table is rough, hence 30 %.
+        # A time error dt changes a signal by about its rate times dt. The rate from the table is
+        # rough, hence 30 %.
         if np.max(np.abs(np.gradient(x, time) * drift - distance)) < 0.3 * largest:
             return f"{name} differs as its rate times {drift[-1]:.1e} s: the engine's time, a sum of steps, drifts."
     # No relation fits: the start tells parameters apart from decisions on the way.

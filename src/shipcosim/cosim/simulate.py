@@ -52,8 +52,8 @@ def simulate(
         raise ShipcosimError(
             f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}"
         )
-    # Order: read the system, set the scenario's values, check, convert units. The checks need
-    # names and values as written.
+    # Order: read the system, set the scenario's values, check, convert units. The checks need names
+    # and values as written.
     if not isinstance(system, System):
         system = system_of(scenario, system=Path(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))

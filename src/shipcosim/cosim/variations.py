@@ -112,8 +112,7 @@ def simulate_many(
     ShipcosimError
         If a variation does not fit to the system, or all have failed.
     """
-    # Variations with the same names and events need only one check: their numbers do not
-    # matter.
+    # Variations with the same names and events need only one check: their numbers do not matter.
     runs = _Runs(system, options, choose, reduce)
     for variation in {_kind(variation): variation for variation in variations}.values():
         runs.check(variation)
@@ -201,8 +200,8 @@ class _Runs:
         columns = simulation.columns(lambda names: self._choose(tuple(names)))
         done = Done(error, simulation.remarks(), simulation.row_times)
         if self._reduce is None:
-            # Without `reduce` keep the signals; else only what it computes, so that
-            # memory stays small.
+            # Without `reduce` keep the signals; else only what it computes, so that memory stays
+            # small.
             done.kept = {
                 name: (("time",), values, {"units": unit, "long_name": text})
                 for name, values, unit, text in columns
@@ -219,8 +218,7 @@ class _Runs:
 
 
 class _Source:
-    """Instances of one worker. Loading and resetting FMUs is process-wide: one worker at a
-    time.
+    """Instances of one worker. Loading and resetting FMUs is process-wide: one worker at a time.
 
     Attributes
     ----------
@@ -253,8 +251,7 @@ def _in_threads(
     variations: Sequence[Variation],
     sources: Sequence[_Source],
 ) -> Iterator[tuple[int, Done]]:
-    """Number and result of each run. The first runs alone: it compiles what the others
-    share."""
+    """Number and result of each run. The first runs alone: it compiles what the others share."""
     # Each worker takes free instances and puts them back; no two runs share an FMU.
     free: SimpleQueue[_Source] = SimpleQueue()
     for source in sources:
@@ -273,8 +270,8 @@ def _in_threads(
         with ThreadPoolExecutor(len(sources)) as pool:
             futures = [pool.submit(one, number) for number in numbers[1:]]
             try:
-                # In order of completion, so that progress moves on. After an
-                # error the waiting runs are dropped.
+                # In order of completion, so that progress moves on. After an error the waiting runs
+                # are dropped.
                 for future in as_completed(futures):
                     yield future.result()
             except BaseException:

@@ -44,15 +44,15 @@ def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:
     python = _copy(compiled.fmu)
     try:
         for number in range(STEPS):
-            # Both sides start each step from the same state. An error therefore
-            # cannot build up over the steps, and its step is known.
+            # Both sides start each step from the same state. An error therefore cannot build up
+            # over the steps, and its step is known.
             _give_inputs(python, compiled, random)
             compiled.memory[:-2] = shape_of(python).numbers
             compiled.memory[-2:] = time + number * step_size, step_size
             pointers = (array.ctypes.data for array in (compiled.memory, compiled.kept))
             status = function(*pointers, call, None)
-            # Compiled code that gives up is safe: Python then takes the step. Only
-            # the opposite is an error: C finishes a step that Python refuses.
+            # Compiled code that gives up is safe: Python then takes the step. Only the opposite is
+            # an error: C finishes a step that Python refuses.
             try:
                 python.step(time + number * step_size, step_size)
             except Exception:
@@ -60,25 +60,21 @@ def refuse_other_results(compiled: Any, time: float, step_size: float) -> None:
                     raise Untraceable(
                         f"in step {number} Python fails and compiled code does not"
                     ) from None
-                # A failed step may leave a half-changed object; go on from a
-                # fresh copy.
+                # A failed step may leave a half-changed object; go on from a fresh copy.
                 python = _copy(compiled.fmu)
                 continue
-            # A step that the code gave up has changed nothing, so there is nothing to
-            # compare.
+            # A step that the code gave up has changed nothing, so there is nothing to compare.
             if status == DONE:
                 _compare(compiled, shape_of(python), number)
     finally:
         compiled.memory[:] = before
-        # NaN differs from every argument, so the cached results are computed again in the
-        # run.
+        # NaN differs from every argument, so the cached results are computed again in the run.
         compiled.kept[:] = np.nan
 
 
 def _copy(fmu):
     """Copy a component with its state."""
-    # Copy without a new start: the attributes of the base class one by one, all others
-    # deeply.
+    # Copy without a new start: the attributes of the base class one by one, all others deeply.
     made = object.__new__(type(fmu))
     for name in STANDS:
         setattr(made, name, copy.copy(getattr(fmu, name)))
@@ -95,9 +91,8 @@ def _give_inputs(fmu, compiled, random):
         if variable.type == "Real":
             low = -np.inf if variable.minimum is None else variable.minimum
             high = np.inf if variable.maximum is None else variable.maximum
-            # 10 % of the start value, or 0.1 where it is small: large enough to move
-            # the state, small enough to stay in the model's range. The declared
-            # bounds are kept.
+            # 10 % of the start value, or 0.1 where it is small: large enough to move the state,
+            # small enough to stay in the model's range. The declared bounds are kept.
             drawn = value + 0.1 * random.standard_normal() * max(abs(value), 1.0)
             setattr(fmu, variable.name, float(min(max(drawn, low), high)))
         elif variable.type == "Boolean":

@@ -66,8 +66,8 @@ class CompiledStep:
         # Layout of the memory: the numbers of the state, then time and step size.
         self.memory = np.zeros(len(shape.numbers) + 2)
         self.memory[:-2] = shape.numbers
-        # Each function that stays in Python has its arguments, then its results. NaN
-        # arguments differ from all others and force the first call.
+        # Each function that stays in Python has its arguments, then its results. NaN arguments
+        # differ from all others and force the first call.
         self.kept = np.full(
             max(1, sum(len(call.changing) + call.size for call in record.calls)), np.nan
         )
@@ -75,8 +75,7 @@ class CompiledStep:
         self.places = shape.flat.places
 
     def take(self) -> None:
-        """Copy the object's numbers to the memory. Raises Untraceable if its shape
-        differs."""
+        """Copy the object's numbers to the memory. Raises Untraceable if its shape differs."""
         shape = shape_of(self.fmu)
         if not shape.flat.same_shape(self._shape.flat):
             raise Untraceable(
@@ -85,8 +84,7 @@ class CompiledStep:
         self.memory[:-2] = shape.numbers
 
     def take_anew(self, time: float, step_size: float) -> bool:
-        """Copy the numbers after another start; true if the compiled code also holds for
-        them."""
+        """Copy the numbers after another start; true if the compiled code also holds for them."""
         try:
             shape = shape_of(self.fmu)
         except Untraceable:
@@ -94,8 +92,8 @@ class CompiledStep:
         # The C text has fixed places; another shape needs another record.
         if not shape.flat.same_shape(self._shape.flat):
             return False
-        # Integers may be part of the code (guards). The record must be the one that these
-        # values select.
+        # Integers may be part of the code (guards). The record must be the one that these values
+        # select.
         if (
             kept_record(key_of(self.fmu, shape), [*shape.numbers, time, step_size])
             is not self._record
@@ -115,8 +113,7 @@ class CompiledStep:
             typed(number, leaf.kind)
             for number, leaf in zip(self.memory.tolist(), shape.flat.leaves, strict=False)
         ]
-        # Build the attributes from the numbers; those that no step changes keep their
-        # objects.
+        # Build the attributes from the numbers; those that no step changes keep their objects.
         made = attributes_like(values, numbers, shape.constant, shape.unchanging)
         fixed = shape.constant | shape.unchanging
         values.update({name: value for name, value in made.items() if name not in fixed})
@@ -125,8 +122,7 @@ class CompiledStep:
         """Compute a function that stays in Python. After an error Python takes the step."""
         call = self._record.calls[number]
         try:
-            # The arguments are those of the recording; only the changing ones come
-            # from C.
+            # The arguments are those of the recording; only the changing ones come from C.
             example = self._record.examples[number]
             numbers = list(example.numbers)
             leaves = example.leaves
@@ -137,8 +133,8 @@ class CompiledStep:
             # Results go in place: C reads them behind the arguments.
             np.ctypeslib.as_array(kept, (call.size,))[:] = found
         except Exception:
-            # No exception can pass through C. The status makes the code give up;
-            # Python repeats the step.
+            # No exception can pass through C. The status makes the code give up; Python repeats the
+            # step.
             return 1
         return 0
 
@@ -161,8 +157,8 @@ def compiled_steps(
         The compiler is missing or fails, or the cache cannot be written.
     """
     with _ONE_AT_A_TIME:
-        # First record all components, then compile all sources at once: the compiler runs
-        # in parallel.
+        # First record all components, then compile all sources at once: the compiler runs in
+        # parallel.
         found = [_recorded(fmu, time, step_size) for fmu in fmus]
         made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
         return [

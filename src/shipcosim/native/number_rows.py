@@ -141,8 +141,8 @@ def numbers_of(
     rest: list[Any] = []
     for name, value in values.items():
         rest.append(name)
-        # Constants belong to the structure with type and value: 1, 1.0 and True are equal
-        # in Python.
+        # Constants belong to the structure with type and value: 1, 1.0 and True are equal in
+        # Python.
         if name in constant:
             rest += (type(value), value)
         elif name in unchanging:
@@ -154,14 +154,12 @@ def numbers_of(
 
 def _take_once(value, numbers, rest):
     """Take a value apart that never changes, once: frozen parameters or tuples of floats."""
-    # The cache goes by identity. It keeps the object too, so that its id cannot be used
-    # again.
+    # The cache goes by identity. It keeps the object too, so that its id cannot be used again.
     known = _TAKEN.get(id(value))
     if known is None or known[0] is not value:
         taken = []
         others = []
-        # A tuple is a table of numbers; other unchanging values are parameters, with
-        # fixed flags.
+        # A tuple is a table of numbers; other unchanging values are parameters, with fixed flags.
         if isinstance(value, tuple):
             for part in value:
                 _take(part, False, taken, others)
@@ -242,8 +240,7 @@ def made_like(value: Any, numbers: Iterator[Any]) -> Any:
         return value
     if isinstance(value, np.ndarray):
         found = [next(numbers) for _ in range(value.size)]
-        # Arrays with symbols have the type object; other arrays get their element type
-        # back.
+        # Arrays with symbols have the type object; other arrays get their element type back.
         if any(isinstance(one, Symbol) for one in found):
             return np.array(found, dtype=object).reshape(value.shape).view(SymbolArray)
         return np.array(found, dtype=float if value.dtype == object else value.dtype).reshape(

@@ -129,12 +129,11 @@ def _fitting(records, numbers):
 
 
 def keep_record(key: str, record: Record) -> None:
-    """Add a record to the cached ones of its key. A cache that cannot be written keeps
-    nothing."""
+    """Add a record to the cached ones of its key. A cache that cannot be written keeps nothing."""
     path = _path(key)
     try:
-        # The newest first; old ones drop out beyond the limit. The rename keeps readers
-        # from half a file.
+        # The newest first; old ones drop out beyond the limit. The rename keeps readers from half a
+        # file.
         records = pickle.loads(path.read_bytes()) if path.is_file() else []
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent)

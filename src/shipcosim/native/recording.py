@@ -160,14 +160,13 @@ class Recording:
         ------
         Untraceable
         """
-        # Recordings nest (a loop's body has its own ways), so keep the state of the outer
-        # one.
+        # Recordings nest (a loop's body has its own ways), so keep the state of the outer one.
         before = self.block, self._answers, self._prefix, self._taken, self._due
         root = Block(parent=parent)
         self._due = [()]
         ways = 0
-        # Depth first: each pass follows a prefix of answers, then answers yes. `decide`
-        # notes the other answers for later passes.
+        # Depth first: each pass follows a prefix of answers, then answers yes. `decide` notes the
+        # other answers for later passes.
         while self._due:
             self._prefix = self._due.pop()
             self._taken = []
@@ -185,8 +184,8 @@ class Recording:
                 result = function()
             except (Untraceable, AssertionError, MemoryError, RecursionError):
                 raise
-            # Errors that a model raises on purpose are the result of this way. Others
-            # are faults of the recording and go up.
+            # Errors that a model raises on purpose are the result of this way. Others are faults of
+            # the recording and go up.
             except Exception as error:
                 if (
                     not isinstance(error, (ArithmeticError, ValueError))
@@ -204,13 +203,12 @@ class Recording:
 
     def repeat(self, going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
         """Record a loop; return the state after it."""
-        # The state is carried: at each turn the body sees new symbols in place of its
-        # numbers.
+        # The state is carried: at each turn the body sees new symbols in place of its numbers.
         flat = Flat(state)
         parent = self.block
         kinds = [leaf.kind for leaf in flat.leaves]
-        # Repeat the recording until the kinds of the state stay the same. A number may
-        # start as an integer and become a float in the body.
+        # Repeat the recording until the kinds of the state stay the same. A number may start as an
+        # integer and become a float in the body.
         while True:
             number = len(self.loops)
             self._starts[number] = flat.numbers
@@ -218,8 +216,7 @@ class Recording:
                 self.fresh("carried", kind, number, place) for place, kind in enumerate(kinds)
             ]
             state_then = made_like(state, iter(carried))
-            # Condition and body are recorded apart: C tests the condition before each
-            # turn.
+            # Condition and body are recorded apart: C tests the condition before each turn.
             condition = self.record(lambda state=state_then: going(state), parent)
             body = self.record(lambda state=state_then: Flat(turn(state)), parent)
             # C has fixed variables, so the state must keep its shape.
@@ -237,8 +234,7 @@ class Recording:
             if wider == kinds:
                 break
             kinds = wider
-        # The loop itself is a value, so that it is computed in its place among the
-        # others.
+        # The loop itself is a value, so that it is computed in its place among the others.
         self.loops.append(RecordedLoop(flat.numbers, carried, condition, body))
         self.fresh("loop", "d", number)
         return made_like(
@@ -251,8 +247,7 @@ class Recording:
         # The same question has the same answer on one way.
         if condition.number in self._answers:
             return self._answers[condition.number]
-        # A question on fixed whole numbers alone does not fork: the code is for this
-        # answer.
+        # A question on fixed whole numbers alone does not fork: the code is for this answer.
         if self._is_choice(condition):
             return bool(self.guarded(condition))
         # Count the asking line, to name it if there are too many ways.
@@ -291,8 +286,7 @@ class Recording:
 
     def value(self, op: str, kind: str, *operands: Any) -> Symbol:
         """The value of an operation; one already computed on this way is used again."""
-        # Symbols are equal by identity. Numbers are compared with their type: 1 is not
-        # 1.0 in C.
+        # Symbols are equal by identity. Numbers are compared with their type: 1 is not 1.0 in C.
         key = op, *(id(o) if isinstance(o, Symbol) else (type(o), repr(o)) for o in operands)
         # Values of the blocks before this one are known here: search up to the root.
         block: Block | None = self.block
@@ -349,8 +343,7 @@ class Recording:
             )
 
     def guarded(self, symbol: Symbol) -> int:
-        """The value in the example, as a constant of the code; C gives up where it
-        differs."""
+        """The value in the example, as a constant of the code; C gives up where it differs."""
         # A loop changes its values at each turn; no single number can be guarded.
         if any(one.op in ("carried", "after") for one in symbol.sources()):
             raise Untraceable("it asks for a whole number that follows from a loop")

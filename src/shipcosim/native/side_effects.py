@@ -71,8 +71,7 @@ def only_arithmetic(code: str) -> Iterator[None]:
         # The recording itself runs inside the step and may do more.
         is_own = frame.f_globals.get("__name__", "").startswith("shipcosim.native")
         if is_own or (
-            # Random numbers would be drawn once, while recording, and then be
-            # constants.
+            # Random numbers would be drawn once, while recording, and then be constants.
             module.partition(".")[0] in allowed
             and not module.startswith(RANDOM)
             and not (module == "builtins" and function.__name__ in FORBIDDEN)
@@ -80,8 +79,8 @@ def only_arithmetic(code: str) -> Iterator[None]:
             return
         raise Untraceable(f"it calls {module}.{function.__name__}, which is no arithmetic")
 
-    # A profiler sees every call of a compiled function before it runs; Python code needs no
-    # check, as it ends in such calls.
+    # A profiler sees every call of a compiled function before it runs; Python code needs no check,
+    # as it ends in such calls.
     before = sys.getprofile()
     sys.setprofile(watch)
     try:

@@ -103,8 +103,7 @@ class Writer:
         self.results = [first + size[0] for first, size in zip(firsts, self.sizes, strict=False)]
         # Only values that a result depends on are written; this keeps the C text short.
         self.used = _used(step)
-        # Values that are needed after a loop keep their variable, even if the body
-        # ignores them.
+        # Values that are needed after a loop keep their variable, even if the body ignores them.
         self.after = {
             symbol.operands
             for block in _all_blocks(step.root, step.recording)
@@ -131,8 +130,8 @@ class Writer:
         self.lines.append("    " * depth + line)
 
     def _block(self, block: Block, depth: int, finish):
-        # Values in order, then the fork. Each branch goes on to its own end, so nothing
-        # has to be joined.
+        # Values in order, then the fork. Each branch goes on to its own end, so nothing has to be
+        # joined.
         for symbol in block.values:
             if symbol.number in self.used:
                 self._value(symbol, depth)
@@ -150,8 +149,8 @@ class Writer:
         if not isinstance(result, list):
             self._put(depth, self._fail(result))
             return
-        # A sum is finite only if all terms are: one test for all outputs. Nothing is
-        # written before it.
+        # A sum is finite only if all terms are: one test for all outputs. Nothing is written before
+        # it.
         checked = [operand(number) for place, number in result if place in self.step.outputs]
         if checked:
             self._put(depth, f"if (!isfinite({' + '.join(checked)})) return {GIVEN_UP};")
@@ -247,11 +246,9 @@ class Writer:
             symbol = loop.carried[place]
             start = loop.start[place]
             self._put(depth, f"{_type(symbol)} c{number}_{place} = {operand(start)};")
-        # The condition is a block of statements, so C loops forever and breaks where it
-        # fails.
+        # The condition is a block of statements, so C loops forever and breaks where it fails.
         self._put(depth, "for (;;) {")
-        # Each turn sees the values as constants; the variables change at its end, all
-        # together.
+        # Each turn sees the values as constants; the variables change at its end, all together.
         for place, symbol in enumerate(loop.carried):
             if symbol.number in self.used:
                 self._put(depth + 1, f"const {_type(symbol)} {_name(symbol)} = c{number}_{place};")
@@ -332,8 +329,7 @@ def _used(step: Step) -> set[int]:
             due.append(result)
 
     note(step.root)
-    # Calls and loops are values of their own; find them by the number that their results
-    # name.
+    # Calls and loops are values of their own; find them by the number that their results name.
     made: dict[tuple, list[Symbol]] = {}
     for block in _all_blocks(step.root, step.recording):
         for symbol in block.values:

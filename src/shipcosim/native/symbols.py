@@ -329,8 +329,7 @@ class Maths:
 
     @staticmethod
     def acts(value: Any, neutral: float) -> bool:
-        """True if a parameter can have an effect; always true if it is fixed in the
-        code."""
+        """True if a parameter can have an effect; always true if it is fixed in the code."""
         symbol = first_symbol(value)
         return not (isinstance(symbol, Symbol) and symbol.recording.stands_alone) or bool(
             value != neutral
@@ -348,8 +347,7 @@ class Maths:
             values.update(state)
             return function()
 
-        # Record one turn only to see which attributes it changes. These are the state of
-        # the loop.
+        # Record one turn only to see which attributes it changes. These are the state of the loop.
         before = dict(values)
         changed = set()
 
@@ -396,8 +394,7 @@ class Maths:
             ).reshape(x.shape)
         if first_symbol(xs, ys) is not None:
             # Linear interpolation in a short table of values in memory.
-            # Start left of the table, then take the last interval whose start is not
-            # beyond x.
+            # Start left of the table, then take the last interval whose start is not beyond x.
             found = ys[0]
             for k in range(len(xs) - 1):
                 between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
@@ -433,8 +430,8 @@ class Maths:
                 recording.value(op, "d", index, first, width, column) for column in range(width)
             ]
             return np.array(found, dtype=object).reshape(shape[1:]) if len(shape) > 1 else found[0]
-        # Anything else: choose among all elements by comparison. Negative indices count
-        # from the end, as in Python.
+        # Anything else: choose among all elements by comparison. Negative indices count from the
+        # end, as in Python.
         chosen = table[-1]
         for number in range(len(table) - 2, -1, -1):
             chosen = _chosen(
@@ -509,14 +506,12 @@ class SymbolArray(np.ndarray):
         # Plain arrays avoid that NumPy calls this method again.
         given = [one.view(np.ndarray) if isinstance(one, SymbolArray) else one for one in inputs]
         named.pop("out", None)
-        # Without this, NumPy would ask each comparison for its truth and so fork the
-        # recording.
+        # Without this, NumPy would ask each comparison for its truth and so fork the recording.
         if method == "__call__" and ufunc.__name__ in COMPARISONS:
             named["dtype"] = object
         elif method == "__call__" and ufunc.__name__ in FUNCTIONS:
             return as_symbols(FUNCTIONS[ufunc.__name__](*given))
-        # Large products become one C primitive. Written out they would be thousands of
-        # values.
+        # Large products become one C primitive. Written out they would be thousands of values.
         elif ufunc is np.matmul and min(one.ndim for one in given) > 1 and given[0].shape[-1] > 3:
             symbol = first_symbol(*given)
             if symbol is not None and symbol.recording.stands_alone:

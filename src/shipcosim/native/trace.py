@@ -78,16 +78,14 @@ def shape_of(fmu: Any) -> Shape:
     whole, constant, unchanging = _structure_of(type(fmu))
     for group in fmu.groups:
         remember(getattr(fmu, group.name))
-    # The fast comparison of structure finds a shape seen before; only a new one is taken
-    # apart.
+    # The fast comparison of structure finds a shape seen before; only a new one is taken apart.
     numbers, rest = numbers_of(vars(fmu), constant, unchanging)
     # by name, which is that of a content: each run has a class of its own
     key = type(fmu).__module__, type(fmu).__qualname__, whole, constant, unchanging, rest
     known = _SHAPES.get(key)
     if known is None:
         flat = Flat(vars(fmu), constant, unchanging)
-        # Whole numbers of the parameters may decide in the code; all other numbers may
-        # change.
+        # Whole numbers of the parameters may decide in the code; all other numbers may change.
         choices = (
             n
             for n, leaf in enumerate(flat.leaves)
@@ -158,8 +156,7 @@ def trace(
         loads = [
             recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)
         ]
-        # A clone without its start: its state is the memory's. The original stays
-        # unchanged.
+        # A clone without its start: its state is the memory's. The original stays unchanged.
         clone = object.__new__(type(fmu))
         for name in STANDS:
             setattr(clone, name, getattr(fmu, name))
@@ -170,8 +167,7 @@ def trace(
         # Run the model's own step on symbols, arithmetic only.
         with only_arithmetic(type(fmu).__module__.partition(".")[0]):
             clone.step(time, step_size)
-        # Compiled code has no log. An error makes C give up on this way; Python writes
-        # the message.
+        # Compiled code has no log. An error makes C give up on this way; Python writes the message.
         if clone.messages:
             raise ValueError("it writes to the log")
         parameters = attributes_like(values, loads, constant, unchanging)
@@ -199,8 +195,7 @@ def remember(parameters: Any) -> None:
 
 
 def _changes(before: Flat, loads: list[Symbol], values: Mapping[str, Any], constant, unchanging):
-    # Compare the state after the step with that before; only numbers that changed are
-    # written.
+    # Compare the state after the step with that before; only numbers that changed are written.
     after = Flat(values, constant, unchanging)
     if not after.same_shape(before):
         raise Untraceable(f"its state changes its shape: {before.difference(after)}")

@@ -53,14 +53,12 @@ class _Dispatch:
         self._size = 1
         self._n_done = 0
 
-    # Wait for any chunk, hand out its rows, and fill up again: workers never wait for each
-    # other.
+    # Wait for any chunk, hand out its rows, and fill up again: workers never wait for each other.
     def rows(self) -> Iterator[list[Row]]:
         """See `rows_of`."""
         while self._fill():
             done, _ = wait(self._in_flight, return_when=FIRST_COMPLETED)
-            # A pool breaks as a whole: if one process ends, all chunks under way are
-            # lost too.
+            # A pool breaks as a whole: if one process ends, all chunks under way are lost too.
             if any(self._is_lost(future) for future in done):
                 done, _ = wait(self._in_flight)  # where one process ends, those beside it do, too
             lost = []
@@ -79,8 +77,7 @@ class _Dispatch:
 
     def _fill(self) -> bool:
         """Give work to the workers; true if anything is under way. Suspects run alone."""
-        # After a crash nothing else runs beside a suspect, so the next crash is surely
-        # its own.
+        # After a crash nothing else runs beside a suspect, so the next crash is surely its own.
         if self._suspects:
             if not self._in_flight:
                 self._submit(self._suspects.popleft(), alone=True)
@@ -97,8 +94,7 @@ class _Dispatch:
         runs = [self._plan.run(number) for number in numbers]
         try:
             future = self._workers.submit(runs)
-        # The future carries the error, so that a lost chunk is treated the same way
-        # everywhere.
+        # The future carries the error, so that a lost chunk is treated the same way everywhere.
         except Exception as error:  # a worker may have ended since its last answer
             if not self._workers.is_lost(error):
                 raise
@@ -111,20 +107,18 @@ class _Dispatch:
         self._n_done += len(chunk.rows)
         if self._n_done > self._workers.n:  # the first run of each worker loads and compiles
             fitting = int(self._workers.chunk_time * len(chunk.rows) / max(chunk.seconds, 1e-6))
-            # Aim at a fixed time per chunk. It grows by at most a factor of two, as
-            # the first runs may be short by chance.
+            # Aim at a fixed time per chunk. It grows by at most a factor of two, as the first runs
+            # may be short by chance.
             self._size = min(max(fitting, 1), 2 * self._size, MOST_RUNS)
         return chunk.rows
 
     def _ended(self, lost: list[tuple[list[int], bool]]) -> list[Row]:
-        """Rows of runs that crash their workers again and again; the others are run
-        again."""
+        """Rows of runs that crash their workers again and again; the others are run again."""
         # New workers first. Each lost chunk becomes a suspect and runs alone.
         self._workers.renew()
         failed = []
         for numbers, was_alone in lost:
-            # A chunk that crashed alone is halved: bisection finds the run that
-            # crashes.
+            # A chunk that crashed alone is halved: bisection finds the run that crashes.
             if len(numbers) > 1:
                 half = len(numbers) // 2 if was_alone else len(numbers)
                 self._suspects.extend(part for part in (numbers[:half], numbers[half:]) if part)

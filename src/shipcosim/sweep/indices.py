@@ -60,13 +60,11 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
     # The indices hold for one combination of the other factors at a time.
     for levels, part in _parts(runs, factors):
         for measure in plan.measures:
-            # Saltelli's design: blocks of (parameters + 2) samples. An index needs
-            # the whole block.
+            # Saltelli's design: blocks of (parameters + 2) samples. An index needs the whole block.
             values = _by_sample(plan, part, measure.name)
             blocks = values.reshape(-1, len(columns) + 2)
             known = np.asarray(np.isfinite(blocks).all(axis=1))
-            # Report how many blocks are lost, and why: failed runs or runs not done
-            # yet.
+            # Report how many blocks are lost, and why: failed runs or runs not done yet.
             if not known.all():
                 # A sentence on blocks that are not used.
                 done = _done(plan, part).reshape(blocks.shape)
@@ -115,8 +113,8 @@ def _rows(
     levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarray, seed: int
 ) -> list[dict[str, Any]]:
     """Rows of a quantity, the largest total index first."""
-    # First order: the variance that the parameter explains alone. Total: with all its
-    # interactions. The interval is a bootstrap over the blocks.
+    # First order: the variance that the parameter explains alone. Total: with all its interactions.
+    # The interval is a bootstrap over the blocks.
     from SALib.analyze import sobol
 
     found = sobol.analyze(

@@ -61,8 +61,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     # First check what all runs share; the levels of the factors build on it.
     levels = Levels(study, scenario, system)
     levels.check_names()
-    # The order is that of precedence: parameter sets, then `set`, then the settings of the
-    # call.
+    # The order is that of precedence: parameter sets, then `set`, then the settings of the call.
     fitted = [levels.fitting(name, ("parameters",)) for name in study.parameters]
     values = {signal: value for one in fitted for signal, value in one.items()}
     values |= levels.checked(study.set, ("set",)) | dict(settings or {})
@@ -70,8 +69,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     levels.check_events(events, ("events",))
     if levels.problems:
         raise ShipcosimError(levels.problems)
-    # Shared values and events go into the scenario, so that each run holds only what is its
-    # own.
+    # Shared values and events go into the scenario, so that each run holds only what is its own.
     changed = {
         "components": components,
         "set": scenario.set | values,
@@ -108,8 +106,7 @@ def _scenario(study: Study) -> Scenario:
             problem_of(study, ("scenario",), found, error.problems[0].remedy)
         ) from None
     scenario = read_scenario(path)
-    # Times of the study replace those of the scenario; a wrong one is reported at the study's
-    # line.
+    # Times of the study replace those of the scenario; a wrong one is reported at the study's line.
     times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
     changed = {name: time for name, time in times.items() if time is not None}
     scenario = scenario.model_copy(update=changed)
@@ -130,8 +127,7 @@ def _system(
     keys: Mapping[str, tuple[str | int, ...]],
     build: bool,
 ) -> System:
-    """A scenario's system with swapped FMUs; `keys` are the places that name them in the
-    study."""
+    """A scenario's system with swapped FMUs; `keys` are the places that name them in the study."""
     problems = []
     paths = {}
     # An FMU lies beside the study or is known by name.

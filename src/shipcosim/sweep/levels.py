@@ -100,8 +100,7 @@ class Levels:
         return [Level(next(iter(one.values())), one) for one in found if one]
 
     def checked(self, values: Mapping[str, Value], keys: Sequence[str | int]) -> dict[str, Value]:
-        """Start values in the units of their variables; empty, with a problem, if one does
-        not fit.
+        """Start values in the units of their variables; empty, with a problem, if one does not fit.
 
         Parameters
         ----------
@@ -110,8 +109,7 @@ class Levels:
         keys : sequence of str and int
             Where they stand in the study.
         """
-        # All at once is fast; only after an error each is tried alone, to name the wrong
-        # one.
+        # All at once is fast; only after an error each is tried alone, to name the wrong one.
         expanded = self.expanded(values)
         try:
             system = with_values(self._system, expanded, "")
@@ -260,8 +258,8 @@ class Levels:
         # Either a number of values, or a step.
         if step is None:
             return np.linspace(first, last, factor.count or 2).tolist()
-        # A step in the wrong direction never arrives, and a tiny one makes more levels
-        # than memory holds.
+        # A step in the wrong direction never arrives, and a tiny one makes more levels than memory
+        # holds.
         if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
             found = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
             self.problems.append(
@@ -272,8 +270,7 @@ class Levels:
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
 
     def _of_seeds(self, factor: Factor, keys: Sequence[str | int]) -> list[Level]:
-        """Levels of seeds: each signal gets its own number from study seed, level and
-        name."""
+        """Levels of seeds: each signal gets its own number from study seed, level and name."""
         # Without named signals every parameter called seed is drawn anew.
         signals = (
             self.existing(factor.signal, (*keys[:2], "signal"))
@@ -286,8 +283,7 @@ class Levels:
                 problem_of(self._study, keys, found, "Name the signals: signal = [...].")
             )
         levels = []
-        # Seeds of one level differ between signals, so that two sensors have independent
-        # noise.
+        # Seeds of one level differ between signals, so that two sensors have independent noise.
         for level in range(1, (factor.seeds or 0) + 1):
             values = {signal: _drawn(self._study.seed, level, signal) for signal in signals}
             levels.append(Level(level, values))

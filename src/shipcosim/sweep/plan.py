@@ -101,8 +101,7 @@ class Plan:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Number of levels of each factor, then of samples; the last one changes
-        fastest."""
+        """Number of levels of each factor, then of samples; the last one changes fastest."""
         sizes = tuple(len(levels) for levels in self.levels)
         return sizes if self.samples is None else (*sizes, len(self.samples.numbers))
 
@@ -113,8 +112,7 @@ class Plan:
 
     def run(self, number: int) -> PlannedRun:
         """The run with a number."""
-        # The number of a run determines its levels, as in an array with one axis per
-        # factor.
+        # The number of a run determines its levels, as in an array with one axis per factor.
         places = (
             [int(place) for place in np.unravel_index(number, self.shape)] if self.shape else []
         )
@@ -143,8 +141,7 @@ class Plan:
     ) -> None:
         """Add the changes that a sample makes."""
         at_fork = {}
-        # A sampled value acts from the start, or together with all others in one event at
-        # the fork.
+        # A sampled value acts from the start, or together with all others in one event at the fork.
         for column, value in zip(samples.columns, samples.values(number), strict=True):
             columns[column.name] = value
             target = at_fork if column.at_fork else values
@@ -207,8 +204,8 @@ class Plan:
     @cached_property
     def columns(self) -> list[ColumnOf]:
         """Columns of the table of runs, but for its number, error and input."""
-        # Columns in the order of the table: factors, samples, quantities. Units come from
-        # the signals.
+        # Columns in the order of the table: factors, samples, quantities. Units come from the
+        # signals.
         unit_of = units_of(self.system)
         found = []
         for factor, levels in zip(self.study.factor, self.levels, strict=True):
@@ -230,8 +227,7 @@ class Plan:
     @cached_property
     def duration(self) -> float:
         """Simulated time of all runs. [s]"""
-        # Each factor with its own ends multiplies the runs; those without keep the ends
-        # so far.
+        # Each factor with its own ends multiplies the runs; those without keep the ends so far.
         ends = [self.scenario.stop_time]
         for levels in self.levels:
             own = [level.stop_time for level in levels]
@@ -243,16 +239,15 @@ class Plan:
 
     def digest(self, engine: str) -> str:
         """Hash of everything that determines the table of runs."""
-        # Summaries and views are made from the table, so they may change without new
-        # runs.
+        # Summaries and views are made from the table, so they may change without new runs.
         ignored = {"description", "summary", "view"}
         of_systems = [
             (key, fingerprint(system), hashes(system), start_values(system))
             for key, system in self.systems.items()
         ]
         of_inputs = {name: signal.start for name, signal in self.system.inputs.items()}
-        # Versions, study, scenario, FMUs and wiring: if any of them changes, old results
-        # are not used.
+        # Versions, study, scenario, FMUs and wiring: if any of them changes, old results are not
+        # used.
         facts = [
             __version__,
             engine,

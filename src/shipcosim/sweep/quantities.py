@@ -71,8 +71,7 @@ class Measure:
         return self.reduce == "time_beyond"
 
     def of(self, table: xarray.Dataset) -> float | bool:
-        """The quantity of a run from its table; NaN if it has no row or is never
-        reached."""
+        """The quantity of a run from its table; NaN if it has no row or is never reached."""
         # A verdict: all expectations must hold.
         if self.is_truth:
             return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
@@ -218,8 +217,7 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     unit = {"time_beyond": "s", "share_beyond": "1"}.get(
         quantity.reduce, first.name if first else "1"
     )
-    # The limit of a distance or value is stored in the expectation, where its unit was
-    # converted.
+    # The limit of a distance or value is stored in the expectation, where its unit was converted.
     limit = expect[0].within if quantity.near is not None else expect[0].at_most
     argument = {"at": quantity.time, "percentile": quantity.percentile}.get(quantity.reduce, limit)
     text = quantity.description or f"{quantity.reduce} of {expect[0].subject}"

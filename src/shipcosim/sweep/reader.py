@@ -51,8 +51,8 @@ class Source:
         ):
             number, position = self.origins[first][rest[0]]
             return location_of(*self.files[number], (first, position, *rest[1:]))
-        # The most specific part of the key that has a line of its own; files that extend
-        # others come first.
+        # The most specific part of the key that has a line of its own; files that extend others
+        # come first.
         for length in range(len(keys), 0, -1):
             for path, text in self.files:
                 if (line := line_of(text, keys[:length])) and (
@@ -83,8 +83,8 @@ def study_of(source: Source) -> Study:
     """
     try:
         study = Study.model_validate(source.content)
-    # A misspelt key also looks like a missing one: report the misspelling, and only one
-    # problem per place.
+    # A misspelt key also looks like a missing one: report the misspelling, and only one problem per
+    # place.
     except ValidationError as error:
         problems = {}
         for finding in sorted(
@@ -161,8 +161,8 @@ def _over(base: Source, own: Source) -> Source:
     )
     content = _merged(anchored, own.content)
     origins = {}
-    # Lists merge by name: an item of the same name replaces the old one in its place, others
-    # are added.
+    # Lists merge by name: an item of the same name replaces the old one in its place, others are
+    # added.
     for name in LISTS:
         if not any(_is_list(one.content, name) for one in (base, own)):
             continue

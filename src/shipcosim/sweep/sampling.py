@@ -119,8 +119,8 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     usable = [one for one in quantiles if one is not None]
     if len(usable) < len(quantiles) or not usable:
         return None
-    # Points in the unit cube, by the chosen method; kept off 0 and 1, where a normal
-    # distribution is infinite.
+    # Points in the unit cube, by the chosen method; kept off 0 and 1, where a normal distribution
+    # is infinite.
     spread = np.clip(SPREADS[sample.method](sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     found = Samples(tuple(column for column, _ in usable), numbers)
@@ -132,8 +132,7 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
 def _lines(
     study: Study, levels: Levels, system: System, key: str, one: Distribution
 ) -> Iterator[tuple[str, str, Distribution]]:
-    """Key, name and distribution of each column of a line; ``vessel.*`` gives one per
-    tolerance."""
+    """Key, name and distribution of each column of a line; ``vessel.*`` gives one per tolerance."""
     if not key.endswith(EVERY):
         yield key, key, one
         return
@@ -235,8 +234,7 @@ def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.ndarray]:
-    """Quantile function of the normal distribution about the start value, with its
-    tolerance."""
+    """Quantile function of the normal distribution about the start value, with its tolerance."""
     from scipy.stats import norm
 
     component, name = system.split(signal)
@@ -281,8 +279,7 @@ def _random(runs: int, parameters: int, seed: int) -> np.ndarray:
 
 
 def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
-    """Saltelli's design for first-order and total Sobol indices: blocks of parameters + 2
-    samples.
+    """Saltelli's design for first-order and total Sobol indices: blocks of parameters + 2 samples.
 
     References
     ----------

@@ -74,8 +74,7 @@ class Store:
         with _said(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             about = self._about_there()
-            # The same plan: go on from what is there. Another plan: set its results
-            # aside.
+            # The same plan: go on from what is there. Another plan: set its results aside.
             if about is not None and about.get("plan") == self._digest and not force:
                 # Note which runs are done already.
                 table = self._collected()
@@ -99,8 +98,7 @@ class Store:
             self._rows.append(row)
             self.done[row.number] = True
             self.failed += bool(row.error)
-        # Small parts often: little is lost if the process is killed, and few files
-        # result.
+        # Small parts often: little is lost if the process is killed, and few files result.
         if self._rows and (
             monotonic() - self._written > BETWEEN_PARTS or len(self._rows) >= LARGEST_PART
         ):
@@ -132,8 +130,7 @@ class Store:
             If the disk is full: all that is done stays in the parts.
         """
         self.flush()
-        # The table is written from the parts; they are removed only when all runs are
-        # done.
+        # The table is written from the parts; they are removed only when all runs are done.
         with _said(self.folder):
             table = self._collected()
             self._write_runs(table)
@@ -225,8 +222,7 @@ class Store:
         import pyarrow
         import pyarrow.parquet as parquet
 
-        # Only tracks whose runs are written too: others belong to runs that will be
-        # repeated.
+        # Only tracks whose runs are written too: others belong to runs that will be repeated.
         rows = sorted(self._parts.glob("runs-*.parquet"))
         parts = [path.with_name(path.name.replace("runs-", "tracks-", 1)) for path in rows]
         if self._plan.study.tracks is None or not parts:
@@ -241,8 +237,7 @@ class Store:
         write_file(self.folder / "tracks.parquet", content.getvalue())
 
     def _collected(self) -> pyarrow.Table:
-        """Rows of all parts and of the existing table, each once, in the order of the
-        plan."""
+        """Rows of all parts and of the existing table, each once, in the order of the plan."""
         import pyarrow
         import pyarrow.parquet as parquet
 
@@ -257,8 +252,7 @@ class Store:
         table = pyarrow.concat_tables(
             [one.select(names).cast(tables[0].select(names).schema) for one in tables]
         )
-        # A run may be in the table and in a part: take the first. `unique` also sorts by
-        # number.
+        # A run may be in the table and in a part: take the first. `unique` also sorts by number.
         _, first = np.unique(table["run"].to_numpy(), return_index=True)
         return table.take(first)
 
@@ -271,8 +265,7 @@ class Store:
         kinds = self._kinds()
         new = {name: self.folder / f".{name}.unfinished" for name in ("runs.parquet", "runs.csv")}
         try:
-            # Group by group, because the inputs of all runs together may exceed the
-            # memory.
+            # Group by group, because the inputs of all runs together may exceed the memory.
             first = self._group(table.slice(0, 0), kinds)
             with (
                 parquet.ParquetWriter(
@@ -312,8 +305,7 @@ class Store:
         """Make rows of the table of runs."""
         import pyarrow
 
-        # Inputs are made here again from the plan, not stored with the parts: they are
-        # large.
+        # Inputs are made here again from the plan, not stored with the parts: they are large.
         runs = [self._plan.run(number) for number in done["run"].to_pylist()]
         inputs = [json.dumps(self._plan.input_of(run), ensure_ascii=False) for run in runs]
         columns: dict[str, Any] = {"run": done["run"]}

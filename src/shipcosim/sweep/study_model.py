@@ -114,8 +114,7 @@ class Factor(Part):
 
     @property
     def cases(self) -> list[Case]:
-        """Cases as listed, or made from directions and conditions; empty if there are
-        none."""
+        """Cases as listed, or made from directions and conditions; empty if there are none."""
         made = (
             weather.directions(self.directions)
             if self.directions
@@ -266,10 +265,8 @@ class Quantity(Part):
 
     @property
     def claim(self) -> Expectation:
-        """An expectation with the signals, distance or value, and window of this
-        quantity."""
-        # The limit is a dummy where the reduction has none; only signals and window are
-        # used then.
+        """An expectation with the signals, distance or value, and window of this quantity."""
+        # The limit is a dummy where the reduction has none; only signals and window are used then.
         limit: dict[str, Any] = {"at_most": self.limit if self.limit is not None else 0.0}
         if self.near is not None:
             limit = {"near": self.near, "within": self.limit if self.limit is not None else 1.0}

@@ -133,8 +133,8 @@ def _parts(plan: Plan, store: Store, search: Search | None) -> Iterator[np.ndarr
     if search is None:
         yield np.flatnonzero(~store.done)
         return
-    # In a search each generation depends on the results of the last. Replay the finished ones
-    # from disk.
+    # In a search each generation depends on the results of the last. Replay the finished ones from
+    # disk.
     every = np.arange(len(plan)).reshape(plan.shape)
     for trials in search.generations():
         numbers = every[..., trials.start : trials.stop].ravel()
@@ -156,8 +156,7 @@ def _run(
     workers = None
     room = at_most
     try:
-        # `at_most` limits the runs of this call. Workers start only if there is something
-        # to do.
+        # `at_most` limits the runs of this call. Workers start only if there is something to do.
         for numbers in parts:
             now = numbers[:room]
             room = None if room is None else room - len(now)

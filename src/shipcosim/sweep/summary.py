@@ -70,8 +70,7 @@ def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
     if one.statistic == "last_held":
         return {one.name: _last_held(plan, one, part)}
     values = part[one.quantity].to_numpy(dtype=float)
-    # "Never" is later than any time: infinite instead of missing, or an average would be too
-    # early.
+    # "Never" is later than any time: infinite instead of missing, or an average would be too early.
     if any(measure.name == one.quantity and measure.may_never_be for measure in plan.measures):
         values = np.where(np.isnan(values), np.inf, values)
     value, low, high = STATISTICS[one.statistic](values[~np.isnan(values)], one)
@@ -109,8 +108,8 @@ def wilson(held: int, n: int) -> Interval:
     """
     if n == 0:
         return np.nan, np.nan, np.nan
-    # Wilson's score interval: middle and half width before division by 1 + z²/n. Unlike p ± z
-    # σ it stays within 0 and 1.
+    # Wilson's score interval: middle and half width before division by 1 + z²/n. Unlike p ± z σ it
+    # stays within 0 and 1.
     share = held / n
     z2 = _NORMAL**2
     middle = share + z2 / (2 * n)
@@ -146,8 +145,8 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     """
     from scipy.stats import binom
 
-    # The number of values below the true percentile is binomial, B(n, p). Its quantiles are
-    # the ranks of the limits.
+    # The number of values below the true percentile is binomial, B(n, p). Its quantiles are the
+    # ranks of the limits.
     n = len(values)
     ordered = np.sort(values)
     each = (1.0 - CONFIDENCE) / 2.0
@@ -163,8 +162,7 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
         float(ordered[low]) if low >= 0 else np.nan,
         float(ordered[high - 1]) if high <= n else np.nan,
     )
-    # Interpolation between a finite and an infinite value makes no sense: take the upper
-    # neighbour.
+    # Interpolation between a finite and an infinite value makes no sense: take the upper neighbour.
     after = ordered[int(np.ceil(percent / 100.0 * (n - 1) - 1e-9))]
     return float(np.percentile(values, percent) if np.isfinite(after) else after), *limits
 

@@ -161,8 +161,7 @@ class Search:
         )
 
     def generations(self) -> Iterator[range]:
-        """Trial numbers of each generation, proposed; its results must be told before the
-        next."""
+        """Trial numbers of each generation, proposed; its results must be told before the next."""
         size = self._tune.population
         trials = self._tune.trials
         for first in range(0, trials, size):
@@ -184,8 +183,7 @@ class Search:
         # A trial's runs are those of its sample, over all levels of the other factors.
         for trial in self._asked:
             samples_of = np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
-            # A failed trial gets the worst possible values, so that it has no
-            # offspring.
+            # A failed trial gets the worst possible values, so that it has no offspring.
             found = _objectives(self._tune.objective, runs[samples_of == trial.number])
             worst = [
                 -np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective

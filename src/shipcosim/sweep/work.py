@@ -106,8 +106,7 @@ def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
         for system in systems.values()
         for c in system.components.values()
     }
-    # Hashes of the FMUs, so that a worker on another machine can tell if it has the same
-    # file.
+    # Hashes of the FMUs, so that a worker on another machine can tell if it has the same file.
     contents = {path: file.read_bytes() for path, file in files.items()}
     paths = {path: hashlib.sha256(content).hexdigest() for path, content in contents.items()}
     fmus = {paths[path]: content for path, content in contents.items()} if with_fmus else {}
@@ -162,8 +161,8 @@ class _Bench:
         self._ready: OrderedDict[Swapped, OneAfterAnother] = OrderedDict()
         measures: Sequence[Measure] = job.plan.measures
         self._tracked = tuple(job.plan.study.tracks.signals) if job.plan.study.tracks else ()
-        # Only signals that a quantity or a track uses are kept: the rest would cost
-        # memory and time.
+        # Only signals that a quantity or a track uses are kept: the rest would cost memory and
+        # time.
         judged = [name for m in measures for one in m.expect for name in one.signals]
         self._signals = frozenset([*judged, *self._tracked])
 
@@ -244,8 +243,7 @@ class _Bench:
         digest = self._job.paths[str(path)]
         if digest not in self._at:
             here = path
-            # A file of the same path may differ on another machine, so its content
-            # decides.
+            # A file of the same path may differ on another machine, so its content decides.
             if not path.is_file() or hashlib.sha256(path.read_bytes()).hexdigest() != digest:
                 here = Path(self._folder.name) / digest / path.name
                 here.parent.mkdir(exist_ok=True)

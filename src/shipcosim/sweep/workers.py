@@ -183,8 +183,7 @@ def _begin() -> None:
 
 @contextmanager
 def _without_main_module() -> Iterator[None]:
-    """Keep new processes from importing the calling script, which would start the study
-    again."""
+    """Keep new processes from importing the calling script, which would start the study again."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:

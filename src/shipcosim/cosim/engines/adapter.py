@@ -98,13 +98,13 @@ class Job:
         self._fed = input_values(inputs, system, self.times) if inputs is not None else {}
         self._known = {"inputs_sha256": digest(inputs)} if inputs is not None else {}
         self.plan = make_plan(system, scenario, self._fed)
-        # Connections with the outermost system are not the engine's: their values are set
-        # from here.
+        # Connections with the outermost system are not the engine's: their values are set from
+        # here.
         self.connections = [
             c for c in system.connections if c.source[0] is not None and c.target[0] is not None
         ]
-        # Events act on external inputs (known before the run) or on values that the
-        # engine passes on. Only the latter are changes for the engine.
+        # Events act on external inputs (known before the run) or on values that the engine passes
+        # on. Only the latter are changes for the engine.
         self._all_changes = list(changes(scenario, self.plan, self._grid))
         self._values = {kind: self._external_values(kind) for kind in self.plan.layouts}
         self.external = dict(self._external_inputs())
@@ -129,8 +129,7 @@ class Job:
         # Values before and after each step, to find where any input changes.
         values = np.array([found.values for found in self.external.values()], dtype=float)
         values = values.reshape(len(self.external), self.n_steps + 1)
-        # An interval ends where an input moves, and after MOST_STEPS, so that Ctrl-C is
-        # noticed.
+        # An interval ends where an input moves, and after MOST_STEPS, so that Ctrl-C is noticed.
         moving = np.flatnonzero((np.diff(values[:, :-1], axis=1) != 0).any(axis=0)) + 1
         starts = sorted({*range(0, self.n_steps, MOST_STEPS), *moving.tolist()})
         before = {end: found.start for end, found in self.external.items()}
@@ -182,8 +181,8 @@ class Job:
         return np.tile(start, (self.n_steps + 1, 1))
 
     def _external_inputs(self):
-        # An external source reaches inputs through connections; apply the connection and
-        # then the events on the input itself.
+        # An external source reaches inputs through connections; apply the connection and then the
+        # events on the input itself.
         for kind, layout in self.plan.layouts.items():
             from_other_type = {row for row, _, _ in layout.type_changes}
             for end, connection in zip(layout.inputs, layout.connections, strict=True):
@@ -205,8 +204,7 @@ class Job:
             if end in self.external:
                 yield self.external[end].values
             else:
-                # The engine does not return connected inputs: compute them from
-                # the outputs.
+                # The engine does not return connected inputs: compute them from the outputs.
                 yield self._modified(connection.input_values(outputs), end)
 
     def _modified(self, values, end):

@@ -147,16 +147,15 @@ class EcosSession:
                 self._act(self._changes[k])
             step(simulation, one)
             self.n_done = k + 1
-            # Each step is read at once, because ecos keeps no history in full
-            # precision.
+            # Each step is read at once, because ecos keeps no history in full precision.
             for record in self._records:
                 record(simulation, k + 1)
 
     def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind."""
         columns = {record.kind: record.columns(self.n_done + 1) for record in self._records}
-        # ecos applies a bias or override on the way to the inputs only. The recorded
-        # output must show it too, from the step after the change on.
+        # ecos applies a bias or override on the way to the inputs only. The recorded output must
+        # show it too, from the step after the change on.
         for row, end in enumerate(self._job.plan.layouts["Real"].outputs):
             unmodified = columns["Real"][row].copy()
             for change in (change for change in self._job.changes if change.end == end):
@@ -189,8 +188,8 @@ class EcosSession:
             for variable, value in self._job.starts(name).items():
                 values[_identifier((name, variable))] = value
         structure.add_parameter_set(START, values)
-        # A connection needs a Python function only if it transforms, or an event may
-        # change an end. Others stay native and fast.
+        # A connection needs a Python function only if it transforms, or an event may change an end.
+        # Others stay native and fast.
         modified = {change.end for change in self._job.changes}
         for connection in self._job.connections:
             kind = self._job.plan.variable(connection.source).kind
@@ -205,16 +204,15 @@ class EcosSession:
                 getattr(structure, f"make_{name}_connection")(*ends)
 
     def _act(self, changes):
-        """Make the changes due before a step; inputs first, they use the values before
-        it."""
+        """Make the changes due before a step; inputs first, they use the values before it."""
         variable = self._job.plan.variable
         for change in sorted(
             changes, key=lambda change: variable(change.end).causality == "output"
         ):
             for transformation in self._transformations[change.end]:
                 if transformation.connection.target == change.end:
-                    # The input gets its new value at once, since the
-                    # connection acts only after the step.
+                    # The input gets its new value at once, since the connection acts only after the
+                    # step.
                     transformation.target = _modifier(change)
                     source = self._simulation.get_real(
                         _identifier(transformation.connection.source)
@@ -263,8 +261,7 @@ def _modifier(change):
 
 
 def _function(name):
-    """A function of ecos' library without ecospy's conversions, which cost more than the
-    call."""
+    """A function of ecos' library without ecospy's conversions, which cost more than the call."""
     from ecospy.lib import dll
 
     function = dll[f"ecos_simulation_{name}"]

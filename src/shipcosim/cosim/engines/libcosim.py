@@ -84,8 +84,7 @@ class LibcosimSession:
         self._folder = Path(
             self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-"))
         )
-        # The constructor cannot use a `with` block: free everything by hand if opening
-        # fails.
+        # The constructor cannot use a `with` block: free everything by hand if opening fails.
         try:
             self._open()
         except BaseException:
@@ -117,8 +116,8 @@ class LibcosimSession:
 
     def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind. Ends the execution."""
-        # libcosim records each variable only at the steps of its component; `held` fills
-        # the steps between.
+        # libcosim records each variable only at the steps of its component; `held` fills the steps
+        # between.
         n_rows = self.n_done + 1
         columns = {}
         for kind in SERIES:
@@ -135,16 +134,15 @@ class LibcosimSession:
         from libcosimpy.CosimManipulator import CosimManipulator
 
         log_output_level(CosimLogLevel.FATAL)
-        # libcosim takes the structure from a file, with our connections and
-        # transformations in it.
+        # libcosim takes the structure from a file, with our connections and transformations in it.
         structure = self._folder / "OspSystemStructure.xml"
         structure.write_text(structure_of(self._job), encoding="utf-8")
         try:
             self._execution = CosimExecution.from_osp_config_file(str(structure))
         except AssertionError as error:
             raise EngineError(str(error)) from error
-        # Start values go through the interface, where numbers stay exact. They must be
-        # set before the first step.
+        # Start values go through the interface, where numbers stay exact. They must be set before
+        # the first step.
         self._indices: dict[str, int] = {
             name: self._execution.slave_index_from_instance_name(name)
             for name in self._job.system.components

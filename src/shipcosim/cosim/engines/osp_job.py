@@ -46,8 +46,7 @@ def structure_of(
 def event_of(job: Job, change: SignalChange) -> dict[str, object]:
     """Event of OSP that makes a change of a job."""
     component, variable = change.end
-    # The event's time as text of the step size times the step: the same double as in our
-    # grid.
+    # The event's time as text of the step size times the step: the same double as in our grid.
     time = float(seconds_text(job.scenario.step_size * change.step))
     event = {"time": time, "model": component, "variable": variable, "action": change.action}
     if change.action != "reset":
@@ -90,8 +89,7 @@ def _complaint_of(job: Job) -> Callable[[Connection], str | None]:
         )
         if (source, target) != ("output", "input"):
             return f"it goes from {source} to {target}"
-        # OSP has functions for a linear transformation and for a sum, but not for both in
-        # one.
+        # OSP has functions for a linear transformation and for a sum, but not for both in one.
         return (
             "it is transformed and added to others"
             if connection in added and is_linear(connection)

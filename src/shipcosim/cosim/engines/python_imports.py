@@ -17,8 +17,7 @@ def imports_undone() -> Iterator[None]:
     finally:
         added = tuple(entry for entry in sys.path if entry not in before)
         sys.path[:] = before
-        # A module may stay in use by its FMU; it only leaves the list of imported
-        # modules.
+        # A module may stay in use by its FMU; it only leaves the list of imported modules.
         for name, module in list(sys.modules.items()):
             if added and (getattr(module, "__file__", None) or "").startswith(added):
                 del sys.modules[name]

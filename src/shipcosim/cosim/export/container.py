@@ -194,8 +194,8 @@ def _files(file):
 
 def _configuration(system, exposed, paths, step_size, sweeps):
     """The library's configuration, without the token."""
-    # Components are addressed by number. The connections are repeated: once for each sweep
-    # that the start needs.
+    # Components are addressed by number. The connections are repeated: once for each sweep that the
+    # start needs.
     numbers = {name: number for number, name in enumerate(system.components)}
     return {
         "containerVersion": VERSION,

@@ -82,8 +82,7 @@ def _add_units(root, system, exposed):
         return
     definitions = xml.SubElement(root, "UnitDefinitions")
     for name in used:
-        # An FMU has one definition per unit name; two definitions in its parts cannot be
-        # merged.
+        # An FMU has one definition per unit name; two definitions in its parts cannot be merged.
         found = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
         if len({(unit.exponents, unit.factor, unit.offset) for unit in found}) > 1:
             text = f"The unit {name} is defined in two ways by its FMUs."
@@ -137,8 +136,7 @@ def _scalar_variable(reference, one, system, types):
     if one.description:
         element.set("description", one.description)
     element.set("variability", _variability(one))
-    # FMI 2.0 table of causality, variability and initial: outputs are calculated, others are
-    # exact.
+    # FMI 2.0 table of causality, variability and initial: outputs are calculated, others are exact.
     if one.causality != "input":
         element.set("initial", "calculated" if one.causality == "output" else "exact")
     values = (

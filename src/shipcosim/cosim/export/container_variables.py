@@ -95,8 +95,8 @@ def _connectors(system, problems):
             continue
         # Type and bounds come from the first variable that the connector leads to.
         variable = _variable(system, ends[0])
-        # FMI wants a start value for inputs and parameters; without one, the components'
-        # values must agree.
+        # FMI wants a start value for inputs and parameters; without one, the components' values
+        # must agree.
         start = signal.start
         if start is None and causality != "output":
             start = _common_start(system, signal, ends, problems)

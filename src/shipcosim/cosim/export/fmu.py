@@ -75,8 +75,7 @@ def export_fmu(
                 system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps
             )
             ours = _run(system, step_size, RunOptions()) if ours is None else ours
-            # The container runs in a process of its own, because an FMU in it may end
-            # the process.
+            # The container runs in a process of its own, because an FMU in it may end the process.
             container = _run(block_of(tried), step_size, RunOptions(isolate=True, timeout=LIMIT))
             differing = _differences(ours, container)
             if not differing:
@@ -116,8 +115,8 @@ def _differences(ours, theirs):
         a = ours[shown].values.astype(float)
         b = theirs[name].values.astype(float)
         error = np.abs(a - b)
-        # The error is relative to the largest signal of the same unit in the component: a
-        # small difference of two large forces is no more exact than they are.
+        # The error is relative to the largest signal of the same unit in the component: a small
+        # difference of two large forces is no more exact than they are.
         scale = max(scales[_kind(ours, shown)], np.abs(b).max(), 1e-9)
         if error.max() > TOLERANCE * scale:
             row = int(error.argmax())

@@ -66,8 +66,8 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     values = {name: _initial_values(job, name) for name in system.components}
     structure = structure_of(job, sources, values, end_time=scenario.stop_time)
     files = {STRUCTURE: structure.encode()}
-    # A scenario file exists only if there are events. Its end lies beyond the run, so that
-    # nothing is taken back.
+    # A scenario file exists only if there are events. Its end lies beyond the run, so that nothing
+    # is taken back.
     if events := osp_events(job):
         end = 2.0 * job.times[-1]  # all changes would be taken back at this time
         files[SCENARIO] = scenario_text(scenario.description, events, float(end)).encode()
@@ -81,11 +81,11 @@ def osp_events(job: Job) -> list[dict[str, object]]:
     What nothing feeds is set to the value that it has from then on: libcosim knows no inputs of the system.
     """
     events = list(job.changes)
-    # libcosim has no inputs of the system: each change of an external value becomes an
-    # override of the inputs that it feeds.
+    # libcosim has no inputs of the system: each change of an external value becomes an override of
+    # the inputs that it feeds.
     for end, external in job.external.items():
-        # The value before each step, so that only changes become events; the first
-        # compares with the start value.
+        # The value before each step, so that only changes become events; the first compares with
+        # the start value.
         before = np.concatenate([[external.start], external.values[:-2]])
         for step in np.flatnonzero(external.values[:-1] != before).tolist():
             events.append(SignalChange(step, "override", end, external.values[step].item()))
@@ -163,8 +163,7 @@ def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> 
     """
     files, remarks = osp_files(system, scenario)
     folder = Path(folder)
-    # Write all files under temporary names, then rename: an error leaves the old export
-    # intact.
+    # Write all files under temporary names, then rename: an error leaves the old export intact.
     partial = {name: folder / f".{name}.{os.getpid()}.part" for name in files}
     try:
         folder.mkdir(parents=True, exist_ok=True)

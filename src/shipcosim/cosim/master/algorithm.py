@@ -89,8 +89,7 @@ class Master:
                 component.read()
         # Then exchange until each input equals its source, still in initialisation mode.
         self._iterate_start()
-        # Leave the mode with the settled inputs, and read again: some outputs change only
-        # here.
+        # Leave the mode with the settled inputs, and read again: some outputs change only here.
         for component in self._components:
             with _failing(component, "at the end of the initialisation"):
                 component.write()
@@ -106,8 +105,8 @@ class Master:
 
     def _iterate_start(self):
         """Iterate over the components in initialisation mode until no input changes."""
-        # A fixed-point iteration: without an algebraic loop it ends after as many sweeps
-        # as the longest chain of components.
+        # A fixed-point iteration: without an algebraic loop it ends after as many sweeps as the
+        # longest chain of components.
         self._transfer(0)
         inputs = {}
         moving = {}
@@ -116,14 +115,12 @@ class Master:
         ]  # the others change no input
         for iteration in range(MOST_ITERATIONS + len(self._components)):
             last = inputs
-            # Settled: no input and no connected parameter has changed since the last
-            # sweep.
+            # Settled: no input and no connected parameter has changed since the last sweep.
             inputs = self._inputs()
             changed = [_transferred(connection) for connection in self._parameter_connections]
             if iteration and last == inputs and not any(changed):
                 return
-            # Beyond the normal limit, note what still changes: the last sweeps name
-            # the loop.
+            # Beyond the normal limit, note what still changes: the last sweeps name the loop.
             if iteration >= MOST_ITERATIONS:
                 moving |= {
                     name: abs(value - last[name])
@@ -195,8 +192,7 @@ class Master:
             if progress is not None and perf_counter() >= report_at:
                 progress(k - first, last - first)
                 report_at = perf_counter() + BETWEEN_REPORTS
-            # The step, then the exchange at its end: external values of the next time
-            # come with it.
+            # The step, then the exchange at its end: external values of the next time come with it.
             self._step(k, clock)
             for target, values in external:
                 target[:] = values[k + 1 - first]
@@ -210,8 +206,7 @@ class Master:
             progress(last - first, last - first)
 
     def give_back(self) -> None:
-        """Bring the FMUs to the state that the run has reached, if they are not there
-        already."""
+        """Bring the FMUs to the state that the run has reached, if they are not there already."""
 
     def _act(self, actions):
         for action in actions:
@@ -223,14 +218,14 @@ class Master:
         """Step all components; with Jacobi, those in other processes step in parallel."""
         sequential = self._sequential
         for component in self._components:
-            # Gauss-Seidel: exchange before each component, so it sees the new outputs
-            # of those before it.
+            # Gauss-Seidel: exchange before each component, so it sees the new outputs of those
+            # before it.
             if sequential:
                 self._transfer(k + 1)
             multiple = component.multiple
             try:
-                # A component with a longer step moves only at its multiples. The
-                # step is the difference of two grid times.
+                # A component with a longer step moves only at its multiples. The step is the
+                # difference of two grid times.
                 if k % multiple == 0:
                     component.write()
                     component.step(clock[k], clock[k + multiple] - clock[k])
@@ -238,8 +233,8 @@ class Master:
                     component.read()
             except SlaveError as error:
                 raise failed_step(component, clock[k], error) from error
-        # Jacobi: read outputs only after all have stepped. Until then remote components
-        # work in parallel.
+        # Jacobi: read outputs only after all have stepped. Until then remote components work in
+        # parallel.
         for component in () if sequential else self._components:
             try:
                 if (k + 1) % component.multiple == 0:

@@ -110,14 +110,11 @@ class CompiledMaster(Master):
         progress: Callable[[int, int], None] | None = None,
     ) -> None:
         """See `Master.run`."""
-        # Without any compiled part the loop in Python is the right one; the remark tells
-        # why.
         if why := self._not_compiled():
             self.reasons = {"all components": why}
             super().run(grid, actions, external, recorders, progress)
             return
-        # A repeated run uses the arrays and the C structures of the run before, if only
-        # numbers differ.
+        # A repeated run uses the arrays of the run before, if only numbers differ.
         if (loop := self._loop) is None or not loop.take_anew(external):
             loop = _CompiledLoop(self, grid, external, recorders)
         k = grid.first
@@ -128,8 +125,7 @@ class CompiledMaster(Master):
         due = sorted(step for step in actions if step > first)
         try:
             while k < last:
-                # Events act between calls of the compiled loop, so a call never
-                # goes past the next event.
+                # Events act between calls, so a call never goes past the next event.
                 if k in actions:
                     self._act(actions[k])
                     loop.take_modifiers()
@@ -138,21 +134,18 @@ class CompiledMaster(Master):
                     if progress is not None and perf_counter() >= report_at:
                         progress(k - first, last - first)
                         report_at = perf_counter() + BETWEEN_REPORTS
-                # On Ctrl-C the row of this step is still missing: the C loop
-                # records it only as it steps.
                 except KeyboardInterrupt:
+                    # The loop records a row only as it steps, so the row of this step is missing.
                     if k % grid.steps_per_row == 0:
                         recorders.record()
                     raise
                 while due and due[0] <= k:
                     due.pop(0)
-                # The call ends at the next event, at the end, or after the number
-                # of steps that took about 0.05 s last time.
+                # The call ends at the next event, at the end, or after a number of steps.
                 end = min(k + steps, due[0] if due else last, last)
                 began = perf_counter()
                 k = loop.run(k, end)
-                # Double or halve the steps of a call: long calls are fast, short
-                # ones let Ctrl-C and progress through.
+                # Long calls are fast, short ones let Ctrl-C and progress through.
                 steps = (
                     2 * steps
                     if perf_counter() - began < 0.5 * BETWEEN_REPORTS
@@ -161,7 +154,6 @@ class CompiledMaster(Master):
         finally:
             self._loop = loop
             self.reasons = loop.reasons
-        # The final values are a row too.
         if last % grid.steps_per_row == 0:
             recorders.record()
         if progress is not None:
@@ -192,8 +184,8 @@ class _CompiledLoop:
         self._library = libraries(
             [files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8")]
         )[0]
-        # The C structures point to the arrays of exchanges and components; nothing is
-        # copied per step.
+        # The C structures point to the arrays of exchanges and components; nothing is copied per
+        # step.
         self._steps = self._compiled(grid)
         self._error: BaseException | None = None
         self._c_exchanges = (_Exchange * len(self._exchanges))(
@@ -223,8 +215,8 @@ class _CompiledLoop:
     def take_anew(self, external) -> bool:
         """Start again in the same arrays with other numbers; true if the code allows it."""
         time, step_size = self._first_step
-        # A component that Python steps keeps its state outside the arrays; then the loop
-        # is built anew.
+        # A component that Python steps keeps its state outside the arrays; then the loop is built
+        # anew.
         if self._reasons or not all(
             step.take_anew(time, step_size) for step in self._steps.values()
         ):
@@ -243,8 +235,7 @@ class _CompiledLoop:
             ctypes.byref(self._system), INT(k), INT(end), ctypes.byref(reached)
         )
         self._recorders.n_rows = self._system.n_rows
-        # An error in a component was kept when it was raised: no exception passes through
-        # C.
+        # An error in a component was kept when it was raised: no exception passes through C.
         if status == FAILED:
             assert self._error is not None
             raise self._error
@@ -311,12 +302,11 @@ class _CompiledLoop:
         return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
 
     def _exchange(self, kind: str, exchange: Exchange) -> _Exchange:
-        # The loop takes connections in order of their period, as the Python exchange
-        # does.
+        # The loop takes connections in order of their period, as the Python exchange does.
         single, sums, _ = exchange.numbered
         due = sorted(single, key=lambda pair: pair[1].period)
-        # Mappings lie in sequence in two arrays, keys and values; each connection knows
-        # its first entry.
+        # Mappings lie in sequence in two arrays, keys and values; each connection knows its first
+        # entry.
         mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
         firsts = np.cumsum([0, *(len(mapping) for mapping in mappings)])
         numbers = iter(range(len(mappings)))
@@ -396,8 +386,8 @@ class _CompiledLoop:
         number = -1 - number if number < 0 else number
         component = self._components[number]
         try:
-            # The C loop counts changes of discrete inputs; Python sets them only when
-            # the count changes.
+            # The C loop counts changes of discrete inputs; Python sets them only when the count
+            # changes.
             for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
                 exchange.version = structure.version
             if reading:
@@ -420,8 +410,7 @@ class _CompiledLoop:
 
     def _take_step(self, component, k):
         compiled = self._steps.get(component.name)
-        # The object gets the state of the compiled memory, makes the step, and returns
-        # its state.
+        # The object gets the state of the compiled memory, makes the step, and returns its state.
         if compiled is not None:
             compiled.give_back()
         component.write()
@@ -429,8 +418,7 @@ class _CompiledLoop:
         component.step(time, float(self._clock[k + component.multiple]) - time)
         if compiled is None:
             return
-        # If the step changed the shape of the state, Python steps this component from now
-        # on.
+        # If the step changed the shape of the state, Python steps this component from now on.
         try:
             compiled.take()
         except Untraceable as reason:

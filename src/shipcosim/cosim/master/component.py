@@ -68,8 +68,8 @@ class ComponentInstance:
 
     def __post_init__(self):
         self._do_step = do_step = self.slave.stepper()
-        # Some FMUs accept one step size only. A difference of two times may be off in the
-        # last digit, so they get the same number each time.
+        # Some FMUs accept one step size only. A difference of two times may be off in the last
+        # digit, so they get the same number each time.
         if (step := self.fixed_step) is not None:
             self._do_step = lambda time, _: do_step(time, step)
 
@@ -92,8 +92,7 @@ class ComponentInstance:
         self.output_rows[kind], self.input_rows[kind] = outputs, inputs
         (first, variables) = outputs
         (first_input, inputs_set) = inputs
-        # The buffers are views of the exchange: the calls read and write its arrays
-        # without copies.
+        # The buffers are views of the exchange: the calls read and write its arrays without copies.
         if variables:
             buffer = exchange.sources[first : first + len(variables)]
             self._gets.append((f"Get{kind}", self.slave.getter(kind, variables, buffer)))
@@ -101,8 +100,7 @@ class ComponentInstance:
             call = self.slave.setter(
                 kind, inputs_set, exchange.inputs[first_input : first_input + len(inputs_set)]
             )
-            # Reals change at every step. Other types change seldom and are set only
-            # then.
+            # Reals change at every step. Other types change seldom and are set only then.
             if kind == "Real":
                 self._set_reals = call
             else:

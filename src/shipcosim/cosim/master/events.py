@@ -61,8 +61,7 @@ def event_actions(
     """Calls that events on components' variables make, by the number of the step before which they are due."""
     actions = defaultdict(list)
     for change in changes(scenario, plan, grid):
-        # Events on the system's own inputs are part of the external values, see
-        # `external_values`.
+        # Events on the system's own inputs are part of the external values, see `external_values`.
         if change.end[0] is not None:
             modifiers, row = modifiers_of(change.end, plan, exchanges)
             arguments = [] if change.action == "reset" else [change.value]
@@ -160,8 +159,8 @@ def modify(values: np.ndarray, active: Modifier | None, changes: Sequence[Signal
     changes : sequence of SignalChange
         Their steps count from the first value.
     """
-    # Each change acts on the unmodified signal: a bias after an override starts from the
-    # signal itself.
+    # Each change acts on the unmodified signal: a bias after an override starts from the signal
+    # itself.
     unmodified = values.copy()
     if active is not None:
         values[:] = active[0] * unmodified + active[1]

@@ -154,8 +154,7 @@ def couple(
     from shipcosim.cosim.slaves.coupled import CoupledModels, Wire
 
     for group in groups_of(connections):
-        # The solver runs at the step of the last member, when the inputs of all members
-        # are set.
+        # The solver runs at the step of the last member, when the inputs of all members are set.
         names = [name for name in order if name in group]
         members = {
             name: slave

@@ -182,8 +182,8 @@ def _gaps(table, clock):
     """Times between rows that are longer than allowed."""
     apart = np.diff(clock)
     longest = table.attrs.get("max_gap")
-    # Without a given limit: if 90 % of the rows are evenly spaced, five missing rows are a
-    # gap. Uneven logs have no usual distance.
+    # Without a given limit: if 90 % of the rows are evenly spaced, five missing rows are a gap.
+    # Uneven logs have no usual distance.
     if longest is None:
         usual = float(np.median(apart)) if len(apart) else 0.0
         even = len(apart) >= 10 and np.mean(np.abs(apart - usual) <= 0.5 * usual) >= 0.9

@@ -39,8 +39,8 @@ def make_exchanges(plan: Plan) -> dict[str, Exchange]:
     ) in BUFFER_TYPES.items():  # Real is last: its external values may follow the others
         layout = plan.layouts[kind]
         if layout.outputs or layout.inputs:
-            # Values that change type between exchanges are copied from the exchange
-            # of their source.
+            # Values that change type between exchanges are copied from the exchange of their
+            # source.
             external = np.array(list(layout.external.values()), dtype=dtype)
             type_changes = [
                 (row, exchanges[source_kind], source)
@@ -95,8 +95,8 @@ def make_components(
         name = component.name
         multiple = plan.multiples[component.name]
         try:
-            # Model exchange must know which inputs a common solver carries: they
-            # cause no event at a step.
+            # Model exchange must know which inputs a common solver carries: they cause no event at
+            # a step.
             slave = slaves.instance_of(component)
             if isinstance(slave, ModelExchange):
                 slave.followed = followed_inputs(inner, name)
@@ -130,8 +130,7 @@ def make_string_connections(plan: Plan, components: Components) -> list[StringCo
             target.slave,
             plan.variable(connection.target),
         )
-        # Two steps of different length: pass on where both end, at the least common
-        # multiple.
+        # Two steps of different length: pass on where both end, at the least common multiple.
         made.append(
             StringConnection(*ends, connection.mapping, lcm(source.multiple, target.multiple))
         )

@@ -24,8 +24,7 @@ def sources_first(system: System) -> list[str]:
         target = connection.target[0]
         if source and target and source != target:
             feeds[target].add(source)
-    # Topological order. In a loop no component is ready: then the first one in the system
-    # goes.
+    # Topological order. In a loop no component is ready: then the first one in the system goes.
     ordered = []
     while names:
         ready = (name for name in names if feeds[name].issubset(ordered))

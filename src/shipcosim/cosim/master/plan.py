@@ -56,8 +56,7 @@ class Layout:
 
     @property
     def transferred_names(self) -> list[str]:
-        """Names of all values that connections bring: the inputs, then the terms of their
-        sums."""
+        """Names of all values that connections bring: the inputs, then the terms of their sums."""
         sums = [
             (label(end), len(c.terms)) for end, c in zip(self.inputs, self.connections, strict=True)
         ]
@@ -179,8 +178,7 @@ def _sorted_connections(plan, from_table):
     """Sort connections by the input that they feed; parameters and strings go into lists."""
     by_input = {}
     for connection in plan.system.connections:
-        # An output of the system gets no value here, and a source without value feeds
-        # nothing.
+        # An output of the system gets no value here, and a source without value feeds nothing.
         if connection.target[0] is None or not _has_values(connection.source, plan, from_table):
             continue
         plan.connected.add(connection.target)
@@ -194,8 +192,7 @@ def _sorted_connections(plan, from_table):
 
 
 def _kinds(system):
-    # One FMU with wide integers widens the integers of the whole system: an exchange has one
-    # type.
+    # One FMU with wide integers widens the integers of the whole system: an exchange has one type.
     types = {
         variable.type
         for component in system.components.values()
@@ -254,8 +251,7 @@ def _connection_problems(system):
 
 
 def _has_values(source, plan, from_table):
-    """True if a source has values; inputs of the system may have no start value, table or
-    event."""
+    """True if a source has values; inputs of the system may have no start value, table or event."""
     component, name = source
     if component is not None:
         return True
@@ -277,8 +273,8 @@ def _lay_out(plan, by_input):
             kind = plan.kind(variable)
             if kind is not None and (variable.causality == "output" or end in sources):
                 plan.layouts[kind].outputs.append(end)
-    # Inputs have a row if something feeds or changes them; others keep their start value in
-    # the FMU.
+    # Inputs have a row if something feeds or changes them; others keep their start value in the
+    # FMU.
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end = component.name, variable.name
@@ -309,8 +305,7 @@ def _input_connection(plan, layout, end, connection):
     period = lcm(own, plan.multiples[component])
     kind = plan.kind_of(connection.source)
     row = plan.layouts[kind].outputs.index(connection.source)
-    # A source of another type comes as an external value that is copied from the other
-    # exchange.
+    # A source of another type comes as an external value that is copied from the other exchange.
     if plan.layouts[kind] is layout:
         return InputConnection(row, *how, period)
     external = _external_row(layout, connection.source, 0)

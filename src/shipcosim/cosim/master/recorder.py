@@ -83,8 +83,7 @@ class Recorder:
 
     def record(self, row: int) -> None:
         """Keep the present values as a row."""
-        # Outputs with overrides, then the external values, then inputs that no output
-        # determines.
+        # Outputs with overrides, then the external values, then inputs that no output determines.
         values = self.rows[row]
         sources = self._exchange.modified_sources
         values[: self._n_outputs] = sources[: self._n_outputs]

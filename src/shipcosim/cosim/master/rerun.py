@@ -10,8 +10,7 @@ Values = list[tuple[Variable, object]]
 
 
 def can_rewind(plan: Plan, components: Components) -> bool:
-    """True if all components can return to before their start: ours, with numeric values
-    only."""
+    """True if all components can return to before their start: ours, with numeric values only."""
     ours = all(component.slave.python_object is not None for component in components.values())
     return ours and not plan.string_connections and not plan.parameter_connections
 
@@ -53,8 +52,8 @@ def _changed(before: Component, component: Component) -> Values | None:
     ):
         return None
     variables = component.fmu.variables
-    # Compare by identity: equal objects are the same value, others are set again, which does
-    # no harm.
+    # Compare by identity: equal objects are the same value, others are set again, which does no
+    # harm.
     unknown = object()
     pairs = (
         (name, value, before.start.get(name, unknown)) for name, value in component.start.items()

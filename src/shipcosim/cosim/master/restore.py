@@ -29,8 +29,7 @@ def check_storable(system: System) -> None:
     problems = []
     for component in system.components.values():
         fmu = component.fmu
-        # The solver of a model-exchange component lies outside the FMU; its state would
-        # be lost.
+        # The solver of a model-exchange component lies outside the FMU; its state would be lost.
         if interface_type_of(component) == "ModelExchange":
             found = "it runs as model exchange, and the solver's state cannot be stored."
             problems.append(Problem(component.name, found, "Run the system without storing it."))
@@ -124,8 +123,7 @@ def take_snapshot(
     outputs = {}
     inputs = {}
     modifiers = modifiers_after(scenario, plan, grid, active)
-    # Outputs, and inputs before overrides: connections with longer periods still hold old
-    # values.
+    # Outputs, and inputs before overrides: connections with longer periods still hold old values.
     for kind, exchange in exchanges.items():
         layout = plan.layouts[kind]
         outputs |= zip(map(label, layout.outputs), exchange.outputs.tolist(), strict=True)
@@ -180,8 +178,8 @@ def restore_snapshot(
             modifiers.put(row, *modifier)
     for kind, exchange in exchanges.items():
         layout = plan.layouts[kind]
-        # Outputs first; the transfer then computes the inputs. Inputs that held an older
-        # value get it back after it.
+        # Outputs first; the transfer then computes the inputs. Inputs that held an older value get
+        # it back after it.
         _fill(exchange.outputs, map(label, layout.outputs), snapshot.outputs)
         exchange.transfer(0)
         _fill(exchange.transferred, layout.transferred_names, snapshot.inputs)

@@ -95,8 +95,7 @@ def _passed_on(values, connection):
 
 
 def _variables(plan, values, n):
-    """Columns of the components' outputs and external values, in the order of system and
-    FMUs."""
+    """Columns of the components' outputs and external values, in the order of system and FMUs."""
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end = (component.name, variable.name)
@@ -116,8 +115,7 @@ def _variables(plan, values, n):
 
 
 def start_values(system: System) -> dict:
-    """Start values of all parameters, and of everything else that the system sets, by
-    signal."""
+    """Start values of all parameters, and of everything else that the system sets, by signal."""
     return {
         label((component.name, variable.name)): component.start_value(variable.name)
         for component in system.components.values()
@@ -169,8 +167,7 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
 
 
 def fingerprint(system: System) -> str:
-    """SHA-256 of a system's wiring: components, connections, connectors; without start
-    values."""
+    """SHA-256 of a system's wiring: components, connections, connectors; without start values."""
     wiring = {
         "components": [
             (c.name, c.step_size, *_interface_asked_for(c)) for c in system.components.values()

@@ -184,8 +184,7 @@ class Simulation:
             master = self._master
             assert master is not None
             master.initialise(grid.start_time, grid.stop_time)
-            # Continue from a snapshot: initialise as usual, then replace states and
-            # values.
+            # Continue from a snapshot: initialise as usual, then replace states and values.
             if self._resume is not None:
                 restore_snapshot(
                     self._resume, self._plan, exchanges, self._strings, self._components
@@ -222,8 +221,7 @@ class Simulation:
             plan, exchanges, slaves, step_size, check_interrupt, inner
         )
         couple(plan, self._components, stepping_order(plan, self._order), inner)
-        # For a repetition keep the state before the start; it is faster than a new
-        # instance.
+        # For a repetition keep the state before the start; it is faster than a new instance.
         if self._repeated and can_rewind(plan, self._components):
             states = {
                 name: one.slave.python_object._get_fmu_state()
@@ -266,8 +264,7 @@ class Simulation:
         return True
 
     def snapshot(self) -> Snapshot:
-        """State of the system at the end of the grid. Raises RunError if an FMU gives
-        none."""
+        """State of the system at the end of the grid. Raises RunError if an FMU gives none."""
         # Compiled components have their state in arrays; copy it to the objects first.
         if self._master is not None:
             self._master.give_back()

@@ -55,8 +55,7 @@ class InputConnection:
         return passed.astype(values.dtype)
 
     def input_values(self, columns: Sequence[np.ndarray]) -> np.ndarray:
-        """Values of all sources together as they arrive, (n,), from one (n,) array per
-        source."""
+        """Values of all sources together as they arrive, (n,), from one (n,) array per source."""
         arrived = self.transferred(columns[self.source])
         for connection in self.added:
             arrived = arrived + connection.transferred(columns[connection.source])
@@ -106,8 +105,7 @@ class Modifiers:
             values[self._rows] = self._scale * values[self._rows] + self._shift
 
     def _update(self):
-        # The version tells the exchange that its inputs may differ although no source
-        # changed.
+        # The version tells the exchange that its inputs may differ although no source changed.
         self.version += 1
         self._rows = np.array(list(self._by_row), dtype=int)
         self._scale = np.array([scale for scale, _ in self._by_row.values()])
@@ -158,14 +156,13 @@ class Exchange:
         type_changes: Sequence[tuple[int, Exchange, int]] = (),
     ):
         dtype = external.dtype
-        # One array for outputs and external values: a connection needs one index,
-        # whatever its source.
+        # One array for outputs and external values: a connection needs one index, whatever its
+        # source.
         self.sources = np.concatenate([np.zeros(n_outputs, dtype=dtype), external])
         self.outputs = self.sources[:n_outputs]
         self.external = self.sources[n_outputs:]
         self.modified_sources = self.sources.copy()
-        # Sums have rows for their terms behind the inputs, so every connection brings one
-        # value.
+        # Sums have rows for their terms behind the inputs, so every connection brings one value.
         self.numbered = single, self._sums, n = _numbered(connections)
         self.transferred = np.zeros(n, dtype=dtype)
         self.inputs = np.zeros(len(connections), dtype=dtype)
@@ -179,8 +176,8 @@ class Exchange:
         # Connections with the same period are passed on together.
         periods = sorted({connection.period for _, connection in single})
         self._groups = [_ConnectionGroup(single, period, n) for period in periods]
-        # If nothing changed since the last transfer there is nothing to do; valid if all
-        # are due each step.
+        # If nothing changed since the last transfer there is nothing to do; valid if all are due
+        # each step.
         self._may_rest = self._counts_versions and periods in ([], [1])
         self._passed_on = ()
 
@@ -200,8 +197,7 @@ class Exchange:
 
         Values of types other than Real change seldom: where none has since the last time, nothing is to be done.
         """
-        # Copies between types happen first: their sources are outputs of another
-        # exchange.
+        # Copies between types happen first: their sources are outputs of another exchange.
         for row, exchange, source in self.type_changes:
             self.external[row] = exchange.modified_sources[source]
         if self._may_rest and self._passed_on == self._state():

@@ -132,8 +132,7 @@ class RequestHandler:
         self, number: int, time: float, step_size: float, getters: Sequence[int]
     ) -> list[tuple[int, bytes]]:
         """Make a prepared step, then get the values that will be asked for next."""
-        # The answer to the step brings the outputs along: one message per step instead of
-        # several.
+        # The answer to the step brings the outputs along: one message per step instead of several.
         self._slave.check("DoStep", self._prepared[number][0](time, step_size))
         return [self.get(getter) for getter in getters]
 
@@ -146,8 +145,7 @@ class RequestHandler:
 
 
 def _own_pipes():
-    """The pipes to the run, closed to all others here, and a function that flushes printed
-    text."""
+    """The pipes to the run, closed to all others here, and a function that flushes printed text."""
     # Keep the pipes under new numbers. Print of the FMU then goes to stderr, not between the
     # answers.
     source = os.fdopen(os.dup(0), "rb")

@@ -48,8 +48,7 @@ class ComponentProcess:
         self._was_late = False
         self._deadline: float | None = None
         self._last: deque[str] = deque(maxlen=LAST_LINES)
-        # TMPDIR: files that the FMU leaves behind are removed with the folder after the
-        # run.
+        # TMPDIR: files that the FMU leaves behind are removed with the folder after the run.
         self._process = subprocess.Popen(
             [sys.executable, "-c", START.format(path=sys.path)],
             env=os.environ | {"TMPDIR": folder, "TEMP": folder, "TMP": folder},
@@ -89,8 +88,7 @@ class ComponentProcess:
         return self.receive_answer()
 
     def send_request(self, what: str, function: str, *arguments: Any) -> None:
-        """Send a request; `receive_answer` must follow. Other processes can work
-        meanwhile."""
+        """Send a request; `receive_answer` must follow. Other processes can work meanwhile."""
         self._requested = what
         self._within(what, self._timeout, send, self._requests, (True, function, *arguments))
 
@@ -109,8 +107,7 @@ class ComponentProcess:
         self._within(what, self._timeout, send, self._requests, (False, function, *arguments))
 
     def _within(self, what, limit, action, *arguments: Any):
-        # The watchdog compares this deadline with the clock, and ends the process if it
-        # is late.
+        # The watchdog compares this deadline with the clock, and ends the process if it is late.
         self._deadline = monotonic() + limit
         try:
             return action(*arguments)
@@ -155,15 +152,13 @@ class ComponentProcess:
         if os.name != "posix":
             self._process.kill()
             return
-        # The process leads a session of its own, so its group contains all that it
-        # started.
+        # The process leads a session of its own, so its group contains all that it started.
         with suppress(OSError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
     def _cause_of_end(self, what, limit):
         """Describe how the process ended."""
-        # It may still be on its way to the end: give it time before the exit code is
-        # read.
+        # It may still be on its way to the end: give it time before the exit code is read.
         try:
             code = self._process.wait(EXIT_TIMEOUT)
         except subprocess.TimeoutExpired:

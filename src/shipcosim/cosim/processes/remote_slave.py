@@ -71,8 +71,7 @@ class RemoteSlave(Slave):
         self._getters.append(number)
 
         def get_all():
-            # Reading ends a step that is under way; its answer brought these values
-            # along.
+            # Reading ends a step that is under way; its answer brought these values along.
             if self._is_stepping:
                 self._finish()
             status, data = self._fetched.pop(number, None) or self._request(what, "get", number)
@@ -149,8 +148,7 @@ class RemoteSlave(Slave):
         return self._process.request(*question)
 
     def _finish(self):
-        """Finish the step under way; values fetched with an earlier one are no longer
-        valid."""
+        """Finish the step under way; values fetched with an earlier one are no longer valid."""
         self._fetched = {}
         if self._is_stepping:
             self._is_stepping = False

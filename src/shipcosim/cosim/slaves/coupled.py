@@ -69,8 +69,7 @@ class CoupledModels:
         self._put_out, self._fed = np.zeros(len(self._wires)), np.full(len(self._wires), np.nan)
 
     def _prepared(self, name: str) -> tuple[ModelExchange, np.ndarray, tuple, np.ndarray, tuple]:
-        """A member, its connections out and in, and the calls that get and set their
-        values."""
+        """A member, its connections out and in, and the calls that get and set their values."""
         slave = self._members[name]
         sources = np.array(
             [i for i, wire in enumerate(self._wires) if wire.source[0] == name], dtype=int
@@ -134,8 +133,8 @@ class CoupledModels:
         near = CLOSE * max(abs(end), end - time)
         n_events = 0
         now = time
-        # After the start or a changed input, members are in event mode: continue from
-        # their new states.
+        # After the start or a changed input, members are in event mode: continue from their new
+        # states.
         if any(slave.mode == EVENT for slave in self._members.values()):
             self._enter_continuous_time(solver, now)
         while now < end - near:
@@ -145,8 +144,8 @@ class CoupledModels:
                 reached, _ = solver.step(stop)
                 # Snap to the stop time, so that times do not drift by rounding.
                 now = stop if abs(reached - stop) <= near else reached
-                # The solver's last evaluation may lie elsewhere; bring members to
-                # the point that was reached.
+                # The solver's last evaluation may lie elsewhere; bring members to the point that
+                # was reached.
                 self._derivatives(now, solver.states.ctypes.data_as(POINTER(c_double)), None)
             # Members with a step event or a time event due now.
             due = [
@@ -157,12 +156,10 @@ class CoupledModels:
             if due:
                 for slave in due:
                     slave.handle_event(now)
-                # An event may change states: all members go on together from the
-                # new ones.
+                # An event may change states: all members go on together from the new ones.
                 self._enter_continuous_time(solver, now)
                 n_events += 1
-            # Too many events in one step: a model that switches back and forth
-            # (chattering).
+            # Too many events in one step: a model that switches back and forth (chattering).
             if n_events > MOST_EVENTS:
                 raise SlaveError(
                     f"Together they had more than {MOST_EVENTS} events until t = {now:.9g} s."
@@ -174,14 +171,13 @@ class CoupledModels:
         for name, slave in self._members.items():
             part = self._slices[name]
             slave.enter_continuous(time, solver.states[part], nominals[part])
-        # Inputs follow the outputs before the solver starts, or its first derivatives
-        # would be wrong.
+        # Inputs follow the outputs before the solver starts, or its first derivatives would be
+        # wrong.
         self._settle()
         solver.start(time, nominals)
 
     def _derivatives(self, time, states, derivatives):
-        """Derivatives of all states; without `derivatives` only set time, states and
-        inputs."""
+        """Derivatives of all states; without `derivatives` only set time, states and inputs."""
         # Each member gets its slice of the state vector.
         every = np.ctypeslib.as_array(states, (self._n,)) if self._n else np.empty(0)
         for name, slave in self._members.items():
@@ -201,8 +197,8 @@ class CoupledModels:
 
     def _settle(self):
         """Carry outputs to inputs until they agree."""
-        # Fixed-point iteration. A chain without direct feedthrough settles at once; an
-        # algebraic loop needs more sweeps.
+        # Fixed-point iteration. A chain without direct feedthrough settles at once; an algebraic
+        # loop needs more sweeps.
         settled = np.zeros(len(self._wires), dtype=bool)
         for _ in range(MOST_SWEEPS):
             for slave, sources, (get, got), _targets, _set in self._ends:

@@ -81,8 +81,8 @@ class Cvode:
             lib.CVRhsFn(self._evaluate),
             lib.CVRootFn(self._evaluate_roots),
         )
-        # BDF is implicit, for stiff ship and machinery models; the Jacobian is dense, by
-        # finite differences.
+        # BDF is implicit, for stiff ship and machinery models; the Jacobian is dense, by finite
+        # differences.
         self._memory = lib.CVodeCreate(BDF, *context)
         self._context.watch(self._memory)
         self._check(lib.CVodeInit(self._memory, self._rhs, 0.0, self._x))
@@ -93,20 +93,17 @@ class Cvode:
             self._check(lib.CVodeRootInit(self._memory, n_roots, self._root_function))
 
     def start(self, time: float, nominals: np.ndarray) -> None:
-        """Start again at a time from the present `states`; nominal values are an (n,)
-        array."""
+        """Start again at a time from the present `states`; nominal values are an (n,) array."""
         if self._n:
-            # Absolute tolerance = relative tolerance times nominal value, as FMI
-            # recommends: states differ in size by many powers of ten.
+            # Absolute tolerance = relative tolerance times nominal value, as FMI recommends: states
+            # differ in size by many powers of ten.
             self._tolerances[:] = self._tolerance * np.abs(nominals)
             self._check(lib.CVodeSVtolerances(self._memory, self._tolerance, self._absolute))
-        # A restart also forgets the history of the multistep method, which an event
-        # invalidates.
+        # A restart also forgets the history of the multistep method, which an event invalidates.
         self._check(lib.CVodeReInit(self._memory, time, self._x))
 
     def step(self, stop: float) -> tuple[float, bool]:
-        """Make one internal step, at most to a time; return the time and if a root was
-        found."""
+        """Make one internal step, at most to a time; return the time and if a root was found."""
         reached = c_double()
         self._error = None
         self._check(_set_stop_time(self._memory, stop))
@@ -137,8 +134,7 @@ class Cvode:
         return self._guarded(self._roots, time, NV_DATA_S(x), values)
 
     def _guarded(self, function, *arguments):
-        # An exception cannot pass through C: keep it and stop the solver; `_check` raises
-        # it.
+        # An exception cannot pass through C: keep it and stop the solver; `_check` raises it.
         try:
             return function(*arguments) or 0
         except Exception as error:  # one that left a callback would be printed and forgotten

@@ -35,12 +35,10 @@ class Slave1(LibrarySlave):
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
-        # FMI 1.0 has Booleans of one byte, unlike our buffers: use a buffer of the FMU's
-        # own type.
+        # FMI 1.0 has Booleans of one byte, unlike our buffers: use a buffer of the FMU's own type.
         own, signs, call = self._prepared("Set", kind, variables)
 
-        # An alias with opposite sign (FMI 1.0) has the negated value of the base
-        # variable.
+        # An alias with opposite sign (FMI 1.0) has the negated value of the base variable.
         def set_all():
             own[:] = buffer * signs
             return call()

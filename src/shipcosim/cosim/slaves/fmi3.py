@@ -62,8 +62,8 @@ class Slave3(LibrarySlave):
                 )
                 if status is not None:
                     return status
-                # Setting an element sets the whole array: the other elements keep
-                # what was set last.
+                # Setting an element sets the whole array: the other elements keep what was set
+                # last.
                 self._load_arrays(group)
                 group.values[group.positions] = values
                 for variable, first in group.arrays:
@@ -109,8 +109,8 @@ class Slave3(LibrarySlave):
         results = byref(event), byref(terminate), byref(early), byref(reached)
 
         def step(time, step_size):
-            # Event mode and early return are not used; if the FMU asks for either,
-            # the step is not done.
+            # Event mode and early return are not used; if the FMU asks for either, the step is not
+            # done.
             status = do_step(self.component, time, step_size, True, *results)
             return DISCARD if status < FAILED and (terminate.value or early.value) else status
 
@@ -146,8 +146,7 @@ class Slave3(LibrarySlave):
         for variable, first in zip(layout.variables, layout.offsets, strict=True):
             self._array_values[variable.value_reference] = whole[first : first + _size(variable)]
         if is_binary:
-            # Keep the buffers alive until the call is made; an empty value still
-            # needs an address.
+            # Keep the buffers alive until the call is made; an empty value still needs an address.
             data = [
                 (c_ubyte * max(len(value), 1)).from_buffer_copy(value or b"\0") for value in whole
             ]
@@ -185,8 +184,8 @@ class Slave3(LibrarySlave):
             of_type = [variables[row] for row in rows]
             function = self._function(f"{verb}{'Int64' if name == 'Enumeration' else name}")
             group = TypeGroup(self.component, function, of_type, rows, TYPES[name])
-            # A cast narrows on the way to the FMU (Set) or to the run (Get). Only
-            # then must values be checked.
+            # A cast narrows on the way to the FMU (Set) or to the run (Get). Only then must values
+            # be checked.
             ways = (kind, group.values.dtype) if verb == "Set" else (group.values.dtype, kind)
             group.narrows = name != "Boolean" and not np.can_cast(*ways)
             yield group

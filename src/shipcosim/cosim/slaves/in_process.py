@@ -24,13 +24,13 @@ def python_object_of(folder: Path, name: str) -> Any:
     The module that an FMU of ours enters by has a name unique to its content, so it does not matter from which folder
     the process has loaded it first.
     """
-    # The entry module's name is unique to the content, so this finds the FMU's own copy of
-    # the shell.
+    # The entry module's name is unique to the content, so this finds the FMU's own copy of the
+    # shell.
     entry = (Path(folder) / "resources" / "slavemodule.txt").read_text(encoding="utf-8").strip()
     shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.shell")
     reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
-    # The shell keeps a weak reference to its newest object. The name makes sure that it is
-    # this instance.
+    # The shell keeps a weak reference to its newest object. The name makes sure that it is this
+    # instance.
     made = reference() if reference is not None else None
     ours = made is not None and made.instance_name == name and hasattr(made, "advance")
     return made if ours else None
@@ -111,8 +111,7 @@ class DirectCalls:
         def step(time, step_size):
             try:
                 advance(time, step_size)
-            # BaseException: code of an FMU must not end the run, not even by
-            # sys.exit.
+            # BaseException: code of an FMU must not end the run, not even by sys.exit.
             except BaseException as error:
                 return self._failed(target.failure(error))
             # Messages are collected by the object; pass them on as the binary would.

@@ -4,8 +4,7 @@ from shipcosim.ssp import Component
 
 
 def interface_type_of(component: Component) -> str | None:
-    """``"CoSimulation"`` or ``"ModelExchange"``; None if the FMU does not offer what is asked
-    for.
+    """``"CoSimulation"`` or ``"ModelExchange"``; None if the FMU does not offer what is asked for.
 
     Where the system asks for none it is co-simulation wherever an FMU offers that.
     """

@@ -63,8 +63,8 @@ class LibrarySlave(Slave):
             )
             self._instantiate()
         except Exception as error:
-            # The FMU's own messages tell more than the error; a missing binary is the
-            # usual other cause.
+            # The FMU's own messages tell more than the error; a missing binary is the usual other
+            # cause.
             raise SlaveError(
                 self.last_messages() or f"{error} {_platform_hint(folder)}".strip()
             ) from error
@@ -86,8 +86,7 @@ class LibrarySlave(Slave):
     def check(self, function: str, status: int) -> None:
         """Raise SlaveError if the status says that the function failed."""
         if status >= FAILED:
-            # After a fatal error FMI allows no further call, not even to free the
-            # instance.
+            # After a fatal error FMI allows no further call, not even to free the instance.
             self._is_lost = status == FATAL
             label = STATUS[status] if status < len(STATUS) else str(status)
             raise SlaveError(
@@ -113,8 +112,7 @@ class LibrarySlave(Slave):
             self._fmu.freeInstance()
 
     def reset(self) -> None:
-        """Return the instance to its state after instantiation, also after the end of a
-        run."""
+        """Return the instance to its state after instantiation, also after the end of a run."""
         self.call("Reset")
         self._messages.clear()
         self._find_python_object()
@@ -127,8 +125,7 @@ class LibrarySlave(Slave):
         """
         target = self.python_object
         values = vars(target)
-        # Parameter dataclasses are kept: the shell replaces only those whose values
-        # change.
+        # Parameter dataclasses are kept: the shell replaces only those whose values change.
         groups = {group.name: values[group.name] for group in target.groups if group.name in values}
         target._set_fmu_state(state)
         values.update(groups)
@@ -215,8 +212,7 @@ class LibrarySlave(Slave):
     def status_of_range(
         self, values: np.ndarray, kind: np.dtype, variables: Sequence[Variable]
     ) -> int | None:
-        """Status, logged with its reason, if a type cannot hold a value; None if it holds
-        all."""
+        """Status, logged with its reason, if a type cannot hold a value; None if it holds all."""
         limits = np.finfo(kind) if kind.kind == "f" else np.iinfo(kind)
         low = int(limits.min)
         high = int(limits.max)
@@ -240,8 +236,7 @@ class LibrarySlave(Slave):
         return cast(buffer, self._function(function).argtypes[position])
 
     def _function(self, name):
-        """Function of the FMU's library by its name without prefix; FMPy has set its
-        types."""
+        """Function of the FMU's library by its name without prefix; FMPy has set its types."""
         try:
             return getattr(self._fmu.dll, self._symbol(name))
         except AttributeError:

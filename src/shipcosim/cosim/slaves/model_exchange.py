@@ -95,8 +95,7 @@ class ModelExchange(LibrarySlave):
     def setter(
         self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
     ) -> Callable[[], int]:
-        """Prepared call that sets variables of one kind where they changed; returns the
-        status."""
+        """Prepared call that sets variables of one kind where they changed; returns the status."""
         set_all = super().setter(kind, variables, buffer)
         last = None
         last_held = None
@@ -107,12 +106,10 @@ class ModelExchange(LibrarySlave):
             nonlocal last, last_held
             values = buffer.tobytes()
             held_values = values if held.all() else buffer[held].tobytes()
-            # Unchanged inputs need no call. Changes of followed inputs alone need no
-            # event either.
+            # Unchanged inputs need no call. Changes of followed inputs alone need no event either.
             if values == last or (self._mode == CONTINUOUS and held_values == last_held):
                 return OK
-            # A jump of an input is an event: FMI allows discontinuities only in event
-            # mode.
+            # A jump of an input is an event: FMI allows discontinuities only in event mode.
             if self._mode == CONTINUOUS:
                 self._enter_event_mode()
             self._is_event_done = False
@@ -155,8 +152,7 @@ class ModelExchange(LibrarySlave):
             self._n, self._derivatives, self._n_indicators, self._indicators, tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
-        # Discrete states must settle before continuous time begins (FMI, event
-        # iteration).
+        # Discrete states must settle before continuous time begins (FMI, event iteration).
         self._iterate_event()
 
     def reset(self) -> None:
@@ -232,8 +228,7 @@ class ModelExchange(LibrarySlave):
         self._iterate_event()
 
     def enter_continuous(self, time: float, states: np.ndarray, nominals: np.ndarray) -> None:
-        """Enter continuous time at a time; fill states and nominal values, (n_states,)
-        arrays."""
+        """Enter continuous time at a time; fill states and nominal values, (n_states,) arrays."""
         self._time = time
         # After a changed input the event iteration is still due.
         if self._mode == EVENT:
@@ -271,25 +266,20 @@ class ModelExchange(LibrarySlave):
                 stop = min(end, self._next_event)
                 assert self._solver is not None
                 reached, has_root = self._solver.step(stop)
-                # Snap to the stop time, so that the master's time and the FMU's
-                # are equal.
+                # Snap to the stop time, so that the master's time and the FMU's are equal.
                 self._time = stop if abs(reached - stop) <= near else reached
-                # The FMU's last evaluation may lie elsewhere, at a trial point of
-                # the solver.
+                # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
                 self._set_time_and_states(self._time, self._states)
-                # State event: an indicator crossed zero. Step event: the FMU asks
-                # for one.
+                # State event: an indicator crossed zero. Step event: the FMU asks for one.
                 solver_step = self._completed_step() or has_root
                 if not solver_step:
                     continue
-            # An event: iterate the discrete states, then restart the solver from the
-            # new states.
+            # An event: iterate the discrete states, then restart the solver from the new states.
             self._enter_event_mode()
             self._iterate_event()
             self._enter_continuous_time()
             n_events += 1
-            # Too many events in one step: the model switches back and forth
-            # (chattering).
+            # Too many events in one step: the model switches back and forth (chattering).
             if n_events > MOST_EVENTS:
                 raise SlaveError(
                     f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s."

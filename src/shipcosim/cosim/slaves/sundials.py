@@ -29,14 +29,13 @@ class Context:
     def __init__(self, note: Callable[[bytes], None]):
         self.arguments: tuple[Any, ...] = ()
         types: Any = sundials_types
-        # Version 5 has no context; messages go to a handler of each CVode memory, see
-        # `watch`.
+        # Version 5 has no context; messages go to a handler of each CVode memory, see `watch`.
         if sundials_context is None:
             handler: Any = vars(cvode)["CVErrHandlerFn"]
             self._handler = handler(lambda code, module, function, message, data: note(message))
             return
-        # Version 7: all objects belong to a context, and errors go to its handlers. Only
-        # ours shall be there.
+        # Version 7: all objects belong to a context, and errors go to its handlers. Only ours shall
+        # be there.
         context = types.SUNContext()
         sundials_context.SUNContext_Create(types.SUN_COMM_NULL, byref(context))
         self._handler = types.SUNErrHandlerFn(

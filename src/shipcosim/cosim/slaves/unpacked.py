@@ -36,16 +36,14 @@ class UnpackedFmus:
         return self
 
     def __exit__(self, *_):
-        # Another run may unpack to the same path: it must not find the modules of this
-        # one.
+        # Another run may unpack to the same path: it must not find the modules of this one.
         for name in self._imported(self._root):
             del sys.modules[name]
         sys.path[:] = [entry for entry in sys.path if not entry.startswith(f"{self._root}{os.sep}")]
         self._temporary.cleanup()
 
     def folder(self, fmu: Path) -> Path:
-        """Folder of an FMU, unpacked at the first call; its modules come before all
-        others."""
+        """Folder of an FMU, unpacked at the first call; its modules come before all others."""
         if fmu not in self._folders:
             self._folders[fmu] = _in_cache(fmu) or self._unpacked(fmu)
         if self._root in self._folders[fmu].parents:
@@ -73,8 +71,7 @@ class UnpackedFmus:
 
 
 def _in_cache(fmu: Path) -> Path | None:
-    """Cache folder of an FMU of our shell; None for others, or if the cache cannot be
-    written."""
+    """Cache folder of an FMU of our shell; None for others, or if the cache cannot be written."""
     try:
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()[:32]
         folder = (cache() / "unpacked" / digest).resolve()

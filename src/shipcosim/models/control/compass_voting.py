@@ -153,28 +153,30 @@ def step(
     -------
     CompassVote
         State of the vote; `psi` is the heading to use, the predicted one where no compass is believed.
+
+    Notes
+    -----
+    Each compass is compared with the gyro: what it turned more, summed with forgetting over
+    `compass_memory`. The difference of both is low-pass filtered, so that single wrong samples do
+    not count. A frozen compass gives exactly the same value. Without a trusted heading the
+    prediction gets worse by the gyro's drift, and its limit grows. A rejected compass is believed
+    again after it has agreed for some time, with the other one if that is used, else with the
+    prediction; while it is silent its state stays.
     """
     p = parameters
     (first, second) = headings
     (one, two) = state.headings
-    # First-order filters in discrete time: share kept over dt for a time constant T is
-    # exp(-dt/T).
     keep = exp(-dt / p.compass_memory)
     gain = 1.0 - exp(-dt / p.compass_filter)
-    # Deviation from the observer and movement since the last message, both along the shorter
-    # arc.
     off_one = wrap(first.psi - predicted)
     off_two = wrap(second.psi - predicted)
     moved_one = wrap(first.psi - one.psi)
     moved_two = wrap(second.psi - two.psi)
-    # Compass movement minus gyro movement, summed with forgetting. A compass that comes back
-    # starts with its deviation from the observer.
+    # Compass turn minus gyro turn, with forgetting; a new one starts at its deviation.
     memory = (
         where(one.valid > 0.5, keep * state.memory[0] + moved_one - dt * r, off_one),
         where(two.valid > 0.5, keep * state.memory[1] + moved_two - dt * r, off_two),
     )
-    # A frozen compass gives exactly the same value; noise makes this unlikely for a working
-    # one.
     unchanged = (
         where(moved_one == 0.0, state.unchanged[0] + dt, 0.0 * dt),
         where(moved_two == 0.0, state.unchanged[1] + dt, 0.0 * dt),
@@ -183,22 +185,15 @@ def step(
         _usable(first, unchanged[0], minimum(quiet, unchanged[1]), p.compass_freeze_time),
         _usable(second, unchanged[1], minimum(quiet, unchanged[0]), p.compass_freeze_time),
     )
-    # Low-pass filter of the difference: single wrong samples do not count, a lasting offset
-    # does.
     difference = wrap(first.psi - second.psi - state.apart)
     apart = usable[0] * usable[1] * (state.apart + gain * difference)
     passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
-    # Without a trusted heading the prediction gets worse by the gyro's drift, so its limit
-    # grows.
     limit = p.compass_gyro_max + p.gyro_drift * state.age
     between = abs(apart) - p.compass_apart_max
-    # A compass is compared with the other if that is used, else with the prediction.
     agreed = (
         _agreed(state.agreed[0] + dt, usable[0], passed[1], between, abs(off_one) - limit),
         _agreed(state.agreed[1] + dt, usable[1], passed[0], between, abs(off_two) - limit),
     )
-    # A rejected compass is believed again only after it has agreed for some time. While a
-    # compass is silent its state stays.
     believed = (
         where(
             (agreed[0] >= p.compass_return_time),
@@ -237,8 +232,7 @@ def _passed(state, usable, memory, disagree, p):
 
 
 def _agreed(time, usable, other, between, alone):
-    """How long a compass has agreed with the other, if that is used, else with the
-    prediction."""
+    """How long a compass has agreed with the other, if that is used, else with the prediction."""
     return where(where(other > 0.5, between, alone) <= 0.0, usable * time, 0.0 * time)
 
 

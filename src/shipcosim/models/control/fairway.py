@@ -63,8 +63,7 @@ class Progress(NamedTuple):
 def progress(
     x: float, y: float, u: float, leg: int, *, fairway: FairwayParameters, yaw_rate: float
 ) -> Progress:
-    """Progress of a ship on the fairway; she changes to the next leg as early as her turn
-    needs.
+    """Progress of a ship on the fairway; she changes to the next leg as early as her turn needs.
 
     Parameters
     ----------
@@ -121,6 +120,5 @@ def _early(points: Sequence, leg: int, course: float, u: float, yaw_rate: float)
     (x_2, y_2) = points[leg + 2]
     # A sharp turn is limited: tan(turn / 2) grows without bound towards 180 degrees.
     turn = min(abs(wrap(atan2(y_2 - y_1, x_2 - x_1) - course)), 0.6 * pi)
-    # Circle of radius R = u / r between the legs: it begins R tan(turn / 2) before the
-    # waypoint.
+    # Circle of radius R = u / r between the legs: it begins R tan(turn / 2) before the waypoint.
     return abs(u) * (tan(0.5 * turn) / yaw_rate + 8.0)  # 8 s until she turns

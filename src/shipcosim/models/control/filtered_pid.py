@@ -149,8 +149,8 @@ def step(
     """
     p = parameters
     frequency = parameters.filter_frequency
-    # Filter the deviation from the new measurement, which is constant over the step: the
-    # solution is exact.
+    # Filter the deviation from the new measurement, which is constant over the step: the solution
+    # is exact.
     x, x_dot = _filtered(state.x - measured[0], state.x_dot, frequency, h)
     y, y_dot = _filtered(state.y - measured[1], state.y_dot, frequency, h)
     psi, psi_dot = _filtered(wrap(state.psi - measured[2]), state.psi_dot, frequency, h)

@@ -242,8 +242,8 @@ def _look(t, mind, seen, who):
     # Time since the last look, from which the trim is integrated. The first look integrates
     # nothing.
     since = t - mind.looks_at + manner.look_interval if mind.looks else 0.0
-    # Random pauses between looks, and a slow random variation of the wanted speed. Both
-    # follow from the seed.
+    # Random pauses between looks, and a slow random variation of the wanted speed. Both follow from
+    # the seed.
     mood = normals("helmsman", manner.seed, mind.looks, 1)[0]
     pause = manner.look_interval
     mood_of_now = normals("mood of the helmsman", manner.seed, int(t / manner.lurch_time), 1)[0]
@@ -269,8 +269,8 @@ def _off_berth(ship, fairway):
 def _stage(stage, way, ship, who):
     """The present stage of the docking."""
     ahead, off, turned = _off_berth(ship, who.fairway)
-    # Stages only go forward. Off the berth she must lie close, parallel and near the
-    # stand-off before she goes sideways.
+    # Stages only go forward. Off the berth she must lie close, parallel and near the stand-off
+    # before she goes sideways.
     if stage == UNDER_WAY and way.to_go < who.manner.closing_distance:
         return CLOSING
     if (
@@ -292,22 +292,20 @@ def _wanted(mind, ship, mood, who):
         u, v, heading = _under_way(mind.way, ship, mood, manner)
     else:
         u, v, heading = _near(mind.stage, ship, mood, who)
-    # The heading error is to vanish in `heading_time`, with at most the yaw rate of a normal
-    # turn.
+    # The heading error is to vanish in `heading_time`, with at most the yaw rate of a normal turn.
     r = clip(wrap(heading - ship.psi) / manner.heading_time, -manner.yaw_rate, manner.yaw_rate)
     return u, v, r
 
 
 def _under_way(way, ship, mood, manner):
     """Speed by distance left, heading that keeps her on the leg; sway free. [m/s, m/s, rad]"""
-    # Constant deceleration: u² is linear in the distance, from transit speed to closing
-    # speed.
+    # Constant deceleration: u² is linear in the distance, from transit speed to closing speed.
     left = clip((way.to_go - manner.closing_distance) / manner.slowing_distance, 0.0, 1.0)
     slow = manner.closing_speed
     fast = manner.transit_speed
     u = sqrt(slow * slow + left * (fast * fast - slow * slow))
-    # Line-of-sight steering: aim at a point ahead on the leg; the distance grows with speed.
-    # The drift angle is compensated.
+    # Line-of-sight steering: aim at a point ahead on the leg; the distance grows with speed. The
+    # drift angle is compensated.
     course = way.course - atan2(way.beside, 60.0 + 12.0 * ship.u)
     drift = atan2(ship.v, max(ship.u, 0.5))
     return u * (1.0 + (mood - 1.0) * (1.0 - left)), ship.v, course - clip(drift, -0.5, 0.5)
@@ -336,8 +334,7 @@ def _near(stage, ship, mood, who):
 
 
 def _force(mind, seen, wanted, since, who):
-    """Force that he thinks is needed, with his trim for wind and current, and the levers for
-    it."""
+    """Force that he thinks is needed, with his trim for wind and current, and the levers for it."""
     hand = who.ship
     manner = who.manner
     ship = seen.ship
@@ -371,8 +368,7 @@ def _together(X, N, u, astern, hand):
     # The tunnel helps at low speed, when the rudder effect is weak.
     helps = clip(2.2 - u, 0.0, 1.0)
     tunnel = clip(0.6 * helps * N / hand.bow_x, -hand.tunnel_max, hand.tunnel_max)
-    # Side force at the stern for the rest of the moment: N = x Y, with x negative at the
-    # stern.
+    # Side force at the stern for the rest of the moment: N = x Y, with x negative at the stern.
     Y = (N - tunnel * hand.bow_x) / hand.stern_x
     limit = 0.6 + 0.6 * helps
     if astern:

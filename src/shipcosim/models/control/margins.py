@@ -71,8 +71,7 @@ class Margins(NamedTuple):
 
 
 class OpenLoop(NamedTuple):
-    """The open loop as a periodic linear system, x[k+1] = A[k] x[k] + B d, thruster load y = C
-    x.
+    """The open loop as a periodic linear system, x[k+1] = A[k] x[k] + B d, thruster load y = C x.
 
     Parameters
     ----------
@@ -126,16 +125,15 @@ def linear_loop(
     OpenLoop
         The open loop.
     """
-    # Positions come every `period` samples; ages are whole samples, so delays are shift
-    # registers.
+    # Positions come every `period` samples; ages are whole samples, so delays are shift registers.
     h = parameters.sample_period
     period = round(parameters.position_period / parameters.sample_period)
     late = round(delays.heading / h)
     later = round(delays.position / h)
     queue = max(1, round(delays.command / h))
     plant, push = _ship(ship, h)
-    # State vector: ship (6), queue of past motions, observer and law, queue of commands,
-    # thruster lag (3).
+    # State vector: ship (6), queue of past motions, observer and law, queue of commands, thruster
+    # lag (3).
     sizes = [6, 6 * later, _ESTIMATE + _CONTROL, 3 * queue, 3]
     ends = np.cumsum([0, *sizes])
     body, past, controller, commands, thrust = (
@@ -152,20 +150,20 @@ def linear_loop(
         a[body, body] = plant
         a[past, body] = np.eye(6 * later, 6)
         a[past, past] = np.eye(6 * later, k=-6)
-        # Observer and law get motions of the age at which messages arrive: positions and
-        # headings differ.
+        # Observer and law get motions of the age at which messages arrive: positions and headings
+        # differ.
         a[controller, controller] = own
         for i, age in enumerate((later, later, late) * 2):
             a[controller, past.start + 6 * (age - 1) + i] = measured[:, i]
-        # Requested loads wait in the queue of commands, then pass the thrusters' lag of
-        # first order.
+        # Requested loads wait in the queue of commands, then pass the thrusters' lag of first
+        # order.
         a[commands, controller.stop - 3 : controller.stop] = np.eye(3 * queue, 3)
         a[commands, commands] = np.eye(3 * queue, k=-3)
         a[thrust, thrust] = keep * np.eye(3)
         a[thrust, commands.stop - 3 : commands.stop] = (1.0 - keep) * np.eye(3)
         transitions.append(a)
-    # Load on the ship enters at the ship; measured wave motion enters at the newest place of
-    # the queue.
+    # Load on the ship enters at the ship; measured wave motion enters at the newest place of the
+    # queue.
     b = np.zeros((n, 3))
     w = np.zeros((n, 6))
     rows = np.eye(n)
@@ -227,8 +225,7 @@ def margins(loop: OpenLoop, axis: int) -> Margins:
     lag = np.mod(
         angle[crossed] + share * (angle[crossed + 1] - angle[crossed]) + np.pi, 2.0 * np.pi
     )
-    # Gain margin: real negative L above the last crossover, where the phase passes -180
-    # degrees.
+    # Gain margin: real negative L above the last crossover, where the phase passes -180 degrees.
     turned = np.flatnonzero(
         (np.diff(np.sign(np.imag(gain))) != 0) & (np.real(gain)[:-1] < 0.0) & (w[:-1] > at[-1])
     )
@@ -272,8 +269,7 @@ def wave_suppression(
     # A sinusoidal motion has position and rate: x and j ω x.
     motion = loop.waves[:, [axis]] + 1j * w[:, None, None] * loop.waves[:, [axis + 3]]
     asked = _responses(closed, motion, loop.request, w, loop.sample)[:, :, 0]
-    # The same law without observer: |ω0² + 2 j ζ ω0 ω| is its gain from motion to
-    # acceleration.
+    # The same law without observer: |ω0² + 2 j ζ ω0 ω| is its gain from motion to acceleration.
     plain = np.abs(w0 * w0 + 2j * law.damping_ratio * w0 * w)
     return np.abs(loop.per_mass[axis] @ asked.T) / plain
 
@@ -291,8 +287,7 @@ def is_stable(loop: OpenLoop) -> bool:
     bool
         Whether all eigenvalues of the closed loop over one period lie within the unit circle. [1]
     """
-    # The product over one period (monodromy matrix): its eigenvalues are the Floquet
-    # multipliers.
+    # The product over one period (monodromy matrix): its eigenvalues are the Floquet multipliers.
     over = np.eye(len(loop.push))
     for a in loop.transitions:
         over = (a + loop.push @ loop.thrust) @ over
@@ -307,10 +302,8 @@ def _mass(ship):
 
 
 def _ship(ship, h):
-    """Transition of (x, y, psi, u, v, r) over a sample, heading 0, and effect of a held
-    load."""
-    # M ν̇ + D ν = τ, with τ as a third, constant state: one matrix exponential gives both
-    # parts.
+    """Transition of (x, y, psi, u, v, r) over a sample, heading 0, and effect of a held load."""
+    # M ν̇ + D ν = τ, with τ as a third, constant state: one matrix exponential gives both parts.
     mass = _mass(ship)
     drag = np.linalg.solve(mass, np.diag([ship.damping_surge, ship.damping_sway, ship.damping_yaw]))
     eye = np.eye(3)
@@ -324,8 +317,8 @@ def _ship(ship, h):
 def _controller(ship, parameters, law, wave_frequency, new):
     """One sample of observer and law, linearised at rest, by state and measurement."""
     design = observer.design(ship, parameters)
-    # Central differences: each variable up and down by a small amount, all at once as
-    # columns. The functions are those of the controller, so no second derivation can differ.
+    # Central differences: each variable up and down by a small amount, all at once as columns. The
+    # functions are those of the controller, so no second derivation can differ.
     scale = np.concatenate([np.full(_ESTIMATE, _SMALL), np.full(_CONTROL, 1.0), np.full(6, _SMALL)])
     scale[6:9] = 1.0
     x = np.concatenate([np.diag(scale), -np.diag(scale)], axis=1)
@@ -358,12 +351,10 @@ def _controller(ship, parameters, law, wave_frequency, new):
 
 
 def _responses(transitions, push, shown, frequencies, h):
-    """Response of a periodic system at its excitation frequency; (frequencies, shown,
-    pushed)."""
+    """Response of a periodic system at its excitation frequency; (frequencies, shown, pushed)."""
     n, m = push.shape[-2:]
     count = len(transitions)
-    # Excitation exp(j ω h k). In the periodic steady state x[k + period] = exp(j ω h period)
-    # x[k].
+    # Excitation exp(j ω h k). In the periodic steady state x[k + period] = exp(j ω h period) x[k].
     step = np.exp(1j * h * np.asarray(frequencies))
     turns = step[:, None, None] ** np.arange(count + 1)[:, None, None, None]
     over = np.eye(n)

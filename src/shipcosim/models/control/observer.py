@@ -213,8 +213,8 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
     p = parameters
     frequencies = np.linspace(p.wave_frequency_min, p.wave_frequency_max, FREQUENCIES)
     pace = np.minimum(1.0, frequencies / p.full_frequency)
-    # Scaling with the pace p: motion with p⁻², disturbance with p³, bias drift with p⁵, as
-    # their units.
+    # Scaling with the pace p: motion with p⁻², disturbance with p³, bias drift with p⁵, as their
+    # units.
     horizontal = AxisNoise(
         p.position_period,
         p.position_delay,
@@ -299,8 +299,7 @@ def step(
     StateEstimate
         Estimate at the end.
     """
-    # Kalman filter: gains at the present wave frequency, prediction over the sample,
-    # correction.
+    # Kalman filter: gains at the present wave frequency, prediction over the sample, correction.
     filters = filter_at(estimate.wave_frequency, design.filters)
     acceleration = _acceleration(estimate, load, ship=ship, inverse_mass=design.inverse_mass)
     predicted = _predict(estimate, acceleration, dt=parameters.sample_period, wave=filters.wave)
@@ -313,8 +312,8 @@ def step(
         keep * corrected.sway_swing + parameters.sample_period * corrected.v_wave,
         keep * corrected.yaw_swing + parameters.sample_period * corrected.r_wave,
     )
-    # The frequency follows the corrected wave motion; the pace of observer and law follows
-    # the frequency.
+    # The frequency follows the corrected wave motion; the pace of observer and law follows the
+    # frequency.
     frequency, power, pace = _paced(*_wave_frequency(corrected, swings, parameters), parameters)
     surge, sway, yaw = swings
     return corrected._replace(
@@ -353,8 +352,7 @@ def _acceleration(e, load, *, ship, inverse_mass):
     """Acceleration of the low-frequency ship in body axes."""
     c = cos(e.psi)
     s = sin(e.psi)
-    # ν̇ = M⁻¹ (τ - D ν + Rᵀ b). The bias b is kept in north-east, since current and waves
-    # are.
+    # ν̇ = M⁻¹ (τ - D ν + Rᵀ b). The bias b is kept in north-east, since current and waves are.
     X = load[0] - ship.damping_surge * e.u + c * e.bias_north + s * e.bias_east
     Y = load[1] - ship.damping_sway * e.v - s * e.bias_north + c * e.bias_east
     N = load[2] - ship.damping_yaw * e.r + e.bias_N
@@ -427,8 +425,8 @@ def _correct(e, innovations, *, ship, filters):
     s = sin(e.psi)
     g = filters.horizontal
     k = filters.yaw
-    # Each innovation corrects all five states of its axis: wave, wave rate, position,
-    # velocity, bias.
+    # Each innovation corrects all five states of its axis: wave, wave rate, position, velocity,
+    # bias.
     move_surge = g.position_position * surge + g.position_velocity * du
     move_sway = g.position_position * sway + g.position_velocity * dv
     bias_u = g.bias_position * surge + g.bias_velocity * du
@@ -458,8 +456,7 @@ def _correct(e, innovations, *, ship, filters):
 
 
 def _wave_frequency(e, swings, parameters):
-    """Wave frequency and power one sample later: towards the peak of the estimated wave
-    spectrum.
+    """Wave frequency and power one sample later: towards the peak of the estimated wave spectrum.
 
     The frequency is the root of the mean square of the swings' rates over that of the swings, somewhat above the peak.
     In calm water it returns to its default. Each axis counts by its motion over the assumed one; what is far above the
@@ -468,8 +465,7 @@ def _wave_frequency(e, swings, parameters):
     p = parameters
     w = e.wave_frequency
     surge, sway, turn = swings
-    # Rate of the swing: its integrator forgets, so d(swing)/dt = wave rate - forgetting ×
-    # swing.
+    # Rate of the swing: its integrator forgets, so d(swing)/dt = wave rate - forgetting × swing.
     du = e.u_wave - FORGETTING * surge
     dv = e.v_wave - FORGETTING * sway
     dr = e.r_wave - FORGETTING * turn

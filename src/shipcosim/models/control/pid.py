@@ -180,8 +180,7 @@ def step(
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 15.3.
     """
     psi = estimate.psi
-    # Everything in body axes: desired velocity, and the loop's frequencies slowed with the
-    # sea.
+    # Everything in body axes: desired velocity, and the loop's frequencies slowed with the sea.
     nu_d = (*to_body(psi, desired.x_dot, desired.y_dot), desired.r)
     p = parameters
     pace = estimate.pace
@@ -194,8 +193,8 @@ def step(
     X, Y, N = _load(
         u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship
     )
-    # The estimated bias acts as integral action, and the measured wind is met before it moves
-    # the ship.
+    # The estimated bias acts as integral action, and the measured wind is met before it moves the
+    # ship.
     b_X, b_Y = to_body(psi, estimate.bias_north, estimate.bias_east)
     share = parameters.wind_share
     wanted = (

@@ -214,8 +214,7 @@ def step(
     # The common position must lie near the prediction too, or it is not trusted.
     off_north, off_east = _innovation(state, mean, predicted)
     near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
-    # After dead reckoning the position returns with a shift that fades: the estimate does not
-    # jump.
+    # After dead reckoning the position returns with a shift that fades: the estimate does not jump.
     back = near * where(age > p.position_timeout, 1.0, 0.0)
     north = state.north_shift - back * off_north
     east = state.east_shift - back * off_east
@@ -272,8 +271,7 @@ def _usable(state, fixes, quiet, dt, p):
             for new, old, time in zip(fixes, state.fixes, state.unchanged, strict=True)
         ]
     )
-    # Frozen: no change, while some other sensor changes. If all rest, the ship may be at
-    # rest.
+    # Frozen: no change, while some other sensor changes. If all rest, the ship may be at rest.
     usable = []
     for i, fix in enumerate(fixes):
         others = minimum(quiet, minimum(unchanged[i - 1], unchanged[i - 2]))
@@ -299,8 +297,7 @@ def _mean(fixes, weights):
 
 
 def _rates(fixes, candidates, predicted):
-    """Measured velocity over ground, north and east; the predicted one if nothing measures
-    it."""
+    """Measured velocity over ground, north and east; the predicted one if nothing measures it."""
     mean = _mean(fixes, candidates)
     u = where(mean.valid > 0.5, mean.u, predicted.u)
     v = where(mean.valid > 0.5, mean.v, predicted.v)
@@ -333,8 +330,8 @@ def _pairs(state, fixes, usable, dt, p):
     gain = 1.0 - exp(-dt / p.position_drift_filter)
     apart = []
     disagree = []
-    # Two tests per pair: the distance now (jumps), and the filtered distance (slow drift),
-    # with a smaller limit.
+    # Two tests per pair: the distance now (jumps), and the filtered distance (slow drift), with a
+    # smaller limit.
     for k, (i, j) in enumerate(PAIRS):
         both = usable[i] * usable[j]
         x = fixes[i].x - fixes[j].x
@@ -373,8 +370,8 @@ def _without_worst(candidates, disagree, memory):
     first = a * b * disagree[0]
     second = a * c * disagree[1]
     third = b * c * disagree[2]
-    # A reference apart from both others is the worst. For a single pair the movement against
-    # the velocity decides.
+    # A reference apart from both others is the worst. For a single pair the movement against the
+    # velocity decides.
     counts = first + second, first + third, second + third
     scores = [n * (_COUNTS_MORE + hypot(*memory[2 * i : 2 * i + 2])) for i, n in enumerate(counts)]
     worst = maximum(scores[0], maximum(scores[1], scores[2]))

@@ -189,8 +189,7 @@ def step(
             parameters=parameters,
         )
     quiet = minimum(*compasses.unchanged)
-    # Positions: fade the shift of an earlier realignment first, and move the estimate with
-    # it.
+    # Positions: fade the shift of an earlier realignment first, and move the estimate with it.
     if position_since > 0.0:
         positions, north, east = position_voting.faded(
             positions, position_since, parameters=parameters

@@ -105,8 +105,8 @@ def kalman_gain(
     ----------
     Anderson and Moore, Optimal Filtering, Prentice-Hall, 1979, section 6.7.
     """
-    # Doubling algorithm for the discrete Riccati equation: after k rounds it covers 2ᵏ
-    # samples. 20 rounds are a million samples, so the covariance is steady.
+    # Doubling algorithm for the discrete Riccati equation: after k rounds it covers 2ᵏ samples. 20
+    # rounds are a million samples, so the covariance is steady.
     a = np.swapaxes(transition, -1, -2)
     h = noise
     transposed = np.swapaxes(output, -1, -2)
@@ -178,8 +178,8 @@ def axis_gains(frequency: Arithmetic, damping: float, noise: AxisNoise) -> AxisG
     output = np.array([[1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0]])
     one = frequency / frequency
     size = noise.wave * noise.wave * one
-    # Stationary covariance S of the wave model: variance σ² of the motion, σ² ω² of its rate.
-    # The noise that keeps it is S - Φ S Φᵀ.
+    # Stationary covariance S of the wave model: variance σ² of the motion, σ² ω² of its rate. The
+    # noise that keeps it is S - Φ S Φᵀ.
     stationary = _diagonal(size, size * frequency * frequency, 0.0, 0.0, 0.0)
     added = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
     # White disturbances of velocity and bias add their intensity times the period.
@@ -282,8 +282,7 @@ def filter_at(frequency: Arithmetic, table: EvenTable) -> WaveFilter:
 
 
 def _transition(dt, frequency, damping):
-    """(..., 5, 5) transition of wave motion, its rate, position, velocity and bias
-    acceleration."""
+    """(..., 5, 5) transition of wave motion, its rate, position, velocity and bias acceleration."""
     # Wave model and ship are decoupled; the ship is a triple integrator of the bias.
     w11, w12, w21, w22 = wave_transition(dt, frequency, damping)
     return _matrix(

@@ -38,8 +38,7 @@ def interp(x: Arithmetic, xs: Sequence[float], ys: Sequence[float]) -> Arithmeti
             return ys[-1]
         i = bisect_right(xs, x) - 1
         return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
-    # Recorded numbers bring their own interpolation, arrays use NumPy's, tensors the one
-    # below.
+    # Recorded numbers bring their own interpolation, arrays use NumPy's, tensors the one below.
     library = library_of(x)
     if hasattr(library, "interp"):
         return library.interp(x, xs, ys)

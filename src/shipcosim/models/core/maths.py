@@ -110,8 +110,8 @@ def sincos(x: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
         return library.sin(x), library.cos(x)
     if x.size < _FEW:
         return np.sin(x), np.cos(x)
-    # Half-angle formulas: with t = tan(x/2), sin = 2t/(1+t²) and cos = 2/(1+t²) - 1. In
-    # place, since the arrays are large.
+    # Half-angle formulas: with t = tan(x/2), sin = 2t/(1+t²) and cos = 2/(1+t²) - 1. In place,
+    # since the arrays are large.
     t = np.tan(0.5 * x)
     u = t * t
     u += 1.0
@@ -420,8 +420,7 @@ def row_of(table: Any, index: Any) -> Any:
 
 
 def _many(x):
-    """True for an array so large that computing its elements costs more than some NumPy
-    calls."""
+    """True for an array so large that computing its elements costs more than some NumPy calls."""
     return isinstance(x, np.ndarray) and x.size >= _FEW
 
 

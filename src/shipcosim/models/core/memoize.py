@@ -40,8 +40,8 @@ def kept(most: int) -> Callable[[Callable], Callable]:
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
-            # While a computation is recorded, the recording caches: compiled code
-            # must call again when arguments change.
+            # While a computation is recorded, the recording caches: compiled code must call again
+            # when arguments change.
             for argument in arguments:
                 if (maths := getattr(argument, "maths", None)) is not None:
                     return maths.kept(function, arguments)

@@ -79,7 +79,6 @@ def varying_current(
     end = hypot(north_end, east_end)
     from_ = atan2(east_start, north_start)
     to = atan2(east_end, north_end)
-    # Still water has no direction; take that of the other current, so it does not turn
-    # needlessly.
+    # Still water has no direction; take that of the other current, so it does not turn needlessly.
     from_, to = where(start < _STILL, to, from_), where(end < _STILL, from_, to)
     return start + share * (end - start), wrap(from_ + share * wrap(to - from_))

@@ -143,8 +143,7 @@ def _shape(frequency, mean_speed):
 @kept(64)
 def _frequencies_and_phases(seed):
     """Circular frequencies and phases of a seed, (n,) each."""
-    # A random frequency within each bin: an even spacing would repeat the record after a
-    # while.
+    # A random frequency within each bin: an even spacing would repeat the record after a while.
     random = generator("gusts", seed)
     frequency = _EDGES[:-1] * (_EDGES[1:] / _EDGES[:-1]) ** random.random(COMPONENTS)
     return 2.0 * pi * frequency, random.uniform(0.0, 2.0 * pi, COMPONENTS)

@@ -139,8 +139,7 @@ def local_current(
     >>> [round(local_current(0.0, y, 0.0, 0.0, harbour=berth)[0], 3) for y in (0.0, 60.0)]
     [0.5, 0.184]
     """
-    # Near the berth only the part of the tide along the channel remains, reduced by the
-    # shelter.
+    # Near the berth only the part of the tide along the channel remains, reduced by the shelter.
     near = _near(x, y, harbour.tide_reach)
     c = cos(harbour.channel)
     s = sin(harbour.channel)

@@ -88,8 +88,8 @@ def drift_table(text: str) -> DriftTable:
         raise ValueError(
             f"drift table: headings from {headings[0]} to {headings[-1]}; must go from 0 to 180 deg"
         )
-    # Measured headings are on the starboard side; those to port follow by symmetry: X equal,
-    # Y and N with the other sign.
+    # Measured headings are on the starboard side; those to port follow by symmetry: X equal, Y and
+    # N with the other sign.
     starboard = [
         tuple(zip(*(loads[omega, heading] for omega in omegas), strict=True))
         for heading in headings

@@ -124,8 +124,8 @@ def _motion(c, s, psi, u, v, waves, length, breadth, draught):
     some_across = _not_zero(across)
     some_ahead = _not_zero(ahead)
     half_length, half_breadth, spread, turned = _hull_in(waves, length, breadth, draught)
-    # q = k L cos β / 2 and p = k B sin β / 2: waves short against the hull average out, as
-    # sin(q)/q sin(p)/p.
+    # q = k L cos β / 2 and p = k B sin β / 2: waves short against the hull average out, as sin(q)/q
+    # sin(p)/p.
     q = half_length * column(some_ahead)
     sin_q, cos_q = sincos(q)
     shift = spread * sin_q * sin(half_breadth * column(some_across))
@@ -177,6 +177,5 @@ _kept_hull = kept(8)(_hull)
 
 
 def _not_zero(x):
-    """x kept off 0, where sin(x)/x has a limit; small enough for it, large enough to divide
-    by."""
+    """x kept off 0, where sin(x)/x has a limit; small enough for it, large enough to divide by."""
     return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)

@@ -279,8 +279,7 @@ def _refuse_impossible(height, period, peak_enhancement):
 def _ratio_and_phase(peak_enhancement, seed):
     """Frequencies over the peak frequency, and phases: (n,) each."""
     random = generator("waves", seed)
-    # A random place within each bin of equal energy, then the inverse of the cumulative
-    # spectrum.
+    # A random place within each bin of equal energy, then the inverse of the cumulative spectrum.
     share = (np.arange(COMPONENTS) + random.random(COMPONENTS)) / COMPONENTS
     return np.interp(share, _cumulative_energy(peak_enhancement), _RATIO), random.uniform(
         0.0, 2.0 * pi, COMPONENTS

@@ -159,8 +159,8 @@ def air_velocity(
     >>> [round(component, 9) for component in air_velocity(0.0, westerly, gust_scale=0.0, seed=1)]
     [-0.0, 10.0]
     """
-    # Gusts add to the mean speed. The wind is given by where it comes from, its velocity by
-    # where it goes.
+    # Gusts add to the mean speed. The wind is given by where it comes from, its velocity by where
+    # it goes.
     speed = state.wind_speed + gust_scale * gust(t, state.wind_speed, seed)
     return -speed * cos(state.wind_from), -speed * sin(state.wind_from)
 

@@ -74,8 +74,7 @@ class ControlLoop(NamedTuple):
 
 
 class _Now(NamedTuple):
-    """The loop at one time: `motion` as `advance`, `bias` north, east, N, `before` last
-    load."""
+    """The loop at one time: `motion` as `advance`, `bias` north, east, N, `before` last load."""
 
     motion: tuple
     desired: ReferenceState
@@ -198,11 +197,10 @@ def _later(now, known, around, available, h, hull, wind, loop):
 
 
 def _bias(now, motion, known, around, wind_load, h, hull, loop):
-    """The observer's bias a step later: it follows the load that thrust and wind do not
-    explain."""
+    """The observer's bias a step later: it follows the load that thrust and wind do not explain."""
     _, _, psi, u, v, r, u_r, v_r = motion
-    # Remaining load: hull, remaining force, thrust error and the disbelieved part of the
-    # wind. The observer's own damping is not part of the bias.
+    # Remaining load: hull, remaining force, thrust error and the disbelieved part of the wind. The
+    # observer's own damping is not part of the bias.
     X, Y, N = hull_loads(u_r, v_r, r, hull=hull)
     force_X, force_Y = to_body(psi, around.force_north, around.force_east)
     lost = 1.0 - known.wind_believed

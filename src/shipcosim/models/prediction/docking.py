@@ -185,8 +185,8 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     """
     ship = own.ship
     (i11, i22, _, _, i66) = hull.inverse_mass
-    # Quay now and in 30 s, velocities now and then, and the turn between: the manoeuvre that
-    # is under way.
+    # Quay now and in 30 s, velocities now and then, and the turn between: the manoeuvre that is
+    # under way.
     found = [
         *quay(ship),
         *quay(ahead),
@@ -197,8 +197,7 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     # The load as an acceleration, so that it does not depend on the ship's size.
     found += [own.load[0] * i11, own.load[1] * i22, own.load[2] * i66]
     found += [aboard.wind_speed * cos(aboard.wind_from), aboard.wind_speed * sin(aboard.wind_from)]
-    # Commands and feedback of both azimuths as vectors: an angle alone would jump at ±180
-    # degrees.
+    # Commands and feedback of both azimuths as vectors: an angle alone would jump at ±180 degrees.
     for k in (0, 1):
         for size, angle in (
             (aboard.thrust_cmd[k], aboard.azimuth_cmd[k]),
@@ -400,8 +399,7 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
         North, east, heading, one a second. [m, m, rad]
     """
     found = []
-    # Blend along the shorter arc of the heading. `where` keeps the kinetic value to the last
-    # bit.
+    # Blend along the shorter arc of the heading. `where` keeps the kinetic value to the last bit.
     for one, other in zip(kinetic, learned, strict=True):
         away = other[0] - one.x, other[1] - one.y, wrap(np.asarray(other[2] - one.psi))
         x, y, psi = (

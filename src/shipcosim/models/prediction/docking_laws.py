@@ -136,8 +136,7 @@ class Ours(Kinetic):
 
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
         own = state.own or docking.begin(state.aboard, model.helm.position_age)
-        # Equations of motion with the observed load, then the ensemble's correction on
-        # top.
+        # Equations of motion with the observed load, then the ensemble's correction on top.
         motions = helm.predict(
             state.aboard._replace(ship=own.ship), left=own.load, **model._asdict()
         )

@@ -209,14 +209,12 @@ def predict(
         * known.wind_believed
     )
     mixed = (own_record.mixed(state.own, one) for one in found)
-    # The filters' predictions are averaged by their weights, then blended with the kinetic
-    # one.
+    # The filters' predictions are averaged by their weights, then blended with the kinetic one.
     return tuple(blended(a, b, share) for a, b in zip(alone, mixed, strict=True)), share
 
 
 def _ahead(own, known, options):
-    """Predictions of all filters; for one ship in floats, one after the other, which is
-    faster."""
+    """Predictions of all filters; for one ship in floats, one after the other, which is faster."""
     if own.mean.ndim > 2:
         return own_record.predict(own, known, **options)
     try:
@@ -259,8 +257,7 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     u_r, v_r = through_water(
         known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0)
     )
-    # Deviation from the prior in standard deviations: the record contradicts what was
-    # learned.
+    # Deviation from the prior in standard deviations: the record contradicts what was learned.
     off = (states[..., COEFFICIENT] - learned.mean) / learned.std[..., COEFFICIENT]
     force = states[..., FORCE] / learned.std[..., FORCE]
     # Weighted spread of the filters' positions at the last horizon.

@@ -294,14 +294,12 @@ def _azimuth(aboard, k, y, water, helm):
     def load(t):
         thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
         angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
-        # Side force F_s = -c ρ D² (V + |n| D) u_s: momentum drag of the water taken
-        # along.
+        # Side force F_s = -c ρ D² (V + |n| D) u_s: momentum drag of the water taken along.
         wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
         s = sin(angle)
         c = cos(angle)
 
-        # Thrust and direction are fixed in time; the side force follows the velocity
-        # within a step.
+        # Thrust and direction are fixed in time; the side force follows the velocity within a step.
         def at(u_r, v_r, r):
             u, v = velocity_at(helm.x, y, u_r, v_r, r)
             u_s = c * v - s * u
@@ -352,8 +350,7 @@ def predict(
     Midpoint rule with steps of one second, thrusters at the middle of each.
     """
     ship = aboard.ship
-    # The air's velocity over ground is held, not the apparent wind, which changes with her
-    # motion.
+    # The air's velocity over ground is held, not the apparent wind, which changes with her motion.
     air = _air(aboard)
     x, y, psi, _, _, r = ship
     # Hull loads depend on the velocity through the water, so it is integrated.
@@ -361,8 +358,7 @@ def predict(
     loads = thruster_loads(aboard, (u_r, v_r), helm=helm)
     found = []
     for second in range(seconds):
-        # Loads at the middle of each second: second-order accuracy with one step a
-        # second.
+        # Loads at the middle of each second: second-order accuracy with one step a second.
         rates = _rates(loads(second + 0.5), psi + 0.5 * r, current, air, left, hull, wind)
         x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
         psi = wrap(psi)

@@ -172,8 +172,7 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
     d = design
     psi = measured.psi
     valid = measured.valid
-    # Prediction: accelerations of thrust and wind, plus the estimated load turned into body
-    # axes.
+    # Prediction: accelerations of thrust and wind, plus the estimated load turned into body axes.
     forward, side = _accelerations(measured, d)
     load = to_body(psi, state.load_north, state.load_east)
     u = _advanced(state.u, forward + load[0], d.surge_time, h)
@@ -255,7 +254,6 @@ def _signed(command):
 
 
 def _advanced(velocity, acceleration, time, h):
-    """Velocity one sample later, with linear damping, exactly: u e^(-h/T) + a T (1 -
-    e^(-h/T))."""
+    """Velocity one sample later, with linear damping, exactly: u e^(-h/T) + a T (1 - e^(-h/T))."""
     kept = exp(-h / time)
     return velocity * kept + acceleration * time * (1.0 - kept)

@@ -111,8 +111,8 @@ def radius(lost_for: Arithmetic, sea: Arithmetic, *, region: Region) -> Arithmet
     """
     times = region.times
     radii = region.radii
-    # Beyond the last time the radius grows with the last slope; max(0, t - t_n) written
-    # without a branch.
+    # Beyond the last time the radius grows with the last slope; max(0, t - t_n) written without a
+    # branch.
     slope = (radii[-1] - radii[-2]) / (times[-1] - times[-2])
     beyond = 0.5 * (abs(lost_for - times[-1]) + lost_for - times[-1])
     # A rougher sea means less accurate velocity at the loss.

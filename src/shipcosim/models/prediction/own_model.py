@@ -162,8 +162,7 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     # All commands exactly zero means that power is lost.
     lost = (abs(told.bow) + abs(told.stern_X) + abs(told.stern_Y)) == 0.0
     share = 1.0 - exp(-h / learned.lag)
-    # Shaft speed goes with the root of thrust, 1/n grows evenly: T(t) = T0 / (1 + t/τ)², τ ∝
-    # 1/n.
+    # Shaft speed goes with the root of thrust, 1/n grows evenly: T(t) = T0 / (1 + t/τ)², τ ∝ 1/n.
     stern = sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
     bow = sqrt((abs(thrust.bow) + _TINY) / HELD)
     slowed_stern = 1.0 + h * stern / learned.run_down_stern
@@ -222,8 +221,8 @@ def residual_load(
     drag = -c[17] * wash * (v_r - arm * r)
     # Yaw rate as the speed of bow and stern, so that all terms are forces.
     turn = length * r
-    # Surge: damping (quadratic and linear), wind and thrust errors. 0.034 is the size that
-    # the resistance of hulls has.
+    # Surge: damping (quadratic and linear), wind and thrust errors. 0.034 is the size that the
+    # resistance of hulls has.
     X = (
         -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r
         + c[9] * wind[0]

@@ -114,8 +114,7 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     """
     like = 0.0 * (learned.mean[..., 0] + known.ship.u)
     library = library_of(like)
-    # One filter without current, four with a current from each side; the same uncertainty for
-    # all.
+    # One filter without current, four with a current from each side; the same uncertainty for all.
     mean = library.stack(_believed(known, learned, like))
     std = learned.std + like[..., None]
     covariance = (std * std)[..., None] * library.eye(len(STATES), dtype=std.dtype)
@@ -236,8 +235,8 @@ def step(
         h, learned, library
     )
     mean, covariance, likelihood = _corrected(then, covariance, known.ship, h, learned, library)
-    # Weights: sum of log-likelihoods with forgetting. Only a share counts, because errors of
-    # the observer last.
+    # Weights: sum of log-likelihoods with forgetting. Only a share counts, because errors of the
+    # observer last.
     likelihood = (
         record.likelihood * exp(-h / learned.evidence_time) + learned.evidence * h * likelihood
     )
@@ -390,8 +389,8 @@ def _grown(h, learned, library):
     moment = exp(-2.0 * h / learned.moment_time)
     zero = 0.0 * learned.current_walk
     variances = learned.std * learned.std
-    # Random walks of velocity, yaw rate and current grow with time. Positions and
-    # coefficients get no noise.
+    # Random walks of velocity, yaw rate and current grow with time. Positions and coefficients get
+    # no noise.
     speed = h * learned.disturbance[..., 0] ** 2
     rate = h * learned.disturbance[..., 1] ** 2
     current = h * learned.current_walk**2
@@ -418,8 +417,7 @@ def _grown(h, learned, library):
 def _corrected(mean, covariance, ship, h, learned, library):
     """Mean and covariance corrected by the observer's estimate, and its log-likelihood."""
     count = len(MEASURED)
-    # The observer's estimates count as measurements; noise averaged over a second scales with
-    # 1/h.
+    # The observer's estimates count as measurements; noise averaged over a second scales with 1/h.
     place, heading, speed, rate = (learned.noise[..., k] ** 2 / h for k in range(4))
     noise = library.stack([place, place, heading, speed, speed, rate], -1)
     noise = noise[..., None] * library.eye(count, dtype=mean.dtype)
@@ -442,8 +440,7 @@ def _corrected(mean, covariance, ship, h, learned, library):
 
 
 def _astray(then, mean, likelihood, library):
-    """True for filters out of bounds, and likelihoods relative to the largest, at least
-    `LEAST`."""
+    """True for filters out of bounds, and likelihoods relative to the largest, at least `LEAST`."""
     # NaN fails the comparison, so it counts as astray too.
     astray = ~(abs(mean.sum(-1) + likelihood) < NO_NUMBER)
     for k, most in zip((3, 4, 5, 6, 7), (*FASTEST, STRONGEST, STRONGEST), strict=True):

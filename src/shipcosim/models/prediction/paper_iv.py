@@ -172,8 +172,8 @@ def step(past: Past, known: Known, *, hull: HullParameters, wind: WindParameters
     Past
         With this sample.
     """
-    # What the model expected for the last second, against what happened: the residual is an
-    # input of the networks.
+    # What the model expected for the last second, against what happened: the residual is an input
+    # of the networks.
     psi, *nu = past.states[-1]
     expected = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
     now = known.ship.u, known.ship.v, known.ship.r
@@ -230,8 +230,7 @@ def predict(
         if ensemble is not None:
             inputs = np.stack(np.broadcast_arrays(*nu, *dot, *residual), axis=-1)
             mean = outputs(ensemble, inputs[None] if inputs.ndim == 1 else inputs).mean(axis=0)
-            # The predicted residual is the next input: the networks feed back on
-            # themselves.
+            # The predicted residual is the next input: the networks feed back on themselves.
             residual = tuple(mean[0].tolist()) if inputs.ndim == 1 else tuple(mean.T)
             dot = tuple(a + b for a, b in zip(dot, residual, strict=True))
         # Explicit Euler for velocities; the position uses their mean.

@@ -211,13 +211,13 @@ def step(
     left = _left_to_explain(known, wind_load, ship)
     # Predict the states, then correct by three scalar measurements: X, Y and N.
     mean, covariance = _elapsed(surroundings, known.thrusters, h, hull, parameters)
-    # Hull loads are quadratic and flat at rest. Their slope is taken over one standard
-    # deviation of the current.
+    # Hull loads are quadratic and flat at rest. Their slope is taken over one standard deviation of
+    # the current.
     spread = maximum(sqrt(0.5 * (covariance[0][0] + covariance[1][1])), _LEAST)
     rows = _slopes(known, mean, spread, hull)
     missed = _missed(known, left, mean, hull)
-    # White noise of intensity Q sampled with h has the variance Q / h; the moment's is larger
-    # by lever².
+    # White noise of intensity Q sampled with h has the variance Q / h; the moment's is larger by
+    # lever².
     noise = parameters.load_noise / h
     lever = parameters.force_lever * hull.length
     predicted = mean
@@ -241,8 +241,8 @@ def _left_to_explain(known, wind_load, ship):
     """Load left to explain, body axes: bias minus damping, minus a disbelieved wind's load."""
     motion = known.ship
     bias = known.bias
-    # The observer explains the motion by b - D ν. If it has no wind, the bias contains the
-    # wind's load.
+    # The observer explains the motion by b - D ν. If it has no wind, the bias contains the wind's
+    # load.
     lost = 1.0 - known.wind_believed
     damping = (
         ship.damping_surge * motion.u,
@@ -289,8 +289,8 @@ def _slopes(known, mean, span, hull):
     ]  # a current takes from u_r
     X_v, Y_v, N_v = [(below - above) / (2.0 * span) for above, below in over_v]
     one = 1.0 + 0.0 * psi
-    # Current: by the slopes of the hull; force: turned into body axes; moment and thrust
-    # errors: directly.
+    # Current: by the slopes of the hull; force: turned into body axes; moment and thrust errors:
+    # directly.
     return (
         (*to_ned(psi, X_u, X_v), *to_ned(psi, one, 0.0), 0.0, 1.0, 0.0, 0.0),
         (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one), 0.0, 0.0, 1.0, 0.0),
@@ -308,8 +308,8 @@ def _elapsed(surroundings, thrusters, h, hull, parameters):
     turning = N / arm
     # Factors of a Gauss-Markov process; the current is a random walk and keeps its value.
     kept = (1.0, 1.0, keep, keep, keep, held, held, held)
-    # Added variances: (1 - k²) σ² keeps the stationary σ². Thrust errors scale with the
-    # thrust itself.
+    # Added variances: (1 - k²) σ² keeps the stationary σ². Thrust errors scale with the thrust
+    # itself.
     force = [(1.0 - keep * keep) * variance for variance in _of_force(hull, p)]
     error = (
         (1.0 - held * held) * p.thrust_error * p.thrust_error * (X * X + Y * Y + turning * turning)

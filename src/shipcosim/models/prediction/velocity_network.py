@@ -219,8 +219,8 @@ def step(state: State, measured: Measured, h: float, *, design: VelocityNetworks
     ----------
     Paper II, eq. (4).
     """
-    # Velocities from the history up to the last sample, so that nothing later than the
-    # prediction is used.
+    # Velocities from the history up to the last sample, so that nothing later than the prediction
+    # is used.
     u = velocity(state.history, design.surge)
     v = velocity(state.history, design.sway)
     north, east = to_ned(measured.psi, u, v)

@@ -339,8 +339,7 @@ def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Ar
 
 
 def _inflow(s, c, u_r, v_r, r, unit):
-    """Velocity of the unit through water, along and across its axis (sine s, cosine c).
-    [m/s]"""
+    """Velocity of the unit through water, along and across its axis (sine s, cosine c). [m/s]"""
     u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
     return c * u + s * v, c * v - s * u
 

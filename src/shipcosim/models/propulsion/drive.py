@@ -122,7 +122,6 @@ def drive_step(
     running = where(failures.stopped, 0.0, 1.0)
     sign = where(failures.rpm_reversed, -1.0, 1.0)
     start = running * thruster.thrust_cmd
-    # The rate limit works on the command, before the drive.
     wanted, rate = _set_point(thruster, thrust_cmd, failures, drive)
     change = clip(running * wanted - start, -rate * h, rate * h)
     # Gains per rad/s are used with shaft speeds in rev/s, hence 2π.
@@ -138,8 +137,7 @@ def drive_step(
         n_d = speed(start + share * change)
         return n_d, torque(n_d) + gain * n_d
 
-    # Shaft: I 2π ṅ = Q_motor - Q_propeller - friction. Integral: ż = k_i 2π (n_d - g(T)),
-    # with anti-windup.
+    # Shaft: I 2π ṅ = Q_motor - Q_propeller - friction; integral z as in the module's docstring.
     def rates(n, integral, n_d, forward):
         thrust, load = loads(n)
         asked, given = motor(n, integral, forward, load)
@@ -157,8 +155,7 @@ def drive_step(
 
     state = 0.0, thruster.n, running * thruster.integral, demand(0.0)
     _, n, integral, now = times(parts, turn, state)
-    # Outputs at the end of the step; saturated means a limit of thrust, rate or motor was
-    # active.
+    # Outputs at the end of the step; saturated means a limit of thrust, rate or motor was active.
     reached = start + change
     thrust, load = loads(n)
     asked, given = motor(n, integral, now[1], load)
@@ -170,8 +167,7 @@ def drive_step(
 
 def _set_point(thruster, thrust_cmd, failures, drive):
     """Target thrust of the drive, and the rate at which it moves there. [N, N/s]"""
-    # A frozen drive keeps its set point; a drive that fails to full thrust goes there at
-    # once.
+    # A frozen drive keeps its set point; a drive that fails to full thrust goes there at once.
     wanted = where(
         failures.rpm_frozen,
         thruster.thrust_cmd,
@@ -220,13 +216,13 @@ def _motor(drive, gain, running, sign, power_limit):
     power = minimum(drive.power_max, power_limit) / _TURN
 
     def motor(n, integral, forward, load):
-        # PI law on shaft speed with feedforward of the bollard torque; the sensor may
-        # have the wrong sign.
+        # PI law on shaft speed with feedforward of the bollard torque; the sensor may have the
+        # wrong sign.
         asked = forward - gain * (sign * n) + integral
         # Power limit as a torque limit, Q ≤ P / (2π n); near rest only torque limits.
         most = minimum(torque_max, power / maximum(abs(n), _SLOW))
-        # Speed limit: the net torque is at most k_p 2π (n_max - n), so the shaft
-        # approaches n_max at the rate k_p/I.
+        # Speed limit: the net torque is at most k_p 2π (n_max - n), so the shaft approaches n_max
+        # at the rate k_p/I.
         least = maximum(-most, load - gain * (n_max + n))
         most = minimum(most, load + gain * (n_max - n))
         return asked, running * clip(asked, least, most)

@@ -237,7 +237,7 @@ def mapped_loads(
 
 @lru_cache(maxsize=16)
 def _map(text):
-    """Columns of the map, checked to increase."""
+    """Columns of the map; the thrust must not fall."""
     commands, thrusts = columns(text, 2)
     for number, (before, after) in enumerate(zip(thrusts, thrusts[1:], strict=False), 2):
         if after < before:

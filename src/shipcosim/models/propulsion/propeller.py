@@ -138,8 +138,7 @@ class PropellerParameters:
 
     @property
     def curves(self):
-        """CT and CQ over the whole circle, and bollard coefficients; cached by their
-        tables."""
+        """CT and CQ over the whole circle, and bollard coefficients; cached by their tables."""
         return _curves(
             self.thrust_polynomial, self.thrust_factors, self.torque_polynomial, self.torque_factors
         )
@@ -204,8 +203,7 @@ def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Ar
     callable
         ``loads(n)`` gives thrust and torque at a shaft speed. [N, N.m]
     """
-    # Everything that does not depend on n is computed once: the drive calls this many times a
-    # step.
+    # Everything that does not depend on n is computed once: the drive calls this many times a step.
     D = propeller.diameter
     disc = propeller.disc
     table = propeller.curves.table
@@ -310,8 +308,7 @@ def _curves(thrust_polynomial, thrust_factors, torque_polynomial, torque_factors
 
 
 def _coefficient(of_series, degrees, factors, polynomial):
-    """CT or CQ over the whole circle: factors on the series, polynomial up to its end; the
-    end."""
+    """CT or CQ over the whole circle: factors on the series, polynomial up to its end; the end."""
     at, factor = columns(factors, 2)
     found = of_series * np.interp(degrees, at, factor)
     ((end, *k),) = parse(polynomial)

@@ -170,8 +170,7 @@ def rudder_normal_force(
     (assumed), and neither does the flow of a ship that goes astern: there u_R is that of the race alone.
     """
     p = unit
-    # The race's gain of speed from the thrust (momentum theory): u_∞² = u_P² + 8 T / (π ρ
-    # D²).
+    # The race's gain of speed from the thrust (momentum theory): u_∞² = u_P² + 8 T / (π ρ D²).
     ahead = maximum(u_p, 0.0 * u_p)
     race = 8.0 * maximum(thrust, 0.0 * thrust) / (pi * p.water_density * p.diameter**2)
     behind = sqrt(ahead * ahead + race + _TINY)
@@ -223,8 +222,8 @@ def propeller_rudder_loads(
     As the module.
     """
     p = unit
-    # A positive rudder angle turns the ship to starboard, a positive azimuth to port:
-    # opposite signs.
+    # A positive rudder angle turns the ship to starboard, a positive azimuth to port: opposite
+    # signs.
     thrust, u_p = propeller_in_wake(n, u_r, v_r, r, unit=p)
     normal = rudder_normal_force(-azimuth, thrust, u_p, v_r, r, unit=p)
     side = -normal * cos(azimuth)

@@ -94,8 +94,7 @@ def tunnel_step(
     k_T = 3600.0 * tunnel.thrust_coefficient
     k_Q = 3600.0 * tunnel.torque_coefficient
 
-    # Inverse of the quadratic thrust curve; the small number keeps the derivative finite at
-    # zero.
+    # Inverse of the quadratic thrust curve; the small number keeps the derivative finite at zero.
     def speed(thrust):
         n = sqrt((abs(thrust) + _ALMOST_NONE) / k_T)
         return where(thrust < 0.0, -n, n)

@@ -292,8 +292,8 @@ def added_mass_coriolis(
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
     """
     share, A11, A22, A26 = hull.coriolis
-    # C_A(ν) ν with a = A11 u and b = A22 v + A26 r: (b r, -a r, a v - b u) moved to the right
-    # side. The last part is the Munk moment.
+    # C_A(ν) ν with a = A11 u and b = A22 v + A26 r: (b r, -a r, a v - b u) moved to the right side.
+    # The last part is the Munk moment.
     surge = A11 * u
     sway = share * (A22 * v + A26 * r)
     return sway * r, -surge * r, surge * v - sway * u
@@ -372,8 +372,8 @@ def cross_flow(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     w = r * half
     sway = abs(v)
     yaw = abs(w)
-    # The integral has two cases, by which of |v| and |w| is larger. Written with both, it
-    # needs no branch.
+    # The integral has two cases, by which of |v| and |w| is larger. Written with both, it needs no
+    # branch.
     larger = maximum(sway, yaw)
     smaller = minimum(sway, yaw)
     # q = m / |w|: 1 if sway dominates; the small number avoids 0 / 0 at rest.

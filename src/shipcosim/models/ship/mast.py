@@ -45,8 +45,7 @@ def wind_at_mast(
     *,
     mast: MastParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
-    """Apparent wind components at the anemometer, for an apparent wind at 10 m above the
-    origin.
+    """Apparent wind components at the anemometer, for an apparent wind at 10 m above the origin.
 
     Parameters
     ----------
@@ -72,8 +71,8 @@ def wind_at_mast(
     >>> wind_at_mast(0.0, 0.0, 0.0, 0.0, 0.1, mast=mast)
     (0.0, 0.4)
     """
-    # Power law of the profile: true wind grows by the gain, but not the part that is the
-    # ship's own velocity.
+    # Power law of the profile: true wind grows by the gain, but not the part that is the ship's own
+    # velocity.
     gain = mast.gain
     more = gain - 1.0
     # Components of where the wind comes from; yaw moves the mast through the air.

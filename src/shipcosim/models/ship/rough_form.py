@@ -131,8 +131,7 @@ def form_loads(
     # Differences only: at neutral parameters nothing is computed.
     X = Y = N = 0.0 * u
     if acts(form.drag_power, 2.0):
-        # Resistance with another power, equal at the reference speed: factor (|u| /
-        # u_0)^(p - 2).
+        # Resistance with another power, equal at the reference speed: factor (|u| / u_0)^(p - 2).
         X = hull.quadratic[0] * u * abs(u) * (_power(u, DRAG_SPEED, form.drag_power) - 1.0)
     half, k = hull.strips
     # Cross flow strip by strip, minus the drag that the hull model already has.

@@ -298,8 +298,8 @@ def start(
     # Gauss-Markov errors start in their stationary distribution, so there is no transient.
     wander = tuple(p.position_drift_std * number for number in numbers[0][:6])
     positions = Channel(wander, (0.0,) * 6, (fixes,))
-    # Fill the history with the first sample, so that a message exists before the first
-    # latency is over.
+    # Fill the history with the first sample, so that a message exists before the first latency is
+    # over.
     positions = positions._replace(
         history=(_fixes(positions, numbers[0], truth, failures, p),) * _length(clocks[0])
     )
@@ -424,14 +424,12 @@ def _noted(channel, sample):
 
 
 def _fixes(channel, numbers, truth, failures, p):
-    """Sample of all position references; numbers: six Gauss-Markov errors, then four for
-    each."""
+    """Sample of all position references; numbers: six Gauss-Markov errors, then four for each."""
     (fixes, wander, drift) = _last(channel)
     p_std = p.position_noise_std
     v_std = p.velocity_noise_std
     found = []
-    # Measured = true + wander (correlated) + drift (failure) + white noise + offset
-    # (failure).
+    # Measured = true + wander (correlated) + drift (failure) + white noise + offset (failure).
     for i, (failure, last) in enumerate(zip(failures.positions, fixes, strict=True)):
         n = 2 * i
         e = 2 * i + 1
@@ -447,8 +445,7 @@ def _fixes(channel, numbers, truth, failures, p):
 
 
 def _headings(channel, numbers, truth, failures, p):
-    """Sample of both compasses and the gyro; numbers: two Gauss-Markov errors, compasses,
-    gyro."""
+    """Sample of both compasses and the gyro; numbers: two Gauss-Markov errors, compasses, gyro."""
     (headings, _), wander, drift = _last(channel)
     found = []
     for i, (failure, last) in enumerate(zip(failures.compasses, headings, strict=True)):
@@ -498,8 +495,7 @@ def _air(truth, mast):
 
 
 def _telegrams(k, positions, headings, wind, p):
-    """Messages at tick k: of each channel the newest sample as old as the latency, or the
-    first."""
+    """Messages at tick k: of each channel the newest sample as old as the latency, or the first."""
     for_positions, for_headings, for_wind = p.clocks
     fixes, position_time = _given_out(k, positions, for_positions, p.period)
     (compasses, r), heading_time = _given_out(k, headings, for_headings, p.period)

@@ -163,8 +163,7 @@ def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
     X, Y, N = loads
     m = hull.rigid_body[0]
     xg = hull.centre_of_gravity_x
-    # Rigid-body Coriolis and centripetal forces, C_RB(ν) ν, with the centre of gravity at
-    # x_G.
+    # Rigid-body Coriolis and centripetal forces, C_RB(ν) ν, with the centre of gravity at x_G.
     X = X + tau_X + m * r * (v_r + xg * r)
     Y = Y + tau_Y - m * r * u_r
     N = N + tau_N - m * xg * r * u_r

@@ -32,8 +32,7 @@ class _OrNumPy:
 
 def _each(function: Callable, *matrices: np.ndarray) -> np.ndarray:
     """Apply a function of matrices to the last two axes of stacked matrices."""
-    # The leading axes are broadcast as NumPy does; the C primitive takes one matrix at a
-    # time.
+    # The leading axes are broadcast as NumPy does; the C primitive takes one matrix at a time.
     stack = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in matrices))
     if not stack:
         return function(*matrices)
@@ -108,8 +107,8 @@ class _Generator:
         shape: Any = (
             () if size is None else (size,) if isinstance(size, (int, np.integer)) else tuple(size)
         )
-        # The C runtime has no generator object. Each call gives the whole history of
-        # draws, so it can repeat them and return the last.
+        # The C runtime has no generator object. Each call gives the whole history of draws, so it
+        # can repeat them and return the last.
         self._drawn += [kind, int(np.prod(shape, dtype=int))]
         symbol = first_symbol(self._seeds)
         assert symbol is not None

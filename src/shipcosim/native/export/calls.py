@@ -38,8 +38,7 @@ def procedure_of(call: Call) -> Procedure:
     recording = ExportRecording([given.numbers[place] for place in call.changing])
 
     def run():
-        # Constant arguments keep their values; the changing ones become loads of the
-        # memory.
+        # Constant arguments keep their values; the changing ones become loads of the memory.
         numbers: list[Any] = [
             typed(number, leaf.kind)
             for number, leaf in zip(given.numbers, given.leaves, strict=True)

@@ -64,8 +64,8 @@ def refuse_other_results(
         path = Path(folder, f"model{TARGETS[own_target()].suffix}")
         path.write_bytes(library)
         loaded = ctypes.CDLL(str(path))
-        # The first round uses the example as it is; the others draw parameters near it.
-        # Each round has larger inputs.
+        # The first round uses the example as it is; the others draw parameters near it. Each round
+        # has larger inputs.
         for example in examples:
             for number in range(len(SHARES)):
                 _compare_run(
@@ -99,8 +99,8 @@ def _compare_run(cls, library, guid, parameters, random, number):
         ):
             return
         _compare(cls, python, compiled, "at the start")
-        # Each step gets new inputs, both sides the same. The states go on by themselves,
-        # so errors of the state show too.
+        # Each step gets new inputs, both sides the same. The states go on by themselves, so errors
+        # of the state show too.
         h = cls.default_step_size
         for step_number in range(STEPS):
             _draw(cls, inputs, random, SHARES[number])
@@ -116,8 +116,8 @@ def _compare_run(cls, library, guid, parameters, random, number):
                 is_near,
             ):
                 return
-            # Beyond this speed the model has diverged: rounding grows and a
-            # comparison says nothing.
+            # Beyond this speed the model has diverged: rounding grows and a comparison says
+            # nothing.
             if _is_lost(cls, python):
                 return
             _compare(cls, python, compiled, step)
@@ -152,16 +152,15 @@ def _compare(cls, python, compiled, when):
 
 
 def _near(cls, example, random) -> dict[str, Any]:
-    """All parameters of an example; with a random generator, near them and within their
-    bounds."""
+    """All parameters of an example; with a random generator, near them and within their bounds."""
     found = {}
     for v in cls.variables:
         if v.causality != "parameter":
             continue
         value = example.get(v.name, v.start)
         if (
-            # Only real parameters vary: others select code. Omitted and unlimited
-            # ones keep their meaning.
+            # Only real parameters vary: others select code. Omitted and unlimited ones keep their
+            # meaning.
             random is not None
             and v.type == "Real"
             and not v.is_left_out(value)
@@ -189,13 +188,13 @@ def _draw(cls, inputs, random, share):
         if v.type == "Real":
             low = -math.inf if v.minimum is None else v.minimum
             high = math.inf if v.maximum is None else v.maximum
-            # An input of 1e12 and more means unlimited; its random value gets the
-            # size of real power, 1e5.
+            # An input of 1e12 and more means unlimited; its random value gets the size of real
+            # power, 1e5.
             size = SIZES.get(v.unit, 0.5) if abs(v.start) < 1e12 else 1e5
             if abs(v.start) >= 1e12 and random.random() < 0.9:
                 continue  # plenty of power and the like stays so, mostly
-            # First-order autoregressive noise about the start, so that inputs move as
-            # signals do. The memory of 0.9 a step keeps them bounded.
+            # First-order autoregressive noise about the start, so that inputs move as signals do.
+            # The memory of 0.9 a step keeps them bounded.
             start = v.start if abs(v.start) < 1e12 else 2e5
             value = (
                 0.9 * (value - start if abs(value) < 1e12 else 0.0)

@@ -102,8 +102,7 @@ def understood(package: str) -> Iterator[None]:
             elif value is np:
                 module[name] = _NUMPY
             elif isinstance(value, functools._lru_cache_wrapper):
-                # Symbols have no hash, so a cache by arguments is bypassed for
-                # them.
+                # Symbols have no hash, so a cache by arguments is bypassed for them.
                 module[name] = _of(value, value.__wrapped__)
             elif callable(value) and getattr(value, "__module__", "") == "math":
                 module[name] = _REPLACED.get(value, value)

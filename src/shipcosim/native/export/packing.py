@@ -65,8 +65,8 @@ def build_native_fmu(
             values = [given for _, given in found]
             text = source_of_model(cls, script.stem, "", variants, words)
         try:
-            # The GUID is the hash of description and text without a GUID: the same
-            # model gives the same GUID. It then goes into both.
+            # The GUID is the hash of description and text without a GUID: the same model gives the
+            # same GUID. It then goes into both.
             blank = _description(cls, script.stem, "")
             guid = f"{{{hashlib.sha256(blank + text.encode()).hexdigest()[:32]}}}"
             files = {"modelDescription.xml": _description(cls, script.stem, guid)} | documentation(
@@ -75,8 +75,7 @@ def build_native_fmu(
         except ValueError as error:
             raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
         text = text.replace('#define GUID ""', f'#define GUID "{guid}"')
-        # Compare on this machine before anything is written. Other targets have the same
-        # source.
+        # Compare on this machine before anything is written. Other targets have the same source.
         own = compiled(text, own_target())
         refuse_other_results(cls, own, guid, values)
     files["sources/all.c"] = text.encode()
@@ -106,8 +105,8 @@ def _variants(
         yield variant, values
         seen.append(variant.fixed)
         flags = [v.name for v in cls.variables if v.type == "Boolean" and v.name in variant.fixed]
-        # A user may toggle a flag that no example does. Few flags: every combination gets
-        # a variant. Many would multiply the code.
+        # A user may toggle a flag that no example does. Few flags: every combination gets a
+        # variant. Many would multiply the code.
         for chosen in (
             itertools.product([False, True], repeat=len(flags)) if len(flags) <= MOST_FLAGS else ()
         ):

@@ -86,8 +86,7 @@ def compiled(source: str, target: str) -> bytes:
 
 
 def _compiled(source, triple, suffix) -> bytes:
-    """Compile a library or read it from the cache. A cache that cannot be written keeps
-    nothing."""
+    """Compile a library or read it from the cache. A cache that cannot be written keeps nothing."""
     key = hashlib.sha256(repr((source, triple, OPTIONS)).encode()).hexdigest()[:32]
     path = cache() / "native" / f"{key}{suffix}"
     if path.is_file():
@@ -120,8 +119,7 @@ def _from_compiler(source, triple, suffix) -> bytes:
             "-o",
             library.name,
         ]
-        # The mathematics of Windows is in its C runtime; elsewhere it is a library of its
-        # own.
+        # The mathematics of Windows is in its C runtime; elsewhere it is a library of its own.
         command += [] if "windows" in triple else ["-lm"]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:

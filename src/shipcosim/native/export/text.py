@@ -45,8 +45,8 @@ def source_of_model(
     written = set()
     found = []
     for variant in variants:
-        # Variants often record the same code, for example where a flag has no effect.
-        # Equal ones are written once.
+        # Variants often record the same code, for example where a flag has no effect. Equal ones
+        # are written once.
         text, size = _functions(variant, len(found), words, others)
         plain = (*variant.fixed.items(), _plain(text))
         if plain in written:
@@ -74,8 +74,7 @@ def source_of_model(
         "};",
         "",
     ]
-    # The table of variants: the runtime selects the one whose fixed values are the given
-    # parameters.
+    # From this table the runtime selects the variant that fits the given parameters.
     table = [
         _variant(cls, number, variant, size)
         for number, (variant, size) in enumerate(zip(variants, kept, strict=True))
@@ -100,8 +99,7 @@ def _functions(
 ) -> tuple[str, int]:
     """Write start and step of a variant; return the text and the size of their shared cache."""
     n = len(variant.places)
-    # Start and step share one array of cached results; those of the step lie behind the
-    # start's.
+    # Start and step share one array of cached results; those of the step lie behind the start's.
     start = ModelWriter(variant.start, f"start_{number}", words, lambda place: place, 0, others)
     step = ModelWriter(
         variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept, others
@@ -194,8 +192,7 @@ class ModelWriter(Writer):
     def _value(self, symbol: Symbol, depth):
         if symbol.op == "primitive":
             name, size, *arguments = symbol.operands
-            # C cannot return an array: the primitive writes its result to a local
-            # one.
+            # C cannot return an array: the primitive writes its result to a local one.
             given = ", ".join(map(operand, arguments))
             self._put(depth, f"double p{symbol.number}[{size}];")
             self._put(
@@ -271,8 +268,7 @@ def say(text: str, recording: Recording) -> str:
             said.append(f"say(o, {_text(words)});")
             continue
         symbol = recording.said[int(words)]
-        # A value with a format goes to printf; integers are doubles in C, so `d` becomes
-        # `.0f`.
+        # A value with a format goes to printf; integers are doubles in C, so `d` becomes `.0f`.
         if how != "r":
             said.append(
                 f"say_number(o, {operand(symbol)}, {_text('%' + how.replace('d', '.0f'))});"

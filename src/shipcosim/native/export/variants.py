@@ -70,8 +70,8 @@ def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Varian
     """
     parameters = [variable for variable in cls.variables if variable.causality == "parameter"]  # pyright: ignore
     given = {variable.name: values.get(variable.name, variable.start) for variable in parameters}
-    # Try the most general code first. Flags and integers become part of it only where the
-    # model needs their values, and decisions on parameters only as the last resort.
+    # Try the most general code first. Flags and integers become part of it only where the model
+    # needs their values. Fixed decisions on parameters are the last resort.
     texts = [variable.name for variable in parameters if variable.type == "String"]
     whole = [variable.name for variable in parameters if variable.type in ("Integer", "Boolean")]
     reasons = []
@@ -106,10 +106,8 @@ def with_its_line(function: Callable) -> Callable:
 
 @with_its_line
 def _recorded(cls, given, names, step_size, decided) -> Variant:
-    """Record a variant. `decided`: questions on parameters alone are answered as in the
-    example."""
-    # Fixed parameters are constants of the code. All other variables are loads from the
-    # memory, whose example values answer questions for whole numbers.
+    """Record a variant. `decided`: questions on parameters alone are answered as in the example."""
+    # Fixed parameters are constants, all other variables are loads from the memory.
     fixed = {name: given[name] for name in names}
     constant = frozenset(fixed)
     unchanging = frozenset(group.name for group in cls.groups)
@@ -154,7 +152,6 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
     for end in ends(root):
         if isinstance(end.result, Flat):
             end.result = _written(end.result, flat, places)
-    # The memory holds the variables, the times, then the state; it may have no state.
     size = max([n + STATE, *(place + 1 for place in places)])
     names = [text_of(leaf.path) for leaf in flat.leaves]
     return Variant(
@@ -168,8 +165,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
 
 
 def _recorded_start(cls, fixed, recording):
-    """Record the start: its tree of ways, and instance and flat state of the first complete
-    way."""
+    """Record the start: its tree of ways, and instance and flat state of the first complete way."""
     constant = frozenset(fixed)
     unchanging = frozenset(group.name for group in cls.groups)
     made = []
@@ -177,8 +173,8 @@ def _recorded_start(cls, fixed, recording):
     def run():
         clone = _with_symbols(cls, fixed, recording)
         with only_arithmetic(cls.__module__.partition(".")[0]), _remembering(cls.groups):
-            # Derived values of the parameters are computed at the start, so they
-            # belong to the memory.
+            # Derived values of the parameters are computed at the start, so they belong to the
+            # memory.
             clone.start()
             for group in cls.groups:
                 remember(getattr(clone, group.name))
@@ -248,15 +244,14 @@ def _numbers(flat, recording):
         try:
             found.append(recording.example(number))
         except (Untraceable, ArithmeticError, ValueError, RecursionError):
-            # The value may depend on a loop. Zero is enough: it only answers
-            # questions for whole numbers.
+            # The value may depend on a loop. Zero is enough: it only answers questions for whole
+            # numbers.
             found.append(0.0)
     return found
 
 
 def _widest(flat: Flat, root) -> Flat:
-    """The leaves of the first way, if all ways have its shape; floats where any way has a
-    float."""
+    """The leaves of the first way, if all ways have its shape; floats where any way has a float."""
     for end in ends(root):
         if isinstance(end.result, Flat):
             # Start and step have one layout, whatever way the start takes.
@@ -264,8 +259,7 @@ def _widest(flat: Flat, root) -> Flat:
                 raise Untraceable(
                     f"its start gives states of several shapes: {flat.difference(end.result)}"
                 )
-            # A number that is a float on one way must not be cut to an integer on
-            # another.
+            # A number that is a float on one way must not be cut to an integer on another.
             kinds = [kind_of(number) for number in end.result.numbers]
             flat.leaves = [
                 leaf._replace(kind="d") if k == "d" else leaf
@@ -275,8 +269,7 @@ def _widest(flat: Flat, root) -> Flat:
 
 
 def _written(result: Flat, flat: Flat, places) -> list[tuple[int, Any]]:
-    """The numbers that a way of the start writes: those that are not in their places
-    already."""
+    """The numbers that a way of the start writes: those that are not in their places already."""
     pairs = zip(places, result.numbers, strict=True)
     return [
         (place, number)

@@ -10,8 +10,7 @@ RESIZE = "Set it in the SSD or in a parameter set."
 
 
 def resized(component: Component) -> Iterator[str]:
-    """Sentences on start values that would resize arrays whose elements are laid out
-    already."""
+    """Sentences on start values that would resize arrays whose elements are laid out already."""
     for variable in component.fmu.variables.values():
         # Only the first element of each array: the others have the same sizes.
         if variable.whole is not None and variable.place == 0:

@@ -63,8 +63,8 @@ def assemble_package(
             apply_set(tree, values)
         return _system(tree, structure, file, findings)
 
-    # Lay out with the FMUs' own array sizes. If the values set other sizes, do it once more
-    # with these; findings of the first pass are dropped.
+    # Lay out with the FMUs' own array sizes. If the values set other sizes, do it once more with
+    # these; findings of the first pass are dropped.
     system = flat({})
     if any(found for component in system.components.values() for found in resized(component)):
         findings.back_to(before)
@@ -154,8 +154,7 @@ def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:
 
 
 def _is_given(connection: Connection, tree: Hierarchy) -> bool:
-    """True if a connection hands in a parameter of the outermost system; start values cover
-    it."""
+    """True if a connection hands in a parameter of the outermost system; start values cover it."""
     owner, name = connection.source
     return owner is None and tree.ports[Key((), name)].kind in ("parameter", "structuralParameter")
 

@@ -62,8 +62,8 @@ def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
     for key, port in tree.ports.items():
         if key in incoming and _is_end(key, port):
             wires = _way(key, incoming, findings)
-            # Nested connectors and dictionaries disappear: one connection from first
-            # source to last target.
+            # Nested connectors and dictionaries disappear: one connection from first source to last
+            # target.
             if wires and (source := _source(wires[0].source, tree)) is not None:
                 connections.append(_connection(wires, source, tree, findings))
     return tuple(connections)
@@ -108,8 +108,7 @@ def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wir
 
 
 def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
-    """Component (None: the outermost system) and name of a source; None if there is no
-    source."""
+    """Component (None: the outermost system) and name of a source; None if there is no source."""
     port = tree.ports[key]
     if port.owner == "component":
         return ".".join(key.path), key.name

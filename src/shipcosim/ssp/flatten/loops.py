@@ -61,8 +61,8 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
     -------
     list of AlgebraicLoop
     """
-    # Coarse search first: a loop of variables is also a loop of components. Only their FMUs
-    # need to be read.
+    # Coarse search first: a loop of variables is also a loop of components. Only their FMUs need to
+    # be read.
     links = [c for c in system.connections if c.source[0] and c.target[0] and not c.initial]
     links = list({(c.source, c.target): None for c in links})
     rough = [(source[0], target[0]) for source, target in links]
@@ -75,8 +75,8 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
         for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()
     }
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
-    # Graph of variables: connections between components, feedthrough inside them. Each
-    # strongly connected part is a loop.
+    # Graph of variables: connections between components, feedthrough inside them. Each strongly
+    # connected part is a loop.
     edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
     return [
         _loop(part, edges, links, list(system.components)) for part in _strong(_graph(edges), edges)

@@ -60,8 +60,7 @@ class OuterSignals:
         return Signal(key.name, kind, unit, port.description, start, port.items)
 
     def _ends(self, key: Key) -> list[tuple[Variable, Connection]]:
-        """Variables at the other ends of a connector's connections, with the
-        connections."""
+        """Variables at the other ends of a connector's connections, with the connections."""
         near = (None, key.name)
         pairs = [(c.target, c) for c in self.connections if c.source == near]
         pairs += [(c.source, c) for c in self.connections if c.target == near]
@@ -76,8 +75,8 @@ class OuterSignals:
         starts = set()
         for _, connection in ends:
             name, variable = connection.target
-            # Invert the connection, source = (target - offset) / factor; a mapping
-            # cannot be inverted.
+            # Invert the connection, source = (target - offset) / factor; a mapping cannot be
+            # inverted.
             value = self.components[name or ""].start_value(variable)
             if value is None or connection.mapping is not None or connection.factor == 0.0:
                 return None

@@ -34,8 +34,8 @@ def with_whole_steps(
     fitted = {}
     for name, component in components.items():
         step = component.step_size
-        # A difference within rounding means the multiple; anything else is left to the
-        # check of the plan.
+        # A difference within rounding means the multiple; anything else is left to the check of the
+        # plan.
         n = None if step is None or not base else _multiple(step / base, as_libcosim)
         if n is not None and step is not None and base and abs(n * base - step) > EXACT * step:
             found = f"Its step of {step:.9g} s is no multiple of the base step of {base:.9g} s"

@@ -19,8 +19,7 @@ FREE = ("inout", "unspecified")
 
 
 class Key(NamedTuple):
-    """Name of a port: the elements that contain it, without the outermost system, and its
-    own."""
+    """Name of a port: the elements that contain it, without the outermost system, and its own."""
 
     path: tuple[str, ...]
     name: str

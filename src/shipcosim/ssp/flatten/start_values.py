@@ -62,8 +62,7 @@ class Settings:
         ] = {}  # of components that run another FMU: parameters which it does not have
 
     def _names(self) -> dict[str, list[Key]]:
-        """Ports by full name; where element names have dots a name may mean several
-        ports."""
+        """Ports by full name; where element names have dots a name may mean several ports."""
         named = defaultdict(list)
         for path, (_, fmu) in self.tree.components.items():
             for name in () if fmu is None else fmu.variables:
@@ -92,8 +91,7 @@ class Settings:
     def _deliver(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
     ) -> None:
-        """Take a value over a step to a port and onwards; once to each port, also in a
-        circle."""
+        """Take a value over a step to a port and onwards; once to each port, also in a circle."""
         # A parameter of a system may feed several components through nested systems.
         ahead = [(value, flow, step, key)]
         seen = set()
@@ -182,11 +180,10 @@ class Settings:
         """Report an unknown name: an error if it looks like a slip, else a remark."""
         place = setting.value.place
         name = setting.name
-        # The standard lets a set hold more than is used. A misspelt name must not pass
-        # silently, though.
+        # The standard lets a set hold more than is used. A misspelt name must not pass silently,
+        # though.
         element, known = self._nearest(setting)
-        # A swapped FMU may lack parameters of the original; they are listed in one
-        # remark.
+        # A swapped FMU may lack parameters of the original; they are listed in one remark.
         if element is not None and element in self.tree.swapped:
             self.unused.setdefault(element, []).append(name.removeprefix(f"{element}."))
             return
@@ -219,8 +216,7 @@ class Settings:
             )
 
     def _nearest(self, setting: Setting) -> tuple[str | None, list[str]]:
-        """Element that a name means, by the longest existing path, and the names inside
-        it."""
+        """Element that a name means, by the longest existing path, and the names inside it."""
         start = "".join(f"{part}." for part in setting.path)
         names = [name.removeprefix(start) for name in self.named if name.startswith(start)]
         # A set bound to a component: all its names should be known there.
