@@ -113,7 +113,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     asked = {HULL_FILE: (HullParticulars,)} | {
         _file(name): (ThrusterParticulars,) for name in units
     }
-    # All values must be given: a default of a required parameter means nobody set it.
+    # All values must be given: the default of a required parameter means that it was not set.
     if left_out := [
         f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out
     ]:

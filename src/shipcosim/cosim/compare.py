@@ -111,7 +111,7 @@ def compare(
     system, scenario
         As for `shipcosim.cosim.simulate`.
     options : RunOptions, optional
-        As for `shipcosim.cosim.simulate`, but for the engine; progress is told of the parts of all runs.
+        As for `shipcosim.cosim.simulate`, without the engine; progress covers all runs.
     tolerance : float
         Difference from which on a signal differs, relative to its range.
     readers : mapping of str to callable, optional

@@ -43,7 +43,7 @@ def replay(
     """Run a system over segments of a record.
 
     Every segment is a run of its own: it starts from given values, and the table feeds the system's inputs at the
-    record's times, which the FMUs are told too.
+    record's times, which are also the times of the FMUs.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ def readers(
     scenario : Scenario
         Its steps; a tool that reads a file knows no events of ours.
     set_name : str, optional
-        Of the parameter set that ecos is told.
+        Of the parameter set that ecos applies.
 
     Returns
     -------

@@ -47,7 +47,7 @@ class ComponentInstance:
     multiple : int
         Its step, in base steps.
     fixed_step : float, optional
-        What it is told as its step, for an FMU that can take no other: the difference of two times is not always the
+        The step that it gets, for an FMU that takes no other: the difference of two times is not always the
         same number. [s]
     feeds : bool
         Whether a connection leads from it to a component.

@@ -23,7 +23,7 @@ class TimeGrid:
     start_time : float
         Of the scenario. [s]
     stop_time : float
-        Of the scenario; FMUs are told it, whether the run goes so far or not. [s]
+        Of the scenario; FMUs get it even if the run ends earlier. [s]
     first, last : int
         Step that is done first, step before which the run ends.
     times : (n + 1,) array

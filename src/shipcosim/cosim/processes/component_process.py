@@ -82,7 +82,7 @@ class ComponentProcess:
         Raises
         ------
         SlaveError
-            If the FMU fails in it or in what it was told before, or no answer comes.
+            If the FMU fails in this or an earlier request, or no answer comes.
         """
         self.send_request(what, function, *arguments)
         return self.receive_answer()

@@ -1,6 +1,6 @@
 """Vote on two compasses: which one is believed, and their common heading.
 
-Two compasses that disagree are told apart by the rate gyro: the one that turned otherwise than the gyro over the last
+If two compasses disagree, the rate gyro decides: the one that turned otherwise than the gyro over the last
 minute is at fault. Where no compass is believed the heading is the observer's, carried by the gyro.
 
 References

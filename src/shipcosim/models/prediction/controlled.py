@@ -1,6 +1,6 @@
 """Predict motion under DP: dead reckoning with reference, control law and thrust limits.
 
-Dead reckoning holds the thrust of this moment. A controller holds the ship instead, or brings her to where she is told
+Dead reckoning holds the thrust of this moment. A controller holds the ship instead, or brings her to where she is ordered
 to go: so it is run along the horizon, by the functions that it runs on itself.
 """
 

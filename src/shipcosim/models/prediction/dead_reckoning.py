@@ -34,7 +34,7 @@ def predict(
     surroundings : Surroundings
         Wind, current and remaining force, held earth-fixed, and remaining moment; the load of the wind follows heading
         and speed of the ship, that of the current her velocity through the water. The error of thrust is held while
-        thrusters are told to give anything.
+        any thrust is commanded.
     horizons : tuple of float, increasing
         How far ahead. [s]
     longest_step : float
@@ -59,7 +59,7 @@ def predict(
     """
     ship = known.ship
     current = (surroundings.current_north, surroundings.current_east)
-    # What thrusters give: what they are told and their error, or nothing.
+    # Delivered thrust: the command and its error, or nothing.
     acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
     X, Y, N = [where(acting, error, 0.0 * error) for error in surroundings.thrust_error]
     delivered = known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N

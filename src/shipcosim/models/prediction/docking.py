@@ -181,7 +181,7 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     -------
     (..., 30) array
         Where the quay is now and in 30 s [1], velocities now and then [m/s, rad/s], turn [rad], load [m/s2, rad/s2],
-        wind [m/s], what thrusters are told and give [N, rpm, rad].
+        wind [m/s], commands and feedback of thrusters [N, rpm, rad].
     """
     ship = own.ship
     (i11, i22, _, _, i66) = hull.inverse_mass

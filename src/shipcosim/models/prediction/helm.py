@@ -103,9 +103,9 @@ class Aboard(NamedTuple):
         Measured apparent wind at 10 m above the ship: speed, and direction it comes from, clockwise from the bow.
         [m/s, rad]
     thrust_cmd : tuple of three, like wind_speed
-        What port azimuth, starboard azimuth and tunnel are told to give. [N]
+        Commanded thrust of port azimuth, starboard azimuth and tunnel. [N]
     azimuth_cmd : tuple of two, like wind_speed
-        Where the azimuths are told to point. [rad]
+        Commanded directions of the azimuths. [rad]
     rpm : tuple of three, like wind_speed
         Measured shaft speeds, of the tunnel that of its motor. [rpm]
     azimuth : tuple of two, like wind_speed
@@ -238,7 +238,7 @@ def thruster_loads(
     """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
 
     Thrust and direction run from what shaft speed and direction give now to what is commanded, at their largest rates.
-    Once a drive has the thrust that it was told it keeps it at any speed.
+    Once a drive has reached its command, it keeps that thrust at any speed.
 
     Parameters
     ----------

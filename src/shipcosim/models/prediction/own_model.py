@@ -65,7 +65,7 @@ class Learned(NamedTuple):
     force_time, moment_time, wind_time : like current_walk
         Correlation times of remaining force and moment, time constant of the mean of the wind. [s]
     lag : like current_walk
-        Time constant with which thrust follows what it is told. [s]
+        Time constant with which thrust follows its command. [s]
     run_down_bow, run_down_stern : like current_walk
         Time in which thrust of 10 kN falls to a quarter when power is lost. [s]
     current_away : like current_walk
@@ -139,7 +139,7 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     thrust : Thrust
         Delivered now; floats, (...) arrays or tensors.
     told : Thrust
-        What is told.
+        Commanded thrust.
     h : float
         Step. [s]
     learned : Learned

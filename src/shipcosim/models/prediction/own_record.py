@@ -204,7 +204,7 @@ def step(
     Notes
     -----
     Extended Kalman filters. From sample to sample the ship's equations of motion are integrated by the midpoint rule
-    with the measured wind and the thrust that is told; the observer's place, heading and velocities correct the
+    with the measured wind and the commanded thrust; the observer's place, heading and velocities correct the
     prediction. Slopes are differences. A wind that the controller does not believe is replaced by its mean. A filter
     that goes astray begins anew, with the least weight.
 
@@ -288,7 +288,7 @@ def predict(
 
     References
     ----------
-    Midpoint rule; wind, current and what thrusters are told are held, remaining force and moment fade.
+    Midpoint rule; wind, current and thrust commands are held, remaining force and moment fade.
     """
     single = record.mean.ndim == 1  # in Python's floats it takes a tenth of the time
     states = record.mean.tolist() if single else [record.mean[..., k] for k in range(len(STATES))]

@@ -3,7 +3,7 @@
 The bias load of the DP observer is one load at one state. Held while the ship drifts, it would push her for ever;
 but what pushes her most is the water's motion, and she comes to move with the water. So the bias is taken apart, into a
 current that loads the hull, and a force: only as she moves does she learn which is which. And into what thrusters give
-beside what they are told: that is gone as soon as they are, while the observer's bias still holds it.
+beyond their commands: that is gone as soon as the commands are, while the observer's bias still holds it.
 """
 
 from dataclasses import dataclass

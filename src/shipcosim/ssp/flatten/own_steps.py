@@ -25,7 +25,7 @@ def with_whole_steps(
     components : mapping of str to Component
         By name.
     base : float or None
-        Step of the system; None: nobody has said it. [s]
+        Step of the system; None if it is unknown. [s]
     findings : Findings
         Takes what is changed.
     as_libcosim : bool
