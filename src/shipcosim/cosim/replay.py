@@ -63,7 +63,7 @@ def replay(
     output_interval : float, optional
         From row to row; every step where it is not given. [s]
     signals : sequence of str, optional
-        What is kept; everything where it is not given.
+        Signals to keep; all by default.
     progress : callable, optional
         Called with (segments done, segments in all).
 

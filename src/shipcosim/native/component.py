@@ -36,7 +36,7 @@ class CompiledStep:
     fmu : Fmu
         The Python object, after its start. Its numbers are those of the memory after `give_back`.
     shape : Shape
-        What is a number in it.
+        Its numbers and its structure.
     record : Record
         What belongs to the code.
     library : CDLL

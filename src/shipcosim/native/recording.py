@@ -119,7 +119,7 @@ class Recording:
     calls : list of Call
         Functions that stay in Python.
     loops : list of RecordedLoop
-        What is repeated.
+        Recorded loops.
     relied_on : list of Symbol
         Values that must be what they are in the example.
     said : dict of int to Symbol

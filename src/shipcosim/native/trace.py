@@ -129,7 +129,7 @@ def trace(
     fmu : Fmu
         An instance after its start; it stays as it is.
     shape : Shape
-        What is a number in it.
+        Its numbers and its structure.
     time, step_size : float
         Of the example step. [s, s]
     numbers : sequence of float, optional

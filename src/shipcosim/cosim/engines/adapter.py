@@ -250,7 +250,7 @@ def run_on(
     open_session : callable
         Opens the context manager of a session; may raise EngineError.
     job : Job
-        What it is to do.
+        Its task.
     about : dict
         Attributes of the table: the engine's version, remarks on it.
 
@@ -322,11 +322,11 @@ def unsupported(
     engine : str
         Its name.
     job : Job
-        What it would have to do.
+        The job to check.
     complaint_of : callable
-        What is wrong with a connection between variables of one type, for this engine.
+        Problem of a connection between variables of one type, for this engine.
     others : iterable of Problem
-        What is wrong beside the connections.
+        Problems other than those of connections.
     """
     problems = list(others)
     # Types and interfaces that the engine does not have, by component.

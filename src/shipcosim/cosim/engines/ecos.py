@@ -108,7 +108,7 @@ class EcosSession:
     Parameters
     ----------
     job : Job
-        What it is to do.
+        Its task.
     """
 
     def __init__(self, job: Job):

@@ -70,7 +70,7 @@ class LibcosimSession:
     Parameters
     ----------
     job : Job
-        What it is to do.
+        Its task.
     """
 
     def __init__(self, job: Job):

@@ -84,8 +84,8 @@ class _System(ctypes.Structure):
 class CompiledMaster(Master):
     """The master with a compiled loop, for the components that can be compiled.
 
-    The others are stepped by Python, and so are steps of a compiled component that its code gives up: what goes wrong
-    is then said as ever.
+    The others are stepped by Python, and so are steps of a compiled component that its code gives up: errors are
+    then reported as usual.
 
     Attributes
     ----------

@@ -83,7 +83,7 @@ class RemoteSlave(Slave):
     def stepper(self) -> Callable[[float, float], int]:
         """Prepared call that advances by a step; the next call reports errors.
 
-        What the getters get then comes with it.
+        The answer also brings the values of the getters.
         """
         number = self._prepared("stepper")
 

@@ -53,7 +53,7 @@ class Cvode:
 
     Notes
     -----
-    What the functions raise ends the step and is raised by it; returning RECOVERABLE makes CVode try a smaller step.
+    An error of the functions ends the step and is raised by it; returning RECOVERABLE makes CVode try a smaller step.
     """
 
     def __init__(

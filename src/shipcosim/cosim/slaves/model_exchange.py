@@ -1,7 +1,7 @@
 """FMUs for model exchange behind the calls of a co-simulation slave; CVode integrates them.
 
 A step of the master is integrated in steps that CVode chooses. State events end such a step where an event indicator
-is zero, time events where the FMU has said; after every step the FMU may ask for an event of its own. Inputs are held
+is zero, time events where the FMU announced them; after every step the FMU may ask for an event of its own. Inputs are held
 over a step of the master. One that has changed is handed over in event mode, since it jumps.
 
 Reference: FMI 2.0.4 and FMI 3.0.1, section 3 of each.

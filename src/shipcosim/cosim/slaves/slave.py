@@ -23,7 +23,7 @@ FAILED = DISCARD
 
 
 class SlaveError(Exception):
-    """A call to an FMU failed. The text is what the FMU said about it."""
+    """A call to an FMU failed. The text is the FMU's message."""
 
 
 class Slave:

@@ -68,15 +68,15 @@ class CompassVote(NamedTuple):
     Parameters
     ----------
     headings : tuple of two Heading
-        Latest telegrams.
+        Latest messages.
     unchanged : tuple of two
         How long each has not changed. [s]
     memory : tuple of two
-        How much farther each turned than the gyro says, forgotten slowly. [rad]
+        Turn of each beyond the gyro's, forgotten slowly. [rad]
     apart : float or (...) array or tensor
         Low-pass filtered difference of the two. [rad]
     believed : tuple of two
-        1 unless it was found to be at fault, 0 from then on until it is believed again. [1]
+        0 from a fault until it is believed again, else 1. [1]
     agreed : tuple of two
         How long each has agreed with what is used. [s]
     used : tuple of two
@@ -104,7 +104,7 @@ def start(headings: tuple[Heading, Heading]) -> CompassVote:
     Parameters
     ----------
     headings : tuple of two Heading
-        First telegrams.
+        First messages.
 
     Returns
     -------
@@ -130,22 +130,22 @@ def step(
     *,
     parameters: CompassVotingParameters,
 ) -> CompassVote:
-    """Vote on new telegrams.
+    """Vote on new messages.
 
     Parameters
     ----------
     state : CompassVote
-        State after the telegrams before.
+        State after the messages before.
     headings : tuple of two Heading
-        Telegrams.
+        Messages.
     r : float or (...) array or tensor
         Yaw rate of the gyro. [rad/s]
     predicted : like r
-        Heading as the observer has it for the time of the telegrams, motion in waves included. [rad]
+        Heading as the observer has it for the time of the messages, motion in waves included. [rad]
     quiet : like r
         How long no other sensor has changed. [s]
     dt : float
-        Time since the last telegrams. [s]
+        Time since the last messages. [s]
     parameters : CompassVotingParameters
         Limits.
 

@@ -30,7 +30,7 @@ _MANNER = "assumed, of one helmsman; drawn for each docking"
 
 @dataclass(frozen=True, kw_only=True)
 class ShipInHand:
-    """The ship as he has learned to handle her."""
+    """His model of the ship."""
 
     mass_surge: float = required("kg", "mass with added mass in surge", minimum=1.0)
     mass_sway: float = required("kg", "mass with added mass in sway", minimum=1.0)
@@ -49,7 +49,7 @@ class ShipInHand:
 
 @dataclass(frozen=True, kw_only=True)
 class MannerParameters:
-    """How he does it."""
+    """His manner of steering."""
 
     transit_speed: float = quantity(5.0, "m/s", "speed under way", _MANNER, minimum=0.5)
     closing_speed: float = quantity(1.2, "m/s", "speed off the berth", _MANNER, minimum=0.1)
@@ -181,7 +181,7 @@ class Helmsman:
     fairway : FairwayParameters
         The way.
     manner : MannerParameters
-        How he does it.
+        His manner of steering.
     """
 
     ship: ShipInHand
@@ -216,9 +216,9 @@ def follow(t: float, mind: Mind, seen: Seen, *, helmsman: Helmsman) -> Mind:
     mind : Mind
         Before.
     seen : Seen
-        What he sees now.
+        Measured motion and wind now.
     helmsman : Helmsman
-        Who he is.
+        His ship, fairway and manner.
 
     Returns
     -------

@@ -30,7 +30,7 @@ _SMALL = 1e-5
 
 @dataclass(frozen=True, kw_only=True)
 class Delays:
-    """What delays the loop beside observer and law, all of it in whole samples of the controller but the lag."""
+    """Delays of the loop outside observer and law, in whole samples except the lag."""
 
     position: float = quantity(
         0.4, "s", "age of a position when the controller gets it", "docs/dp-loop.md", minimum=0.1
@@ -116,7 +116,7 @@ def linear_loop(
     law : ControlParameters
         Of the control law.
     delays : Delays
-        What else delays the loop.
+        Further delays of the loop.
     wave_frequency : float
         Frequency that the wave filter has adapted to. [rad/s]
 

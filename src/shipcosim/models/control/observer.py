@@ -108,7 +108,7 @@ class ObserverParameters:
 
 
 class Measurement(NamedTuple):
-    """What the observer is given at a sample: the measured motion, and which parts of it are new and trusted.
+    """Input of the observer at a sample: measured motion, and which parts are new and trusted.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class StateEstimate(NamedTuple):
 
 
 class ObserverConstants(NamedTuple):
-    """What the observer computes once from its parameters.
+    """Constants that the observer computes once from its parameters.
 
     Parameters
     ----------

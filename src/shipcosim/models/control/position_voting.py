@@ -1,6 +1,6 @@
 """Vote on three position references: which are believed, and their common position.
 
-At each telegram: a reference that does not change while others do is frozen. One far from the observer's prediction is
+At each message: a reference that does not change while others do is frozen. One far from the observer's prediction is
 out while another, which does not agree with it, is near. Pairs that are apart are noticed, and the one at fault is the
 one that is apart from most, of equals the one that moved otherwise than the measured velocity says. What the rest
 agrees on must lie near the prediction; the longer there was no trusted position, the farther from it. So a jump that
@@ -95,15 +95,15 @@ class PositionVote(NamedTuple):
     Parameters
     ----------
     fixes : tuple of three Fix
-        Latest telegrams.
+        Latest messages.
     unchanged : tuple of three
         How long each has not changed. [s]
     memory : tuple of six
-        North and east: how much farther each moved than measured velocity says, forgotten slowly. [m]
+        North and east: movement of each beyond the measured velocity, forgotten slowly. [m]
     apart : tuple of six
         North and east: low-pass filtered differences of the `PAIRS`. [m]
     believed : tuple of three
-        1 unless it was found to be at fault, 0 from then on until it is believed again. [1]
+        0 from a fault until it is believed again, else 1. [1]
     agreed : tuple of three
         How long each has agreed with what is used. [s]
     used : tuple of three
@@ -141,7 +141,7 @@ def start(t: float, fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
     t : float
         Time. [s]
     fixes : tuple of three Fix
-        First telegrams.
+        First messages.
 
     Returns
     -------
@@ -169,22 +169,22 @@ def step(
     *,
     parameters: PositionVotingParameters,
 ) -> PositionVote:
-    """Vote on new telegrams.
+    """Vote on new messages.
 
     Parameters
     ----------
     t : float
         Time. [s]
     state : PositionVote
-        State after the telegrams before, faded by `faded`.
+        State after the messages before, faded by `faded`.
     fixes : tuple of three Fix
-        Telegrams.
+        Messages.
     predicted : Motion
-        As the observer has it for the time of the telegrams, motion in waves included.
+        As the observer has it for the time of the messages, motion in waves included.
     quiet : float or (...) array or tensor
         How long no other sensor has changed. [s]
     dt : float
-        Time since the last telegrams. [s]
+        Time since the last messages. [s]
     parameters : PositionVotingParameters
         Limits.
 

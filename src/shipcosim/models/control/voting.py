@@ -47,7 +47,7 @@ class WindVote(NamedTuple):
     Parameters
     ----------
     wind : Wind
-        Latest telegram; valid 1 where it is believed.
+        Latest message; valid 1 where it is believed.
     unchanged : float or (...) array or tensor
         How long it has not changed. [s]
     share : like unchanged
@@ -102,7 +102,7 @@ def start(
     t : float
         Time. [s]
     telegrams : Telegrams
-        First telegrams.
+        First messages.
     mast : MastParameters
         Where the anemometer stands.
     wind : WindParameters
@@ -146,7 +146,7 @@ def step(
     state : VotingState
         State at the last sample.
     telegrams : Telegrams
-        What the sensors give out.
+        Messages of the sensors.
     estimate : StateEstimate
         Of the observer at t.
     parameters : VotingParameters

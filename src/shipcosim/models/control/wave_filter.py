@@ -126,7 +126,7 @@ def kalman_gain(
 
 
 class AxisNoise(NamedTuple):
-    """What the filter of one axis assumes. For yaw, m is rad.
+    """Assumptions of the filter of one axis. For yaw, m is rad.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def filter_table(
     sample_period : float
         Period of the observer. [s]
     horizontal, yaw : AxisNoise
-        What the filters assume of surge and sway, and of yaw.
+        Assumptions of the filters of surge and sway, and of yaw.
 
     Returns
     -------

@@ -87,7 +87,7 @@ def rk4(
     h : float
         Step. [s]
     inputs : sequence of three tuples
-        What the rates depend on besides: at the start, the middle and the end of the step. [any unit]
+        Further arguments of the rates: at the start, the middle and the end of the step. [any unit]
 
     Returns
     -------
@@ -134,7 +134,7 @@ def rk4_pair(
     h : float
         Step. [s]
     start, middle, end : tuples
-        What the rates depend on besides, at these times of the step. [any unit]
+        Further arguments of the rates, at these times of the step. [any unit]
 
     Returns
     -------

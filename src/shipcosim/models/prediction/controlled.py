@@ -62,7 +62,7 @@ class ControlLoop(NamedTuple):
     design : Design
         Made of the same units by `pseudo_inverse.design`.
     observer : ObserverAhead
-        What is left of it.
+        Its parameters along the horizon.
     """
 
     reference: ReferenceParameters

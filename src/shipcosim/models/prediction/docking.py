@@ -102,7 +102,7 @@ def begin(aboard: Aboard, age: float) -> Own:
     Parameters
     ----------
     aboard : Aboard
-        What is known now.
+        Inputs of the predictor now.
     age : float
         Of the measured place. [s]
 
@@ -131,9 +131,9 @@ def follow(
     own : Own
         A second ago.
     before, now : Aboard
-        What was known then, and is known now.
+        Inputs of the predictor then and now.
     hull, wind, helm_ : HullParameters, WindParameters, HelmParameters
-        The ship as she knows herself.
+        The ship's model of herself.
 
     Returns
     -------
@@ -169,7 +169,7 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     Parameters
     ----------
     aboard : Aboard
-        What is known now; floats or (...) arrays.
+        Inputs of the predictor now; floats or (...) arrays.
     own : Own
         The record.
     ahead : Motion

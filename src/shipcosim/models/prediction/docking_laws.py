@@ -20,7 +20,7 @@ from shipcosim.models.ship.hull import HullParameters
 
 
 class Model(NamedTuple):
-    """The ship as she knows herself.
+    """The ship's model of herself.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class State(NamedTuple):
     latest : tuple of tuples of four
         As `helm.remembered` gives them. [rad, m/s, m/s, rad/s]
     aboard : Aboard
-        What is known now.
+        Inputs of the predictor now.
     own : Own or None
         Our law's record.
     memory : tuple of tuples of Memory

@@ -51,7 +51,7 @@ class Trained(NamedTuple):
     Parameters
     ----------
     learned : Learned
-        What is believed before the record. [units of its fields]
+        Learned prior. [units of its fields]
     limits : (9,) array
         Of each of `MEASURES` the largest value in training. [their units]
     """
@@ -102,7 +102,7 @@ def begin(
     Parameters
     ----------
     known : Known
-        What is known now; floats or (...) arrays.
+        Inputs of the predictor now; floats or (...) arrays.
     trained : Trained
         The ensemble.
     hull : HullParameters
@@ -137,7 +137,7 @@ def step(
     state : Hybrid
         At the last sample.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     h : float
         Time since the last sample. [s]
     trained : Trained
@@ -176,7 +176,7 @@ def predict(
     state : Hybrid
         With the sample of now.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     horizons : tuple of three floats
         How far ahead. [s]
     longest_step : float
@@ -239,7 +239,7 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     own : Record
         Of the filters.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     last : Motion
         Their predictions at the last horizon.
     learned : Learned

@@ -35,7 +35,7 @@ LONGEST = 30
 
 @dataclass(frozen=True, kw_only=True)
 class HelmParameters:
-    """Two azimuth thrusters, alike, one at each side, and a bow tunnel, as the predictor knows them."""
+    """Two equal azimuth thrusters, one at each side, and a bow tunnel, in the predictor's model."""
 
     x: float = required("m", "position of the azimuths forward")
     y: float = required("m", "position of the port azimuth to starboard", maximum=0.0)
@@ -243,7 +243,7 @@ def thruster_loads(
     Parameters
     ----------
     aboard : Aboard
-        What is known now.
+        Inputs of the predictor now.
     water : tuple of two floats or (...) arrays
         Velocity of the ship through the water now, forward and to starboard. [m/s]
     helm : HelmParameters
@@ -336,7 +336,7 @@ def predict(
     left : tuple of three, like current
         Load in body axes that nothing else explains, as estimated; paper III has none. [N, N, N.m]
     hull, wind, helm : HullParameters, WindParameters, HelmParameters
-        The ship as she knows herself.
+        The ship's model of herself.
     seconds : int
         How far ahead. [s]
 

@@ -145,7 +145,7 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
     state : State
         At the sample before; floats, (...) arrays or tensors.
     measured : Measured
-        What is aboard now.
+        Measurements of now.
     h : float
         Time between the samples. [s]
     design : FilterNumbers

@@ -97,7 +97,7 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     Parameters
     ----------
     known : Known
-        What is known now; floats, (...) arrays or tensors.
+        Inputs of the predictor now; floats, (...) arrays or tensors.
     learned : Learned
         Arrays or tensors that broadcast with them.
     hull : HullParameters
@@ -188,11 +188,11 @@ def step(
     record : Record
         Up to the last sample; arrays or tensors.
     known : Known
-        What is known now; floats, (...) arrays or tensors.
+        Inputs of the predictor now; floats, (...) arrays or tensors.
     h : float
         Time since the last sample. [s]
     learned : Learned
-        What was believed before the record.
+        Learned prior.
     hull, wind : HullParameters, WindParameters
         The ship's own model.
 
@@ -271,7 +271,7 @@ def predict(
     record : Record
         With the sample of now; arrays or tensors.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     horizons : tuple of float, increasing
         How far ahead. [s]
     steps : tuple of int

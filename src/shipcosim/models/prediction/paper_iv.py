@@ -144,7 +144,7 @@ def begin(known: Known) -> Past:
     Parameters
     ----------
     known : Known
-        What is known now, in floats.
+        Inputs of the predictor now, in floats.
 
     Returns
     -------
@@ -163,7 +163,7 @@ def step(past: Past, known: Known, *, hull: HullParameters, wind: WindParameters
     past : Past
         Of the last sample.
     known : Known
-        What is known now, in floats or (...) arrays.
+        Inputs of the predictor now, floats or (...) arrays.
     hull, wind : HullParameters, WindParameters
         The ship's own model.
 
@@ -200,7 +200,7 @@ def predict(
     past : Past
         With the sample of now; floats or (n,) arrays.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     ensemble : Ensemble or None
         The networks; None for the equations of motion alone.
     seconds : int

@@ -111,7 +111,7 @@ def own_errors(
     ship : Motion
         The ship now, as estimated.
     foreseen : Motion
-        What was predicted for now, ten seconds ago.
+        Prediction for now, made ten seconds ago.
     h : float
         Time since the last sample. [s]
     regions : RegionParameters
@@ -141,7 +141,7 @@ def widening(
     lost_for : like errors
         Time since all thrust was lost; negative while thrusters act. [s]
     regions : RegionParameters
-        What was calibrated.
+        Calibrated sizes.
 
     Returns
     -------

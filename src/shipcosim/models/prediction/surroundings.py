@@ -123,7 +123,7 @@ def unknown(
     hull : HullParameters
         Whose length gives the lever of the remaining force.
     parameters : SurroundingsParameters
-        What is assumed.
+        Prior assumptions.
 
     Returns
     -------
@@ -167,7 +167,7 @@ def step(
     surroundings : Surroundings
         As estimated at the last sample; floats, (...) arrays or tensors.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     h : float
         Time since the last sample. [s]
     hull : HullParameters
@@ -177,7 +177,7 @@ def step(
     ship : DpShip
         Model in which the bias load was estimated, for its linear damping.
     parameters : SurroundingsParameters
-        What is assumed.
+        Prior assumptions.
 
     Returns
     -------

@@ -204,7 +204,7 @@ def step(state: State, measured: Measured, h: float, *, design: VelocityNetworks
     state : State
         At the sample before; floats or (...) arrays. [as its fields]
     measured : Measured
-        What is aboard now. [as its fields]
+        Measurements of now. [as its fields]
     h : float
         Time between the samples, that of the training. [s]
     design : VelocityNetworks

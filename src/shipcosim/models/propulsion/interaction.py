@@ -153,7 +153,7 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
     Parameters
     ----------
     parameters : InteractionParameters
-        Places and sizes; a unit without diameter is none.
+        Places and sizes; a unit without diameter does not exist.
 
     Returns
     -------

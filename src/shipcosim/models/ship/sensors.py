@@ -8,7 +8,7 @@ measurements.
 References
 ----------
 Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper II, Table I,
-read as the nominal model says under sensors. Periods and latencies: assumed, typical of DP telegrams.
+read as the nominal model says under sensors. Periods and latencies: assumed, typical of DP messages.
 """
 
 from dataclasses import dataclass
@@ -101,7 +101,7 @@ class SensorParameters:
 
 
 class Truth(NamedTuple):
-    """What is measured: motion, low-frequency and wave motion added, and apparent wind.
+    """True values to be measured: total motion (low-frequency plus waves), apparent wind.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ class SensorState(NamedTuple):
     wind : Anemometer
         Of the anemometer.
     telegrams : Telegrams
-        What the sensors give out until the next tick.
+        Messages of the sensors until the next tick.
     """
 
     taken: int
@@ -276,7 +276,7 @@ def start(
     truth : Truth
         True values at t.
     failures : SensorFailures
-        What is wrong with the sensors at t.
+        Failures of the sensors at t.
     parameters : SensorParameters
         Errors and sample periods.
     mast : MastParameters
@@ -338,7 +338,7 @@ def step(
     truth : Truth
         True values at t.
     failures : SensorFailures
-        What is wrong with the sensors at t.
+        Failures of the sensors at t.
     parameters : SensorParameters
         Errors and sample periods.
     mast : MastParameters

@@ -20,7 +20,7 @@ def dictionaries_of(
     path : tuple of str
         Its place.
     place : Surroundings
-        What is around it.
+        Its surroundings.
 
     Returns
     -------

@@ -35,7 +35,7 @@ def take_fmu(
     path : tuple of str
         Its place.
     place : Surroundings
-        What is around it.
+        Its surroundings.
     """
     fmu = _fmu_of(tree, element, path, place)
     tree.components[path] = element, fmu
