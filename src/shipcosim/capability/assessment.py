@@ -37,6 +37,7 @@ def vessel_of(
         With everything that is missing or cannot be.
     """
     given = str(library.find("system", system))
+    # Sets may be files or names of sets that the system brings along.
     sets = [library.find_parameters(Path(path), given) for path in parameters]
     whole = read_system(given, sets, fmus=library.fmus(given))
     return read_vessel(whole, read_ship(ship_folder(ship, given, sets)))
@@ -59,9 +60,11 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     ShipcosimError
         If there is none.
     """
+    # The name of the system may carry the id of a part after '#'; the folder lies before it.
     ships = _ships(Path(system.partition("#")[0]))
     if ship is not None:
         names = [ship]
+    # Without a name: the parameter sets usually carry the ship's name. The last one set wins.
     else:
         bound = [] if osp_file(system) is not None else read(system).parameter_sets
         names = [Path(one).stem for one in reversed([*bound, *map(str, sets)])]

@@ -1,4 +1,4 @@
-"""Static balance of forces and moment: how much of a load thrusters can hold at most.
+"""Static balance of forces and moment: the largest part of a load that the thrusters can hold.
 
 For every choice of one convex piece a thruster the sum of the pieces is convex; the best choice is the answer.
 """
@@ -50,12 +50,17 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
     (m,) array
         0 where they can do nothing against it, at most `MOST`. At least 1: the ship keeps position and heading. [1]
     """
+    # Balance: thrust + s · load = 0. The ship holds the load if s can reach 1.
     loads = np.asarray(loads, float)
     best = np.zeros(len(loads))
+    # Newton and newton metres differ in size; scaled to one size they suit the tolerance of the
+    # linear programme.
     scale = _scale(actuators)
     if not len(loads) or scale is None:
         return best
     left = np.stack([a.left for a in actuators], axis=1)
+    # The reachable forces of a thruster may not be convex, but each of its pieces is. Try every
+    # choice of one piece each: its linear programme gives the largest share.
     for choice in product(*(a.pieces for a in actuators)):
         sets = [_columns(a, piece) / scale for a, piece in zip(actuators, choice, strict=True)]
         best = np.maximum(best, np.minimum(largest_multiple(sets, left, -loads / scale), MOST))
@@ -64,6 +69,7 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
 
 def _scale(actuators: Sequence[Actuator]) -> NDArray | None:
     """Sizes of force and moment that make them of one size; None where there is no thrust."""
+    # Force: the sum of the largest thrusts. Moment: this force on the longest lever, at least 1 m.
     force = sum(
         max((float(np.abs(piece).max(initial=0.0)) for piece in a.pieces), default=0.0)
         for a in actuators
@@ -74,5 +80,6 @@ def _scale(actuators: Sequence[Actuator]) -> NDArray | None:
 
 def _columns(actuator: Actuator, corners: NDArray) -> NDArray:
     """Forces and moment of the corners, (k, 3)."""
+    # N = x Y - y X, about the ship's origin.
     moment = actuator.x * corners[:, 1] - actuator.y * corners[:, 0]
     return np.column_stack([corners, moment])

@@ -1,4 +1,4 @@
-"""From a ship to her capability: every condition from every direction, with all thrusters and after each failure."""
+"""From a ship to her capability: all conditions and directions, intact and after each failure."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -19,7 +19,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 
 def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case, ...]:
-    """The ship with all thrusters, without each of them, without each bus of more than one, and without each group.
+    """The ship intact, without each thruster, without each bus of several, and without each group.
 
     Parameters
     ----------
@@ -43,13 +43,17 @@ def cases_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> tuple[Case
         raise ShipcosimError(
             [Problem("--failure", f"'{n}' is no thruster.", suggestion(n, known)) for n in unknown]
         )
+    # A set of thrusters occurs once, however it is lost. Each single thruster counts, as the
+    # notation asks for the worst single failure.
     lost = {
         frozenset(group): f"without {' and '.join(group)}"
         for group in [*((name,) for name in known), *given]
     }
+    # A bus with one thruster is the loss of this thruster; it is listed already.
     for bus, fed in vessel.buses.items():
         if len(fed) > 1:
             lost[frozenset(fed)] = f"without bus {bus} ({' and '.join(fed)})"
+    # Names in the order of the system, so that the tables are the same each time.
     return (
         Case("intact", ()),
         *(Case(name, tuple(n for n in known if n in group)) for group, name in lost.items()),
@@ -71,12 +75,14 @@ def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capab
     """
     cases = cases_of(vessel, groups)
     shares: dict[str, list[list[NDArray]]] = {LEVEL_1: [], SIMULATOR: []}
+    # Both methods see the same failures: the formulae of Level 1, and the simulator's models.
     for case in cases:
         working, failed = case.split(vessel.thrusters)
         shares[LEVEL_1].append([level_1_share(vessel.hull, working, failed, c) for c in CONDITIONS])
         shares[SIMULATOR].append(
             [simulated_share(vessel.simulated, working, c) for c in CONDITIONS]
         )
+    # Used thrust is 1 / share. A share of 0 (nothing can be balanced) becomes infinite.
     with np.errstate(divide="ignore"):
         return Capability(
             vessel, cases, {method: 1.0 / np.array(found) for method, found in shares.items()}
@@ -99,17 +105,21 @@ def level_1_share(
     (directions,) array
         Weather from each of `DIRECTIONS`. [1]
     """
+    # Available thrust: nominal, times losses (beta_misc), times what ventilation leaves, without
+    # the forbidden sectors.
     actuators = [
         _actuator(
             t, BETA_MISC * ventilation(t, hull, condition, DIRECTIONS), sectors(t, working, failed)
         )
         for t in working
     ]
+    # The weather turns around the ship; wind, waves and current come from the same direction.
     return largest_share(actuators, _load(level_1_parts(hull, condition, DIRECTIONS)))
 
 
 def simulated_share(ship: Simulated, working: Sequence[Thruster], condition: Condition) -> NDArray:
-    """The same by the simulator's models, whose thrusters give what they may be asked for."""
+    """The same by the simulator's models; the thrusters give up to their limits."""
+    # The simulator's thrusters lose nothing by neighbours here: no sectors, and all of the thrust.
     asked = [replace(t, **vars(ship.limits[t.name])) for t in working]
     actuators = [_actuator(t, np.ones(len(DIRECTIONS)), ()) for t in asked]
     return largest_share(actuators, _load(simulated_parts(ship, condition, DIRECTIONS)))
@@ -120,4 +130,5 @@ def _actuator(thruster: Thruster, left: NDArray, narrowed: Sequence) -> Actuator
 
 
 def _load(parts: dict[str, NDArray]) -> NDArray:
+    # The dynamic factor covers what a static balance leaves out (DNV-ST-0111).
     return DYNAMIC_FACTOR * sum(parts.values(), np.zeros((len(DIRECTIONS), 3)))

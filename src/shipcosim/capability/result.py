@@ -62,13 +62,16 @@ class Capability:
     used: Mapping[str, NDArray]
 
     def numbers(self, method: str = LEVEL_1) -> NDArray:
-        """DP capability numbers: the condition before the first that is not balanced, (cases, directions)."""
+        """DP capability numbers, (cases, directions): the condition before the first unbalanced."""
+        # A condition counts only if all lower ones hold too: the product turns 0 at the first that
+        # fails.
         holds = np.cumprod(self.used[method] <= BALANCED, axis=1)
         return holds.sum(axis=1)
 
     def worst(self, method: str = LEVEL_1, *, most_lost: int | None = None) -> NDArray:
-        """The lowest number after any of the failures, (directions,); `most_lost`: of those of so many thrusters."""
+        """Lowest number after any failure, (directions,); `most_lost` limits the lost thrusters."""
         lost = [len(case.failed) for case in self.cases]
+        # The intact case loses none and does not count here.
         counts = [0 < number <= (most_lost or number) for number in lost]
         return self.numbers(method)[counts].min(axis=0)
 
@@ -80,6 +83,7 @@ class Capability:
         A: the lowest number of the intact ship with the weather within 30 deg of the bow; B: from anywhere; C and D:
         the same after the worst single failure, with `most_lost` of so many thrusters at most.
         """
+        # Weather from ahead: angles on both sides within the bow sector.
         near_bow = np.minimum(DIRECTIONS, 2.0 * np.pi - DIRECTIONS) <= BOW_SECTOR + 1e-9
         intact = self.numbers(method)[0]
         worst = self.worst(method, most_lost=most_lost)
@@ -97,7 +101,7 @@ def notation(capability: Capability) -> str:
 
 
 def numbers_table(capability: Capability) -> str:
-    """DP capability numbers as CSV: a row a direction, a column a case and the worst failure; then the simulator's."""
+    """DP capability numbers as CSV: a row per direction, a column per case and method."""
     written = io.StringIO()
     rows = csv.writer(written, lineterminator="\n")
     columns = {
@@ -105,6 +109,7 @@ def numbers_table(capability: Capability) -> str:
         for method in capability.used
         for name, values in _named(capability, method)
     }
+    # Degrees in tables, for readers.
     rows.writerow(["weather_from [deg]", *columns])
     for k, angle in enumerate(DIRECTIONS):
         rows.writerow(
@@ -123,7 +128,8 @@ def _named(capability: Capability, method: str) -> list[tuple[str, NDArray]]:
 
 
 def dataset(capability: Capability) -> xarray.Dataset:
-    """Numbers and shares of thrust by basis (`LEVEL_1`, `SIMULATOR`), case, condition and direction."""
+    """Numbers and shares of thrust by basis (method), case, condition and direction."""
+    # Stack both methods along one axis, so that a plot can compare them.
     import xarray
 
     methods = list(capability.used)

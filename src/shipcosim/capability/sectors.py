@@ -1,4 +1,4 @@
-"""What thrust a thruster can give in which direction, as convex pieces; where it must not point and where it loses.
+"""Thrust that a thruster can give by direction, as convex pieces, with forbidden and lossy sectors.
 
 A thruster's race goes opposite to its thrust. Level 1 forbids an azimuth to blow onto a neighbour that works, and
 takes thrust where it blows onto one that stands still; a tunnel may be blown at. What remains of the disc of an azimuth
@@ -46,7 +46,7 @@ class Sector:
 def sectors(
     thruster: Thruster, working: Iterable[Thruster], failed: Iterable[Thruster]
 ) -> list[Sector]:
-    """Sectors in which a thruster must not push, or loses.
+    """Sectors where a thruster must not push, or loses thrust.
 
     Parameters
     ----------
@@ -69,20 +69,26 @@ def sectors(
 
 
 def _flushing(thruster: Thruster, other: Thruster, is_live: bool) -> Sector | None:
+    # A thruster cannot blow onto itself, and tunnels lie protected in the hull.
     if other is thruster or other.kind == "tunnel":
         return None
+    # The race goes opposite to the thrust: the critical thrust points away from the neighbour.
+    # Distance in diameters.
     x = thruster.x - other.x
     y = thruster.y - other.y
     distance = float(np.hypot(x, y)) / thruster.diameter
     if distance == 0.0:
         raise ValueError(f"{thruster.name} and {other.name} are in the same place")
     middle = float(np.arctan2(y, x))
+    # A working neighbour must not be blown at: within 15 D the sector is forbidden, arctan(0.1 + D
+    # / distance) to each side.
     if is_live:
         return (
             Sector(middle, float(np.arctan(0.1 + 1.0 / distance)))
             if distance < _LIVE_DISTANCE
             else None
         )
+    # A neighbour at rest costs thrust if it is near; the closer, the more.
     if distance >= _DEAD_DISTANCE[thruster.ducted]:
         return None
     left = 1.0 - 1.0 / (0.02 * distance**2 + 0.25 * distance + 1.2)
@@ -105,6 +111,7 @@ def pieces(thruster: Thruster, narrowed: Sequence[Sector] = ()) -> list[NDArray]
     """
     if thruster.kind == "azimuth":
         return _of_azimuth(thruster.ahead, narrowed)
+    # A thruster that cannot turn gives a segment of forces: ahead and astern along its axis.
     along = np.array([np.cos(thruster.angle), np.sin(thruster.angle)])
     left = [_share(angle, narrowed) for angle in (thruster.angle, thruster.angle + np.pi)]
     return [np.array([left[0] * thruster.ahead * along, -left[1] * thruster.astern * along])]
@@ -112,14 +119,18 @@ def pieces(thruster: Thruster, narrowed: Sequence[Sector] = ()) -> list[NDArray]
 
 def _of_azimuth(thrust: float, narrowed: Sequence[Sector]) -> list[NDArray]:
     """Sectors of the disc: cut at every edge and middle of a narrowed one, none wider than half a turn."""
+    # Without sectors the whole disc is one convex set, a polygon close to the circle.
     if not narrowed:
         return [thrust * _directions(np.arange(0.0, _TURN - 1e-9, CORNERS))]
+    # Between neighbouring cuts the limit is of one kind (free, lossy or forbidden), so it is
+    # convex.
     cuts = {
         edge % _TURN for s in narrowed for edge in (s.middle - s.half, s.middle, s.middle + s.half)
     }
     ordered = sorted(cuts)
     found = []
     for start, end in zip(ordered, [*ordered[1:], ordered[0] + _TURN], strict=True):
+        # The middle of the arc decides: a sector covers an arc fully or not at all.
         angle = 0.5 * (start + end)
         forbidden = any(s.share == 0.0 and abs(_apart(angle, s.middle)) < s.half for s in narrowed)
         if not forbidden:
@@ -129,6 +140,7 @@ def _of_azimuth(thrust: float, narrowed: Sequence[Sector]) -> list[NDArray]:
 
 def _halves(start: float, end: float) -> list[tuple[float, float]]:
     """An arc in equal parts of at most half a turn."""
+    # A sector of the disc wider than half a turn is not convex.
     parts = int(np.ceil((end - start) / np.pi - 1e-9))
     edges = np.linspace(start, end, parts + 1)
     return list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
@@ -137,6 +149,7 @@ def _halves(start: float, end: float) -> list[tuple[float, float]]:
 def _corners(thrust: float, start: float, end: float, narrowed: Sequence[Sector]) -> NDArray:
     """Corners between two cuts. Where thrust is lost the edge is straight, so its ends are enough."""
     middle = 0.5 * (start + end)
+    # A lossy edge is a straight line by definition; a free edge is an arc and needs corners.
     loses = any(abs(_apart(middle, s.middle)) < s.half for s in narrowed)
     number = 2 if loses else int(np.ceil((end - start) / CORNERS)) + 1
     angles = np.linspace(start, end, number)
@@ -151,10 +164,13 @@ def _share(angle: float, narrowed: Sequence[Sector]) -> float:
 
 def _share_of(angle: float, sector: Sector) -> float:
     away = abs(_apart(angle, sector.middle))
+    # The edges are allowed; rounding must not close them.
     if away >= sector.half - 1e-12:
         return 1.0
     if sector.share == 0.0:
         return 0.0
+    # The straight line in polar form: from full thrust at the edge (angle `half`) to `share` in the
+    # middle.
     sine = np.sin(sector.half)
     return float(sector.share * sine / (np.sin(sector.half - away) + sector.share * np.sin(away)))
 

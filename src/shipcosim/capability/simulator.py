@@ -1,4 +1,4 @@
-"""The same loads as the simulator computes them: wind table, hull in the current, table of wave drift; mean values."""
+"""The same loads by the simulator's models: wind table, hull in the current, wave drift table."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,12 +37,18 @@ def simulated_parts(
     """
     speed = condition.wind_speed
     flow = condition.current_speed
+    # The waves of the condition as components; their mean drift follows from the drift table.
     sea = components(condition.wave_height, condition.wave_period, 0.0, PEAK_ENHANCEMENT, SEED)
+    # The ship is at rest, so the water flows past: a current from ahead is speed ahead through
+    # water.
     ahead = flow * np.cos(weather_from)
     across = flow * np.sin(weather_from)
     loads = {
+        # Each model at its own axes and arguments: apparent wind, speed through water, waves
+        # relative to the ship.
         "wind": wind_loads(np.full_like(weather_from, speed), wrap(weather_from), wind=ship.wind),
         "current": hull_loads(ahead, across, np.zeros_like(ahead), hull=ship.hull),
         "waves": mean_drift(-weather_from, sea, drift_table(ship.drift.drift_table)),
     }
+    # One (n, 3) array per source; scalars are broadcast over the directions.
     return {name: np.stack(np.broadcast_arrays(*XYN), axis=-1) for name, XYN in loads.items()}

@@ -96,7 +96,7 @@ def nominal_thrust(
 def ventilation(
     thruster: Thruster, hull: Hull, condition: Condition, weather_from: NDArray
 ) -> NDArray:
-    """Share of the thrust that a propeller near a moving surface keeps.
+    """Share of the thrust that a propeller keeps near a moving surface.
 
     Phi(2 (2 xi / D) - 1.5 sigma), Phi the normal distribution, xi the submergence of the shaft, and sigma a measure of
     the relative motion and of the load on the propeller.
@@ -115,11 +115,16 @@ def ventilation(
         Between 0 and 1. [1]
     """
     x = thruster.x - hull.midship_x
+    # Angle from the bow as a part of half a turn: the same on both sides.
     turned = np.abs(wrap_series(weather_from, TURN)) / np.pi
+    # Relative motion: Hs, times factors of direction and of place along the ship, times a period
+    # ratio of at most 1.
     period = 0.64 * np.sqrt(hull.length) / condition.zero_crossing_period
     heave = 0.85 * np.where(turned <= 0.5, 1.0 + 0.38 * turned, 1.38 - 0.38 * turned)
     place = 1.0 + 0.4 * min(x, 0.0) / hull.length
+    # A heavily loaded propeller draws air earlier: √(T / D³), beyond its limit of 15.2.
     load = np.sqrt(thruster.ahead / thruster.diameter**3) / 15.2
     sigma = 0.25 * (heave * place * condition.wave_height * min(period, 1.0) + max(load - 1.0, 0.0))
+    # Phi(depth - 1.5 sigma), with depth = 4 xi / D. The normal distribution is written with erfc.
     depth = 4.0 * thruster.submergence / thruster.diameter
     return np.array([0.5 * erfc((1.5 * one - depth) / sqrt(2.0)) for one in sigma])

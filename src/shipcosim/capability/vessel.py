@@ -1,4 +1,4 @@
-"""The ship of a system as the capability sees her: hull, thrusters, and the models that the simulator has of her.
+"""The ship of a system for the capability: hull, thrusters, and the simulator's models of her.
 
 Thrusters are the components of a system whose forces go into the vessel. Positions and power come from the system's
 parameter set, the rest from the ship's files `capability*.toml`.
@@ -89,7 +89,7 @@ class Vessel:
 
 
 def read_vessel(system: System, ship: Ship) -> Vessel:
-    """The ship of a system.
+    """Read the ship of a system.
 
     Parameters
     ----------
@@ -107,11 +107,13 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     ShipcosimError
         With everything that is missing or cannot be.
     """
+    # Components are found by their parameters and connections, not by their names.
     body = _vessel_of(system)
     units = _thrusters_of(system, body.name)
     asked = {HULL_FILE: (HullParticulars,)} | {
         _file(name): (ThrusterParticulars,) for name in units
     }
+    # All values must be given: the default of a required parameter means that it was not set.
     if left_out := [
         f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out
     ]:
@@ -120,6 +122,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
                 system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
             )
         )
+    # All files of the ship are read before anything is checked, so that all errors come together.
     said = ship.parameter_set(asked)
     values = {
         file: {name: q.value for name, q in entries.items()} for file, entries in said.items()
@@ -130,7 +133,9 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     if problems:
         raise ShipcosimError(problems)
     known = {name: _real(body, name) for name in ("length", "breadth", "draught")}
+    # Shape and areas come from the ship's file, main dimensions from the system's parameter set.
     hull = Hull(**values[HULL_FILE], **known)
+    # Nominal thrust follows from diameter, power and kind of each thruster.
     made = [
         _thruster(unit, ThrusterParticulars(**values[_file(name)]), hull)
         for name, unit in units.items()
@@ -140,6 +145,7 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
         for f, e in said.items()
         for q in e.values()
     ]
+    # The second method needs the simulator's own models and limits.
     simulated = _simulated(body, units)
     buses = _buses(system, list(units))
     return Vessel(
@@ -153,6 +159,8 @@ def _file(thruster: str) -> str:
 
 
 def _vessel_of(system: System) -> Component:
+    # The vessel is the component that receives thruster forces and has the tables of wind and
+    # drift.
     driven = {target for _, target in _forces(system)}
     found = [
         c for n, c in system.components.items() if n in driven and c.fmu.variables.keys() >= _VESSEL
@@ -169,6 +177,7 @@ def _vessel_of(system: System) -> Component:
 
 
 def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
+    # Thrusters are the components with limits of power and thrust that feed this vessel.
     parts = {
         source: system.components[source] for source, target in _forces(system) if target == vessel
     }
@@ -180,7 +189,7 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
 
 
 def _forces(system: System) -> list[tuple[str, str]]:
-    """Names of the components (from, to) that a force `tau_Y` goes between."""
+    """Pairs of components (from, to) with a force `tau_Y` between them."""
     ends = [(c.source, c.target[0]) for c in system.connections]
     return [
         (source[0], target)
@@ -190,7 +199,8 @@ def _forces(system: System) -> list[tuple[str, str]]:
 
 
 def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
-    """Thrusters by the bus that feeds them, as the parameters ``NAME_bus`` of an allocator say: 0 is A, 1 is B."""
+    """Thrusters by bus, from an allocator's parameters ``NAME_bus``: 0 is A, 1 is B."""
+    # The allocator with a bus for every thruster is the one that knows the switchboard.
     for part in system.components.values():
         names = {thruster: f"{thruster.rpartition('.')[2]}_bus" for thruster in thrusters}
         if part.fmu.variables.keys() >= set(names.values()):
@@ -220,6 +230,8 @@ def _problems(
 
 def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster:
     """A thruster with its nominal thrust."""
+    # The kind follows from the FMU: no azimuth is a tunnel, a rate of azimuth turns, else it is
+    # fixed.
     has = unit.fmu.variables
     kind = (
         "tunnel"
@@ -231,15 +243,19 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
     diameter = own.diameter or _real(unit, "diameter")
     power = _real(unit, "power_max")
     ducted = own.propeller == "ducted" and kind != "tunnel"
+    # Factors of Level 1: by propeller (eta 1), by inlet or running astern (eta 2), by transmission
+    # (eta M).
     eta_1 = ETA_1["tunnel" if kind == "tunnel" else own.propeller]
     eta_2 = (
         (ETA_2_INLET[own.inlet],) * 2
         if kind == "tunnel"
         else (1.0, ETA_2_ASTERN[own.pitch, ducted])
     )
+    # A tunnel's thrust is the same both ways; others lose thrust astern.
     ahead, astern = (
         nominal_thrust(diameter, power, eta_1, eta, ETA_M[own.transmission]) for eta in eta_2
     )
+    # A fixed thruster points where its azimuth input starts.
     angles = {"tunnel": 0.5 * math.pi, "azimuth": 0.0}
     return Thruster(
         name=unit.name,

@@ -1,4 +1,4 @@
-"""One run on several engines, and on ours with half the step: by how much each signal differs, and why."""
+"""Compare one run on several engines and with half the step: differences of signals and causes."""
 
 from __future__ import annotations
 
@@ -57,14 +57,14 @@ class Signal:
 
     @property
     def worst(self) -> float:
-        """Largest relative difference between engines; infinite where a value is no number."""
+        """Largest relative difference between engines; infinite where a value is NaN."""
         found = [difference.relative for difference in self.engines.values()]
         return max((np.inf if np.isnan(value) else value for value in found), default=0.0)
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What came out.
+    """The result of a comparison.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def compare(
     system, scenario
         As for `shipcosim.cosim.simulate`.
     options : RunOptions, optional
-        As for `shipcosim.cosim.simulate`, but for the engine; progress is told of the parts of all runs.
+        As for `shipcosim.cosim.simulate`, without the engine; progress covers all runs.
     tolerance : float
         Difference from which on a signal differs, relative to its range.
     readers : mapping of str to callable, optional
@@ -125,12 +125,17 @@ def compare(
     ShipcosimError
         If our own engine cannot run it.
     """
+    # Engines that are not installed are no error: the comparison reports why they are missing.
     left_out = {name: str(problem) for name, problem in engines_missing().items()}
     names = [name for name in readers or ENGINES if name not in left_out and name not in OWN]
+    # Three parts beside the engines: our run, and the one with half the step (twice as long).
     runs = _Runs(system, options or RunOptions(), len(names) + 3)
+    # Engines are compared at every step: a coarse table would hide where a difference begins.
     scenario = scenario.model_copy(update={"output_interval": None})
     ours = runs.run(OURS, scenario)
     tables = {}
+    # The change with half the step estimates the error that the step size causes. A difference
+    # between engines below it is no fault of an engine.
     half = runs.run(OURS, halved(scenario), weight=2)
     seconds = {OURS: runs.seconds[0]}
     failed = []
@@ -140,17 +145,22 @@ def compare(
             seconds[name] = runs.seconds[-1]
         except ShipcosimError as error:
             left_out[name] = str(error)
+            # Only a run that started counts as failed; an engine that refuses the system does not.
             failed += [name] if isinstance(error, RunError) else []
+    # Without another engine report all signals, else those that some engine returns.
     known = [
         name
         for name in ours.data_vars
         if not tables or any(name in table for table in tables.values())
     ]
     signals = [_signal(name, ours, tables, half, tolerance) for name in known]
+    # First from the tables alone: the simplest relation between ours and theirs.
     remarks = {
         name: explained(ours, table, scenario.step_size, tolerance)
         for name, table in tables.items()
     }
+    # Then, where it is known how a tool interprets the file, repeat its deviations here. They
+    # replace the guesses only if they explain something.
     for name in [name for name in tables if remarks[name]]:
         if taken is None:
             break
@@ -159,6 +169,7 @@ def compare(
         )
         remarks[name] = [remarks[name][0], *found] if found else remarks[name]
         signals = [_with_cause(signal, name, causes) for signal in signals]
+    # The worst signal first, then the one with the largest step-size error.
     signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
     return Comparison(signals, seconds, left_out, remarks, tolerance, tuple(failed))
 
@@ -169,20 +180,23 @@ def _with_cause(signal, engine, causes):
 
 
 def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
-    """What a tool takes otherwise, each run here by itself and all of it together, as remarks and by signal."""
+    """Run a tool's known deviations here; return remarks, and causes by signal."""
     respects, whole = taken
     remarks = []
     causes = {}
     names = [name for name in ours.data_vars if name in theirs]
     differing = [name for name in names if differs(name, ours, theirs, tolerance)]
     try:
+        # Each deviation alone: the differing signals that it changes are its effect.
         for respect in respects:
             alone = simulate(respect.system, scenario)
             changed = [name for name in differing if differs(name, ours, alone, tolerance)]
             remarks.append(f"{respect.what}. This changes {listed(changed)}.")
             for name in changed:
                 causes.setdefault(str(name), []).append(respect.what)
+        # All together: if the result equals the tool's, nothing remains to be explained.
         together = simulate(whole, scenario) if respects else ours
+    # A deviation can make the system impossible to run here; then nothing is explained.
     except ShipcosimError:
         return [], {}
     left = [name for name in names if differs(name, together, theirs, tolerance)]
@@ -194,13 +208,13 @@ def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
 
 
 def halved(scenario: Scenario) -> Scenario:
-    """The scenario with half the step and a row at every whole one."""
+    """The scenario with half the step and a row at every whole step."""
     step = scenario.step_size
     return scenario.model_copy(update={"step_size": step / 2.0, "output_interval": step})
 
 
 class _Runs:
-    """Runs one after the other, timed, with one progress over all of them."""
+    """Runs in sequence, timed, with one progress over all of them."""
 
     def __init__(self, system, options, n_parts):
         self.system = system
@@ -221,6 +235,7 @@ class _Runs:
             return simulate(
                 self.system, scenario, replace(self.options, engine=engine, progress=report)
             )
+        # Count the part even after an error, so that the progress reaches its end.
         finally:
             self._done += weight
             self.seconds.append(perf_counter() - begin)
@@ -228,6 +243,7 @@ class _Runs:
 
 def _signal(name, ours, tables, half, tolerance):
     values = ours[name].values.astype(float)
+    # The range of our signal is the scale of all relative differences.
     spread = float(np.ptp(values)) if len(values) else 0.0
     having = {engine: table for engine, table in tables.items() if name in table}
     engines = {engine: difference(name, ours, table, spread) for engine, table in having.items()}
@@ -237,7 +253,8 @@ def _signal(name, ours, tables, half, tolerance):
 
 
 def _groups(name, tables, tolerance):
-    """Engines that agree with the first one of their group."""
+    """Groups of engines that agree with the first of their group."""
+    # Agreement is tested against the first engine only; ours is the first of the first group.
     groups = []
     for engine, table in tables.items():
         for group in groups:

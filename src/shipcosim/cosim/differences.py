@@ -1,4 +1,4 @@
-"""Differences between the tables of two runs, and what explains them, in words."""
+"""Differences between the tables of two runs, and their causes in words."""
 
 from __future__ import annotations
 
@@ -42,8 +42,10 @@ def listed(names: Sequence[str]) -> str:
 
 
 def differs(name: str, ours: xarray.Dataset, theirs: xarray.Dataset, tolerance: float) -> bool:
-    """Whether a signal differs somewhere by more than a tolerance, relative to its range in ours."""
+    """True if a signal differs by more than a tolerance, relative to its range in our run."""
+    # A constant signal has no range: its difference is taken as absolute.
     spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
+    # NaN fails the comparison, so a NaN counts as a difference.
     return not bool(np.all(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
 
 
@@ -51,6 +53,7 @@ def difference(
     name: str, ours: xarray.Dataset, theirs: xarray.Dataset, spread: float
 ) -> Difference:
     """Largest difference of a signal between two tables; `spread` is its range in ours."""
+    # NaN counts as infinitely far, so that its row is the one reported.
     distance = np.abs(_distance(name, ours, theirs))
     row = int(np.argmax(np.where(np.isnan(distance), np.inf, distance)))
     largest = float(distance[row])
@@ -60,9 +63,11 @@ def difference(
 
 
 def _distance(name, ours, theirs):
-    """Theirs minus ours in the rows that both have at the end, angles the shorter way round; (n,)."""
+    """Theirs minus ours in the last rows that both have, angles the shorter way round; (n,)."""
+    # A tool may lack the first row (start values), so the tables are aligned at their ends.
     n = min(len(ours["time"]), len(theirs["time"]))
     distance = theirs[name].values[-n:].astype(float) - ours[name].values[-n:].astype(float)
+    # An angle may differ by full turns: wrap the difference to half a turn either way.
     turn = FULL_TURN.get(ours[name].attrs.get("units"))
     return distance if turn is None else (distance + turn / 2.0) % turn - turn / 2.0
 
@@ -70,7 +75,7 @@ def _distance(name, ours, theirs):
 def explained(
     ours: xarray.Dataset, theirs: xarray.Dataset, step_size: float, tolerance: float = TOLERANCE
 ) -> list[str]:
-    """What explains the differences of a run from ours, in words.
+    """Explain in words the differences of a run from ours.
 
     Only the signals that differ first are looked at: what differs later may follow from them.
 
@@ -89,7 +94,9 @@ def explained(
         Empty if no signal differs.
     """
     first = {}
+    # Align the tables at their ends; theirs may lack the start.
     ours = ours.isel(time=slice(len(ours["time"]) - len(theirs["time"]), None))
+    # Find the first row where each signal leaves its tolerance.
     for name in (name for name in ours.data_vars if name in theirs):
         spread = float(np.ptp(ours[name].values.astype(float))) or 1.0
         beyond = np.flatnonzero(~(np.abs(_distance(name, ours, theirs)) <= tolerance * spread))
@@ -97,6 +104,7 @@ def explained(
             first[str(name)] = int(beyond[0])
     if not first:
         return []
+    # What differs later may follow from the first difference, so only the first row is explained.
     row = min(first.values())
     names = [name for name in first if first[name] == row]
     time = float(ours["time"].values[row])
@@ -106,20 +114,24 @@ def explained(
 
 
 def _cause(name, ours, theirs, step_size):
-    """The simplest relation that makes most of a signal's difference disappear."""
+    """Find the simplest relation that removes most of a signal's difference."""
     x, y = (table[name].values.astype(float) for table in (ours, theirs))
     time = ours["time"].values
     distance = _distance(name, ours, theirs)
     largest = np.max(np.abs(distance))
     if not np.isfinite(largest):
         return f"{name} is no number somewhere."
+    # The relations need a signal that moves. Each counts if it leaves less than 1 % of the largest
+    # difference.
     if len(x) > 2 and np.ptp(x) > 0.0:
+        # Shifted by a row: a connection passes the value on a step later or earlier.
         if np.max(np.abs(y[1:] - x[:-1])) < 0.01 * largest:
             return f"{name} comes one row late: a connection passes it on a step later."
         if np.max(np.abs(y[:-1] - x[1:])) < 0.01 * largest:
             return (
                 f"{name} comes one row early: a component gets it within the step, not at its end."
             )
+        # A line, y = a x + b: a factor or offset is missing, such as a unit.
         factor, offset = np.polyfit(x, y, 1)
         if np.max(np.abs(factor * x + offset - y)) < 0.01 * largest:
             return (
@@ -130,8 +142,11 @@ def _cause(name, ours, theirs, step_size):
         counts = np.rint(time / step_size).astype(int)
         summed = np.concatenate([[0.0], np.cumsum(np.full(counts[-1], step_size))])
         drift = summed[counts] - time
+        # A time error dt changes a signal by about its rate times dt. The rate from the table is
+        # rough, hence 30 %.
         if np.max(np.abs(np.gradient(x, time) * drift - distance)) < 0.3 * largest:
             return f"{name} differs as its rate times {drift[-1]:.1e} s: the engine's time, a sum of steps, drifts."
+    # No relation fits: the start tells parameters apart from decisions on the way.
     if np.abs(distance[0]) > 0.0:
         return f"{name} differs at the start: a parameter or start value is not applied, or settled otherwise."
     return f"{name} was the same before: something is decided otherwise there, e.g. a sample, a limit or an event."

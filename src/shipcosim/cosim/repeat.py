@@ -1,4 +1,4 @@
-"""A run repeated, from what its table says about it."""
+"""Repeat a run from the facts in its table."""
 
 from __future__ import annotations
 
@@ -52,6 +52,7 @@ def repeat(
         raise ShipcosimError(
             Problem("repeat", "The table does not say how it came about.", "Give a result.nc.")
         )
+    # Read the system again, with the FMUs that were swapped in the run.
     if not isinstance(system, System):
         folders = [Path(folder) for folder in fmus or [Path("build") / "fmus"]]
         swapped = {
@@ -61,8 +62,10 @@ def repeat(
         system = read_system(
             system or Path("ssp") / facts["system"], fmus=folders, components=swapped
         )
+    # Everything must be the same: wiring, FMUs and inputs. Start values are set below.
     if problems := list(_differences(facts, system, inputs)):
         raise ShipcosimError(problems)
+    # The table holds all start values, so the system's own do not matter.
     starts = {
         name: value
         for name, value in json.loads(facts["start_values"]).items()
@@ -88,7 +91,7 @@ def repeat(
 
 
 def _in(folders, file):
-    """Path of an FMU in the first of some folders that has it; its name alone where none has."""
+    """Path of an FMU in the first folder that has it; its name alone if none has."""
     return next((folder / file for folder in folders if (folder / file).is_file()), Path(file))
 
 
@@ -97,6 +100,7 @@ def _differences(facts, system, inputs):
         yield Problem(
             "repeat", f"The run was continued from a snapshot at {facts['continued_from']:g} s."
         )
+    # Compare by fingerprints: wiring, then the content of each FMU, then the input table.
     if fingerprint(system) != facts["system_sha256"]:
         yield Problem("repeat", f"{system.name} is not wired as {facts['system']} was in the run.")
     wanted = json.loads(facts["fmus"])

@@ -1,4 +1,4 @@
-"""Open-loop predictions: many segments of one record, each run from the state that was recorded at its start."""
+"""Open-loop predictions: many segments of a log, each run from the state logged at its start."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def replay(
     """Run a system over segments of a record.
 
     Every segment is a run of its own: it starts from given values, and the table feeds the system's inputs at the
-    record's times, which the FMUs are told too.
+    record's times, which are also the times of the FMUs.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def replay(
     output_interval : float, optional
         From row to row; every step where it is not given. [s]
     signals : sequence of str, optional
-        What is kept; everything where it is not given.
+        Signals to keep; all by default.
     progress : callable, optional
         Called with (segments done, segments in all).
 
@@ -91,9 +91,11 @@ def replay(
                 "replay", "starts is no list of times.", "Give the time of each segment's start."
             )
         )
+    # Plan all segments first, so that all errors are reported before a long computation.
     segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()
     rows = _SegmentRows(times, segments.states, signals)
+    # The FMUs stay loaded for all segments; only their state is reset.
     with delayed_interrupt() as check_interrupt, Instances() as instances:
         for number in range(len(times)):
             simulation = segments.simulation(number)
@@ -107,7 +109,7 @@ def replay(
 
 
 class _Segments:
-    """What each segment's run is."""
+    """The runs of all segments."""
 
     def __init__(self, system, inputs, starts, duration, step_size, output_interval, states):
         step_size = step_size or system.experiment.step_size
@@ -118,12 +120,13 @@ class _Segments:
         self.duration = duration
         self.options = RunOptions(inputs=inputs)
         self.how = {"step_size": step_size, "output_interval": output_interval}
+        # Start values of all segments, converted to the units of the variables once.
         self.states = {
             name: _per_segment(name, given, system, len(starts)) for name, given in states.items()
         }
 
     def check(self) -> None:
-        """Raise ShipcosimError with what is wrong with any segment."""
+        """Raise ShipcosimError with the problems of all segments."""
         problems = []
         for number in range(len(self.starts)):
             try:
@@ -135,7 +138,8 @@ class _Segments:
             raise ShipcosimError(problems[:MOST_PROBLEMS])
 
     def simulation(self, number: int) -> Simulation:
-        """Run of a segment, planned."""
+        """The planned run of a segment."""
+        # The clock is the log's: FMUs that depend on time see the true time.
         start = float(self.starts[number])
         system = with_values(
             self.system, {name: values[number] for name, values in self.states.items()}, "states"
@@ -147,10 +151,11 @@ class _Segments:
 
 
 def _bad_times(starts, duration, step_size, output_interval):
-    """What is wrong with the times of all segments."""
+    """Problems with the times of all segments."""
     if not step_size or not step_size > 0.0:
         yield Problem("replay", "No step size above 0 is known.", "Give step_size in seconds.")
         return
+    # Durations must be whole steps, so that all segments have the same rows.
     for name, time in (("duration", duration), ("output_interval", output_interval or step_size)):
         if not (whole_steps(time, step_size) or 0) > 0:
             found = f"{name} = {time:g} s is no whole number of steps of {step_size:g} s."
@@ -168,11 +173,13 @@ def _per_segment(name, given, system, n):
     """Start value of a signal for each segment, in the unit of the variable."""
     component, variable = system.split(name, "replay: states")
     owners = system.inputs if component is None else system.components[component].fmu.variables
+    # A value with a unit is converted; a plain number is in the variable's unit.
     try:
         factor, offset = conversion(getattr(given, "attrs", {}).get("units"), owners[variable].unit)
     except ShipcosimError as error:
         raise ShipcosimError(Problem(f"replay: states: {name}", error.problems[0].found)) from None
     values = np.asarray(given)
+    # One value for all segments, or one per segment.
     if values.shape not in ((), (n,)):
         found = f"{values.shape} values for {n} segments."
         raise ShipcosimError(Problem(f"replay: states: {name}", found, f"Give one, or {n}."))
@@ -182,7 +189,7 @@ def _per_segment(name, given, system, n):
 
 @contextmanager
 def _named(number, starts):
-    """Put the segment's number and start before what is wrong."""
+    """Add the segment's number and start to error messages."""
     try:
         yield
     except ShipcosimError as error:
@@ -190,13 +197,14 @@ def _named(number, starts):
         problems = [
             replace(p, where=f"{where}: {p.where}" if p.where else where) for p in error.problems
         ]
+        # A RunError keeps its table.
         if isinstance(error, RunError):
             raise RunError(problems, error.table) from error
         raise ShipcosimError(problems) from error
 
 
 class _SegmentRows:
-    """Rows of all segments: (segments, rows) an array for each signal."""
+    """Rows of all segments: one (segments, rows) array per signal."""
 
     def __init__(self, starts: np.ndarray, states: Mapping, signals: Sequence[str] | None):
         self.starts = starts
@@ -215,11 +223,12 @@ class _SegmentRows:
                 self.arrays[name][number] = values
 
     def _allocate(self, simulation, columns):
-        """Make room for all segments, as large as the first one's rows."""
+        """Allocate arrays for all segments, from the size of the first."""
         columns = {name: (values, (unit, text)) for name, values, unit, text in columns}
         if unknown := [name for name in self.signals or () if name not in columns]:
             found = f"there is no signal '{unknown[0]}'."
             raise ShipcosimError(Problem("replay: signals", found, suggestion(unknown[0], columns)))
+        # Time counts from the start of each segment, so it is the same for all.
         self.time = simulation.row_times - self.starts[0]
         shape = len(self.starts), len(self.time)
         for name in columns if self.signals is None else self.signals:
@@ -228,7 +237,7 @@ class _SegmentRows:
         self.attributes = simulation.attributes(complete=True) | {"states": json.dumps(self.states)}
 
     def dataset(self) -> xarray.Dataset:
-        """The table. Its attributes are those of the first segment, with the `states` of all."""
+        """The table, with the attributes of the first segment and the `states` of all."""
         import xarray
 
         variables = {

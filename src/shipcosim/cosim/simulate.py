@@ -1,4 +1,4 @@
-"""One run of a system through a scenario, on the engine that the options name."""
+"""Run a system through a scenario, on the engine that the options name."""
 
 from __future__ import annotations
 
@@ -52,6 +52,8 @@ def simulate(
         raise ShipcosimError(
             f"There is no engine '{options.engine}'. {suggestion(options.engine, ENGINES)}"
         )
+    # Order: read the system, set the scenario's values, check, convert units. The checks need names
+    # and values as written.
     if not isinstance(system, System):
         system = system_of(scenario, system=Path(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
@@ -59,8 +61,10 @@ def simulate(
         problem for problem in check_scenario(scenario, system) if problem.severity == "error"
     ]:
         raise ShipcosimError(errors)
+    # Unusual values do not stop the run, but the table notes them.
     odd = [str(remark) for remark in odd_values(scenario, system)]
     scenario = with_numbers(scenario, units_of(system))
+    # Other engines would ignore these options, so refuse them.
     if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."
         raise ShipcosimError(

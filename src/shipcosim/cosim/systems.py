@@ -1,4 +1,4 @@
-"""The system of a scenario, with its parameter sets and with the FMUs that it swaps."""
+"""The system of a scenario, with its parameter sets and swapped FMUs."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -45,8 +45,10 @@ def system_of(
     ShipcosimError
         With everything that is wrong.
     """
+    # Arguments of the call come before the scenario's own.
     path = scenario.system_path if system is None else system
     swapped = scenario.component_paths(build)
+    # A problem with a swapped FMU is reported at its line in the scenario file.
     of_scenario = {f"{WHERE}, {name}": name for name in swapped if name not in (components or {})}
 
     def located(problem: Problem) -> Problem:

@@ -1,4 +1,4 @@
-"""Many variations of one run, in threads: compiled steps need no Python, so that all cores work."""
+"""Many variations of one run, in threads; compiled steps release Python, so all cores work."""
 
 from __future__ import annotations
 
@@ -112,12 +112,14 @@ def simulate_many(
     ShipcosimError
         If a variation does not fit to the system, or all have failed.
     """
+    # Variations with the same names and events need only one check: their numbers do not matter.
     runs = _Runs(system, options, choose, reduce)
     for variation in {_kind(variation): variation for variation in variations}.values():
         runs.check(variation)
     cores = (
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     )
+    # Results come in any order; each goes to its own place.
     done: list[Done] = [Done() for _ in variations]
     with (
         delayed_interrupt() as runs.check_interrupt,
@@ -127,6 +129,7 @@ def simulate_many(
             done[number] = result
             if options.progress is not None:
                 options.progress(n, len(variations))
+    # Single failures are part of the result. If all fail, the input is probably wrong.
     if variations and all(one.error for one in done):
         raise ShipcosimError(f"All {len(done)} variations fail, the first with: {done[0].error}")
     known = attributes_of(system, scenario) | {
@@ -138,7 +141,7 @@ def simulate_many(
 
 
 class _Runs:
-    """What the runs have in common."""
+    """The parts that all runs share."""
 
     check_interrupt: Callable[[], None]
 
@@ -154,11 +157,12 @@ class _Runs:
         self._options = options
         self._reduce = reduce
         self._table = table
+        # All runs have the same names as a rule, so the choice is computed once.
         self._choose = lru_cache(maxsize=64)(lambda names: tuple(choose(list(names))))
         self._unit_of = units_of(system)
 
     def check(self, variation: Variation) -> None:
-        """Raise ShipcosimError where names or times of a variation do not fit to the system."""
+        """Raise ShipcosimError if names or times of a variation do not fit the system."""
         for name in variation.values:
             self._system.split(name, "variation")
         found = check_scenario(variation.scenario, self._system)
@@ -167,12 +171,14 @@ class _Runs:
         time_grid_of(variation.scenario, self._options.start_time)
 
     def run(self, variation: Variation, slaves: _Source) -> Done:
-        """One run; an error of it is part of the result."""
+        """Make one run; its error is part of the result."""
+        # The simulation of the last run is used again. After an error it is not trusted.
         simulation = slaves.last
         error = ""
         slaves.last = None
         try:
             system, scenario = self._varied(variation)
+            # If only numbers differ, rewind; otherwise plan a new run.
             if simulation is None or not simulation.rewind(system, scenario):
                 grid = time_grid_of(scenario, self._options.start_time)
                 simulation = Simulation(system, scenario, grid, self._options, repeated=True)
@@ -194,6 +200,8 @@ class _Runs:
         columns = simulation.columns(lambda names: self._choose(tuple(names)))
         done = Done(error, simulation.remarks(), simulation.row_times)
         if self._reduce is None:
+            # Without `reduce` keep the signals; else only what it computes, so that memory stays
+            # small.
             done.kept = {
                 name: (("time",), values, {"units": unit, "long_name": text})
                 for name, values, unit, text in columns
@@ -210,7 +218,7 @@ class _Runs:
 
 
 class _Source:
-    """Instances of one worker. Loading and resetting FMUs concerns the whole process: one worker at a time does it.
+    """Instances of one worker. Loading and resetting FMUs is process-wide: one worker at a time.
 
     Attributes
     ----------
@@ -232,7 +240,7 @@ class _Source:
 
 @contextmanager
 def _sources(n: int) -> Iterator[list[_Source]]:
-    """Instances for some workers."""
+    """Instances for a number of workers, which share the unpacked FMUs."""
     lock = threading.Lock()
     with UnpackedFmus() as unpacked, ExitStack() as stack:
         yield [_Source(stack.enter_context(Instances(unpacked)), lock) for _ in range(n)]
@@ -243,7 +251,8 @@ def _in_threads(
     variations: Sequence[Variation],
     sources: Sequence[_Source],
 ) -> Iterator[tuple[int, Done]]:
-    """Number and result of each run. The first goes alone: it compiles what the others share."""
+    """Number and result of each run. The first runs alone: it compiles what the others share."""
+    # Each worker takes free instances and puts them back; no two runs share an FMU.
     free: SimpleQueue[_Source] = SimpleQueue()
     for source in sources:
         free.put(source)
@@ -261,6 +270,8 @@ def _in_threads(
         with ThreadPoolExecutor(len(sources)) as pool:
             futures = [pool.submit(one, number) for number in numbers[1:]]
             try:
+                # In order of completion, so that progress moves on. After an error the waiting runs
+                # are dropped.
                 for future in as_completed(futures):
                     yield future.result()
             except BaseException:
@@ -269,7 +280,7 @@ def _in_threads(
 
 
 def _kind(variation):
-    """What the checks of a variation follow from, but for its numbers."""
+    """The properties on which the checks of a variation depend; numbers are not among them."""
     return (
         frozenset(variation.values),
         repr(variation.scenario.events),
@@ -281,6 +292,7 @@ def _dataset(variations, done, attributes) -> xarray.Dataset:
     """All runs as one table."""
     import xarray
 
+    # Failed runs have fewer rows; the longest run gives the time axis.
     times = max((one.times for one in done), key=len, default=np.empty(0))
     names = dict.fromkeys(name for one in done for name in one.kept)
     data = {}
@@ -296,6 +308,7 @@ def _dataset(variations, done, attributes) -> xarray.Dataset:
     }
     if any(dimensions[1:2] == ("time",) for dimensions, *_ in data.values()):
         coordinates["time"] = ("time", times, {"units": "s", "long_name": "time"})
+    # The varied values are coordinates, so that results can be selected by them.
     for name in dict.fromkeys(name for variation in variations for name in variation.values):
         if name not in data:
             column = [variation.values.get(name) for variation in variations]
@@ -305,10 +318,11 @@ def _dataset(variations, done, attributes) -> xarray.Dataset:
 
 
 def _stacked(parts) -> np.ndarray:
-    """(variations, ...) array; NaN where a run has no value, as after its failure."""
+    """(variations, ...) array; NaN where a run has no value, for example after a failure."""
     arrays = [None if part is None else part[1] for part in parts]
     known = [array for array in arrays if array is not None]
     shape = max((array.shape for array in known), default=())
+    # The usual case: all runs complete. Otherwise fill up with NaN.
     if len(known) == len(arrays) and all(array.shape == shape for array in known):
         return np.stack(known)
     stacked = np.full((len(arrays), *shape), np.nan)
@@ -319,7 +333,7 @@ def _stacked(parts) -> np.ndarray:
 
 
 class OneAfterAnother:
-    """Runs of one system in the calling thread, which come one by one and share what `simulate_many` shares.
+    """Runs of one system in the calling thread, one by one, with shared FMUs.
 
     Parameters
     ----------
@@ -343,7 +357,7 @@ class OneAfterAnother:
         self._source = self._stack.enter_context(_sources(1))[0]
 
     def run(self, variation: Variation) -> Done:
-        """One run; an error of it is part of the result."""
+        """Make one run; its error is part of the result."""
         return self._runs.run(variation, self._source)
 
     def close(self) -> None:

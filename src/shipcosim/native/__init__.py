@@ -1,4 +1,4 @@
-"""The models as compiled code: what a component computes is recorded on symbols, written as C, and compiled."""
+"""Compiled models: the step of a component is recorded on symbols, written as C and compiled."""
 
 from shipcosim.native.compiler import check_installed, is_installed, libraries
 from shipcosim.native.component import CompiledStep, compiled_steps

@@ -1,4 +1,4 @@
-"""Compiled code by the hash of its source: made once, kept in the cache of the package."""
+"""Libraries of C sources, cached by the hash of the source."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def check_installed() -> None:
 
 
 def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
-    """Libraries of C sources, compiled where they are not in the cache yet.
+    """Load libraries of C sources; compile those that are not in the cache.
 
     Parameters
     ----------
@@ -56,6 +56,8 @@ def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
         There is no compiler, it fails, or the cache cannot be written.
     """
     sources = list(sources)
+    # Each distinct source once: several components may share their code. The compiler is a process
+    # of its own, so threads compile in parallel.
     missing = [source for source in dict.fromkeys(sources) if source not in _LOADED]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         _LOADED.update(
@@ -73,6 +75,7 @@ _LOADED: dict[str, ctypes.CDLL] = {}
 
 
 def _compiled(source: str) -> Path:
+    # The cached file belongs to source, options and platform: a change of one gives another name.
     key = repr((source, OPTIONS, EXACT, sysconfig.get_platform()))
     path = cache() / "native" / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}{SUFFIX}"
     if path.is_file():
@@ -80,6 +83,7 @@ def _compiled(source: str) -> Path:
     check_installed()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        # Compile into a temporary folder, then rename: another process never sees half a file.
         with tempfile.TemporaryDirectory(dir=path.parent) as folder:
             text = Path(folder, "step.c")
             made = Path(folder, path.name)

@@ -1,4 +1,4 @@
-"""A component whose steps are compiled: its memory of numbers, and the Python object that they belong to."""
+"""A component with compiled steps: its memory of numbers, and its Python object."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class CompiledStep:
     fmu : Fmu
         The Python object, after its start. Its numbers are those of the memory after `give_back`.
     shape : Shape
-        What is a number in it.
+        Its numbers and its structure.
     record : Record
         What belongs to the code.
     library : CDLL
@@ -61,9 +61,13 @@ class CompiledStep:
         self._shape = shape
         self._record = record
         self._library = library
+        # The address of the C function: the master calls it without Python in between.
         self.function = ctypes.cast(library.step, ctypes.c_void_p)
+        # Layout of the memory: the numbers of the state, then time and step size.
         self.memory = np.zeros(len(shape.numbers) + 2)
         self.memory[:-2] = shape.numbers
+        # Each function that stays in Python has its arguments, then its results. NaN arguments
+        # differ from all others and force the first call.
         self.kept = np.full(
             max(1, sum(len(call.changing) + call.size for call in record.calls)), np.nan
         )
@@ -71,7 +75,7 @@ class CompiledStep:
         self.places = shape.flat.places
 
     def take(self) -> None:
-        """Take the numbers of the Python object. Raises Untraceable where it has another shape now."""
+        """Copy the object's numbers to the memory. Raises Untraceable if its shape differs."""
         shape = shape_of(self.fmu)
         if not shape.flat.same_shape(self._shape.flat):
             raise Untraceable(
@@ -80,38 +84,45 @@ class CompiledStep:
         self.memory[:-2] = shape.numbers
 
     def take_anew(self, time: float, step_size: float) -> bool:
-        """Take the numbers of the Python object after another start; whether the code is the same for them."""
+        """Copy the numbers after another start; true if the compiled code also holds for them."""
         try:
             shape = shape_of(self.fmu)
         except Untraceable:
             return False
+        # The C text has fixed places; another shape needs another record.
         if not shape.flat.same_shape(self._shape.flat):
             return False
+        # Integers may be part of the code (guards). The record must be the one that these values
+        # select.
         if (
             kept_record(key_of(self.fmu, shape), [*shape.numbers, time, step_size])
             is not self._record
         ):
             return False
+        # Restart with the new numbers, and forget the results cached for the old ones.
         self.memory[:-2] = shape.numbers
         self.kept[:] = np.nan
         return True
 
     def give_back(self) -> None:
-        """Give the numbers to the Python object."""
+        """Copy the numbers to the Python object."""
         values = vars(self.fmu)
         shape = self._shape
+        # C has doubles only; integers and flags get their Python type again.
         numbers = [
             typed(number, leaf.kind)
             for number, leaf in zip(self.memory.tolist(), shape.flat.leaves, strict=False)
         ]
+        # Build the attributes from the numbers; those that no step changes keep their objects.
         made = attributes_like(values, numbers, shape.constant, shape.unchanging)
         fixed = shape.constant | shape.unchanging
         values.update({name: value for name, value in made.items() if name not in fixed})
 
     def _called(self, _, number, arguments, kept):
-        """Compute a function that stays in Python; its errors come up again when Python takes the step."""
+        """Compute a function that stays in Python. After an error Python takes the step."""
         call = self._record.calls[number]
         try:
+            # The arguments are those of the recording; only the changing ones come from C.
             example = self._record.examples[number]
             numbers = list(example.numbers)
             leaves = example.leaves
@@ -119,8 +130,11 @@ class CompiledStep:
                 numbers[changing] = typed(arguments[place], leaves[changing].kind)
             result = call.function(*made_like(call.arguments, iter(numbers)))
             found = result.ravel() if isinstance(result, np.ndarray) else Flat(result).numbers
+            # Results go in place: C reads them behind the arguments.
             np.ctypeslib.as_array(kept, (call.size,))[:] = found
         except Exception:
+            # No exception can pass through C. The status makes the code give up; Python repeats the
+            # step.
             return 1
         return 0
 
@@ -143,6 +157,8 @@ def compiled_steps(
         The compiler is missing or fails, or the cache cannot be written.
     """
     with _ONE_AT_A_TIME:
+        # First record all components, then compile all sources at once: the compiler runs in
+        # parallel.
         found = [_recorded(fmu, time, step_size) for fmu in fmus]
         made = iter(libraries(one.record.source for one in found if isinstance(one, _Recorded)))
         return [
@@ -156,7 +172,7 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 class _Recorded(NamedTuple):
-    """A component with its record, which is new where it has a key."""
+    """A component with its record; `key` is empty if the record comes from the cache."""
 
     fmu: Any
     shape: Shape
@@ -165,11 +181,13 @@ class _Recorded(NamedTuple):
 
 
 def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
-    """What a component records as, from the cache where it is there."""
+    """Record a component, or take its record from the cache."""
     try:
         shape = shape_of(fmu)
         numbers = [*shape.numbers, time, step_size]
         key = key_of(fmu, shape)
+        # A record in the cache was compared with Python when it was made: no key, no new
+        # comparison.
         if (record := kept_record(key, numbers)) is not None:
             return _Recorded(fmu, shape, record, "")
         step = trace(fmu, shape, time, step_size)
@@ -181,7 +199,7 @@ def _recorded(fmu, time, step_size) -> _Recorded | Untraceable:
 
 
 def _checked(recorded: _Recorded, library, time, step_size) -> CompiledStep | Untraceable:
-    """The compiled step; what is new is compared with Python before it is kept."""
+    """Build the compiled step; compare a new record with Python before it is cached."""
     compiled = CompiledStep(recorded.fmu, recorded.shape, recorded.record, library)
     if recorded.key:
         try:

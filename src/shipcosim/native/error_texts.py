@@ -1,4 +1,4 @@
-"""Texts of errors with values in them that are known only when the compiled code runs."""
+"""Texts of errors with values that only the running code knows."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ _VALUE = re.compile(f"{SAID}([0-9]+):([^{SAID}]*){SAID}")
 
 
 def said(error: Exception, recording: Recording) -> list[Symbol]:
-    """The values in the text of an error."""
+    """Symbols whose values stand in the text of an error."""
     return [recording.said[int(number)] for number, _ in _VALUE.findall(str(error))]
 
 
 def parts(text: str) -> list[tuple[str, str]]:
-    """A text as pairs: (words, "") and (number of a value, how it is written as Python's formats say)."""
+    """Split a text into pairs: (words, "") and (number of a symbol, its Python format)."""
+    # The pattern has two groups, so the split gives words, number, format, words, and so on.
     found = _VALUE.split(text)
     pairs = [(found[0], "")]
     for number, how, words in zip(found[1::3], found[2::3], found[3::3], strict=True):
@@ -30,7 +31,8 @@ def parts(text: str) -> list[tuple[str, str]]:
 
 
 def line_of(error: BaseException) -> str:
-    """The line of the component's own code that an error comes from, as text; empty where it is none of its lines."""
+    """The component's line that raised an error, as text; empty if no line of it did."""
+    # The innermost line of the models or of the FMU's code tells the author where to look.
     frames = [
         frame
         for frame in traceback.extract_tb(error.__traceback__)

@@ -1,4 +1,4 @@
-"""Plain objects as rows of numbers, and back: what is a number in them, and what belongs to their structure."""
+"""Plain objects as rows of numbers, and back; separates numbers from structure."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Leaf(NamedTuple):
 
 
 class Flat:
-    """An object, taken apart.
+    """The numbers of an object, their places, and the rest of it.
 
     Parameters
     ----------
@@ -71,27 +71,30 @@ class Flat:
 
     @cached_property
     def places(self) -> dict[str, int]:
-        """Where the numbers lie that are attributes themselves."""
+        """Places of the numbers that are attributes themselves."""
         return {
             leaf.path[0]: place for place, leaf in enumerate(self.leaves) if len(leaf.path) == 1
         }
 
     def same_shape(self, other: Flat) -> bool:
-        """Whether two objects differ in their numbers alone."""
+        """True if two objects differ only in their numbers."""
+        # Shapes are cached, so most comparisons are of an object with itself.
         if self is other:
             return True
         places = [leaf.path for leaf in self.leaves], [leaf.path for leaf in other.leaves]
         return places[0] == places[1] and self.structure == other.structure
 
     def difference(self, other: Flat) -> str:
-        """The first place where their structures differ, as text."""
+        """The first place where two structures differ, as text."""
         for (path, one), (other_path, another) in zip(
             self.structure, other.structure, strict=False
         ):
+            # The first different entry explains the rest, which is shifted.
             if path != other_path or one != another:
                 return (
                     f"{text_of(path)} was {str(one)[:40]}, then {text_of(other_path)} was {another}"
                 )
+        # Equal structures: then some numbers exist in one of them only.
         ours, theirs = ({leaf.path for leaf in flat.leaves} for flat in (self, other))
         return (
             ", ".join(text_of(path) for path in sorted(ours ^ theirs, key=str)[:3])
@@ -99,7 +102,9 @@ class Flat:
         )
 
     def _add(self, path, value, fixed):
+        # An array without dimensions is a number.
         value = value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
+        # A flag of unchanging parameters selects code: it is structure, not a number.
         if isinstance(value, Symbol) or (
             isinstance(value, NUMBERS) and not (fixed and kind_of(value) == "b")
         ):
@@ -107,6 +112,7 @@ class Flat:
         elif isinstance(value, WHOLE) or isinstance(value, STRUCTURE):
             self.structure.append((path, value))
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fibO":
+            # The shape is structure, the elements are numbers.
             self.structure.append((path, value.shape))
             elements = value.ravel().tolist()
             self.numbers += elements
@@ -114,6 +120,7 @@ class Flat:
                 Leaf((*path, index), kind_of(element)) for index, element in enumerate(elements)
             ]
         else:
+            # Containers: note the type, then take the parts apart.
             self.structure.append((path, type(value).__qualname__))
             for key, part in _parts(path, value):
                 self._add((*path, key), part, fixed)
@@ -126,14 +133,16 @@ class Flat:
 def numbers_of(
     values: dict[str, Any], constant: Set[str], unchanging: Set[str]
 ) -> tuple[list[Any], tuple]:
-    """The numbers of attributes as `Flat` has them, and all else in a form that is equal for the same shape.
+    """The numbers of attributes as in `Flat`, and the rest, which is equal for equal shapes.
 
-    It takes a tenth of the time of a `Flat`.
+    Ten times faster than a `Flat`.
     """
     numbers: list[Any] = []
     rest: list[Any] = []
     for name, value in values.items():
         rest.append(name)
+        # Constants belong to the structure with type and value: 1, 1.0 and True are equal in
+        # Python.
         if name in constant:
             rest += (type(value), value)
         elif name in unchanging:
@@ -144,16 +153,19 @@ def numbers_of(
 
 
 def _take_once(value, numbers, rest):
-    """`_take` of what does not change: a frozen dataclass of parameters, tuples of floats. It is taken apart once."""
+    """Take a value apart that never changes, once: frozen parameters or tuples of floats."""
+    # The cache goes by identity. It keeps the object too, so that its id cannot be used again.
     known = _TAKEN.get(id(value))
     if known is None or known[0] is not value:
         taken = []
         others = []
+        # A tuple is a table of numbers; other unchanging values are parameters, with fixed flags.
         if isinstance(value, tuple):
             for part in value:
                 _take(part, False, taken, others)
         else:
             _take(value, True, taken, others)
+        # Simple limit of the memory: forget everything, then fill the cache again.
         if len(_TAKEN) >= MOST_TAKEN:
             _TAKEN.clear()
         known = _TAKEN[id(value)] = value, taken, tuple(others)
@@ -169,7 +181,7 @@ LONG = 16
 
 
 def _is_table(value):
-    """Whether an object is a long tuple of tuples of floats, which nobody can change."""
+    """True for a long tuple of tuples of floats, which cannot change."""
     if type(value) is not tuple or len(value) < LONG:
         return False
     return all(type(row) is tuple and set(map(type, row)) == {float} for row in value)
@@ -178,11 +190,13 @@ def _is_table(value):
 def _take(value, fixed, numbers, rest):
     kind = type(value)
     made = type(value).__qualname__
+    # The frequent types come first: this function runs for each attribute of each component.
     if kind is float:
         numbers.append(value)
         rest.append("d")
     elif isinstance(value, (tuple, list)):
         rest += (made, len(value))
+        # A row of floats is taken as a whole, without a call for each element.
         if set(map(type, value)) == {float}:
             numbers += value
             rest.append("d")
@@ -200,16 +214,18 @@ def _take(value, fixed, numbers, rest):
         parts = value if isinstance(value, dict) else vars(value)
         rest += (made, *parts)
         for key, part in parts.items():
+            # The marker for symbols is no part of the data.
             if key != "maths" or kind is dict:
                 _take(part, fixed, numbers, rest)
     else:
+        # Rare types take the slow and general way, so that both ways agree.
         flat = Flat({"": value}, unchanging={""} if fixed else set())
         numbers += flat.numbers
         rest += (tuple(flat.leaves), *((path, type(one), one) for path, one in flat.structure))
 
 
 def made_like(value: Any, numbers: Iterator[Any]) -> Any:
-    """An object like another one, of other numbers.
+    """Build an object of the same structure from other numbers.
 
     Parameters
     ----------
@@ -224,16 +240,19 @@ def made_like(value: Any, numbers: Iterator[Any]) -> Any:
         return value
     if isinstance(value, np.ndarray):
         found = [next(numbers) for _ in range(value.size)]
+        # Arrays with symbols have the type object; other arrays get their element type back.
         if any(isinstance(one, Symbol) for one in found):
             return np.array(found, dtype=object).reshape(value.shape).view(SymbolArray)
         return np.array(found, dtype=float if value.dtype == object else value.dtype).reshape(
             value.shape
         )
+    # A named tuple takes its fields as arguments, other sequences take a list.
     if isinstance(value, (tuple, list)):
         made = [made_like(part, numbers) for part in value]
         return type(value)(*made) if hasattr(value, "_fields") else type(value)(made)
     if isinstance(value, dict):
         return {key: made_like(part, numbers) for key, part in value.items()}
+    # Copy a dataclass without its constructor: derived fields are among the numbers.
     made = object.__new__(type(value))
     made.__dict__.update({key: made_like(part, numbers) for key, part in vars(value).items()})
     return made
@@ -242,7 +261,7 @@ def made_like(value: Any, numbers: Iterator[Any]) -> Any:
 def attributes_like(
     values: dict[str, Any], numbers: Iterable[Any], constant: Set[str], unchanging: Set[str]
 ) -> dict[str, Any]:
-    """Attributes of a component like others, of other numbers; see `Flat`."""
+    """Build attributes of the same structure from other numbers; see `Flat`."""
     rest = iter(numbers)
     return {
         name: value
@@ -255,12 +274,13 @@ def attributes_like(
 
 
 def text_of(path: tuple) -> str:
-    """A path as one reads it."""
+    """A path as readable text."""
     return ".".join(map(str, path))
 
 
 def _keeping_flags(value, numbers):
-    """`made_like`, in which flags stay."""
+    """Like `made_like`, but flags keep their values."""
+    # Flags of unchanging parameters are structure: `Flat` gave no number for them.
     flat = Flat(value)
     keeps = [kind_of(one) == "b" and not isinstance(one, Symbol) for one in flat.numbers]
     return made_like(
@@ -272,7 +292,7 @@ def _keeping_flags(value, numbers):
 
 
 def _parts(path, value) -> Iterator[tuple[Any, Any]]:
-    """Parts of an object by key or index."""
+    """The parts of an object, by key or index."""
     if isinstance(value, (tuple, list)):
         yield from enumerate(value)
     elif isinstance(value, dict):

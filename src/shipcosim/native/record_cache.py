@@ -1,4 +1,4 @@
-"""Recorded steps in the cache: what a component records as follows from its code and its shape, seldom from numbers."""
+"""Cache of recorded steps: a record follows from code and shape, and seldom from numbers."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class KeptCall(NamedTuple):
 
     @property
     def function(self) -> Callable:
-        """The function itself, without what remembers its results."""
+        """The function itself, without its cache."""
         found = getattr(sys.modules[self.module], self.name)
         return getattr(found, "__wrapped__", found)
 
@@ -72,7 +72,7 @@ class Record:
 
 
 def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
-    """What belongs to a step that was recorded from some numbers."""
+    """Build the record of a step that was recorded from some numbers."""
     calls = [
         KeptCall(
             call.function.__module__,
@@ -89,23 +89,26 @@ def record_of(step: Step, source: str, numbers: Sequence[float]) -> Record:
 
 
 def key_of(fmu: Any, shape: Shape) -> str:
-    """Key of a component's code and shape. The module of an FMU has a name unique to its content."""
+    """Key of a component's code and shape. An FMU's module name is unique to its content."""
     return _key(type(fmu).__module__, type(fmu).__qualname__, shape.flat)
 
 
 @lru_cache(maxsize=256)
 def _key(module, name, flat):
+    # Another version, another shape or another code writer gives another key.
     parts = module, name, shipcosim.__version__, flat.structure, flat.leaves, _OWN_CODE
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
 def kept_record(key: str, numbers: Sequence[float]) -> Record | None:
-    """The record in the cache that fits some numbers."""
+    """Return the cached record that fits some numbers."""
     path = _path(key)
+    # First the records in memory; the file is read again only if none of them fits.
     if (record := _fitting(_READ.get(path, ()), numbers)) is not None:
         return record
     try:
         _READ[path] = pickle.loads(path.read_bytes())
+    # A damaged or old file counts as none: the step is recorded again.
     except (OSError, EOFError, pickle.UnpicklingError, AttributeError, ImportError):
         return None
     return _fitting(_READ[path], numbers)
@@ -116,7 +119,7 @@ _READ: dict[Path, list[Record]] = {}
 
 
 def _fitting(records, numbers):
-    """The first record whose code belongs to some numbers."""
+    """The first record whose guarded numbers are the given ones."""
     fitting = (
         record
         for record in records
@@ -126,9 +129,11 @@ def _fitting(records, numbers):
 
 
 def keep_record(key: str, record: Record) -> None:
-    """Put a record beside those that there are. A cache that cannot be written keeps nothing."""
+    """Add a record to the cached ones of its key. A cache that cannot be written keeps nothing."""
     path = _path(key)
     try:
+        # The newest first; old ones drop out beyond the limit. The rename keeps readers from half a
+        # file.
         records = pickle.loads(path.read_bytes()) if path.is_file() else []
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent)
@@ -151,7 +156,8 @@ MOST = 8
 
 
 def _guarded(step: Step) -> set[int]:
-    """Places in the memory from which the whole numbers follow that the code relies on."""
+    """Places in the memory that determine the whole numbers in the code."""
+    # A guarded value may be computed; guard the loads that it comes from.
     sources = (source for symbol in step.recording.relied_on for source in symbol.sources())
     return {source.operands[0] for source in sources if source.op == "load"}
 
@@ -165,7 +171,7 @@ def _path(key) -> Path:
 
 
 def _own_code() -> str:
-    """Hash of this package: what writes the C text."""
+    """Hash of this package, which writes the C text."""
     texts = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
     return hashlib.sha256(b"\0".join(texts)).hexdigest()
 

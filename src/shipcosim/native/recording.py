@@ -1,4 +1,4 @@
-"""What a step of a component computes, recorded as a tree of values."""
+"""A step of a component, recorded as a tree of values."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ MOST_VALUES = 150_000
 
 
 class Call(NamedTuple):
-    """A function whose result is kept while its arguments stay.
+    """A function whose result is cached while its arguments stay equal.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Call(NamedTuple):
 
 @dataclass(eq=False)
 class Block:
-    """Values that are computed one after the other, and what comes next: two blocks, or the end.
+    """Values computed in sequence, and what follows: two blocks or the end.
 
     Attributes
     ----------
@@ -119,7 +119,7 @@ class Recording:
     calls : list of Call
         Functions that stay in Python.
     loops : list of RecordedLoop
-        What is repeated.
+        Recorded loops.
     relied_on : list of Symbol
         Values that must be what they are in the example.
     said : dict of int to Symbol
@@ -152,7 +152,7 @@ class Recording:
         self._due: list[tuple[bool, ...]] = []
 
     def record(self, function: Callable[[], Any], parent: Block | None = None) -> Block:
-        """Run a function once for each way through it; its results stay at the ends of the ways.
+        """Run a function once for each way through it; each way ends with its result.
 
         A way on which the function raises an error ends with the error as its result.
 
@@ -160,17 +160,22 @@ class Recording:
         ------
         Untraceable
         """
+        # Recordings nest (a loop's body has its own ways), so keep the state of the outer one.
         before = self.block, self._answers, self._prefix, self._taken, self._due
         root = Block(parent=parent)
         self._due = [()]
         ways = 0
+        # Depth first: each pass follows a prefix of answers, then answers yes. `decide` notes the
+        # other answers for later passes.
         while self._due:
             self._prefix = self._due.pop()
             self._taken = []
             self.block = root
+            # Answers of the outer way also hold inside.
             self._answers = dict(before[1])
             ways += 1
             if ways > self.most_ways:
+                # The line that asks most tells the author what to change.
                 (where, _), *_ = self._asked.most_common(1)
                 raise Untraceable(
                     f"it has more than {self.most_ways} ways through a step, most of them by {where}"
@@ -179,6 +184,8 @@ class Recording:
                 result = function()
             except (Untraceable, AssertionError, MemoryError, RecursionError):
                 raise
+            # Errors that a model raises on purpose are the result of this way. Others are faults of
+            # the recording and go up.
             except Exception as error:
                 if (
                     not isinstance(error, (ArithmeticError, ValueError))
@@ -186,6 +193,7 @@ class Recording:
                 ):
                     raise
                 result = error
+            # A value of another way or loop would not exist here in C.
             if isinstance(result, Flat):
                 for number in result.numbers:
                     self.refuse_left_behind(number)
@@ -194,10 +202,13 @@ class Recording:
         return root
 
     def repeat(self, going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
-        """The state after as many turns as a condition on it holds for."""
+        """Record a loop; return the state after it."""
+        # The state is carried: at each turn the body sees new symbols in place of its numbers.
         flat = Flat(state)
         parent = self.block
         kinds = [leaf.kind for leaf in flat.leaves]
+        # Repeat the recording until the kinds of the state stay the same. A number may start as an
+        # integer and become a float in the body.
         while True:
             number = len(self.loops)
             self._starts[number] = flat.numbers
@@ -205,13 +216,16 @@ class Recording:
                 self.fresh("carried", kind, number, place) for place, kind in enumerate(kinds)
             ]
             state_then = made_like(state, iter(carried))
+            # Condition and body are recorded apart: C tests the condition before each turn.
             condition = self.record(lambda state=state_then: going(state), parent)
             body = self.record(lambda state=state_then: Flat(turn(state)), parent)
+            # C has fixed variables, so the state must keep its shape.
             for end in ends(body):
                 if isinstance(end.result, Flat) and not end.result.same_shape(flat):
                     raise Untraceable(
                         f"in a loop the state changes its shape: {flat.difference(end.result)}"
                     )
+            # A value is a float if any way through the body makes it one.
             after = [end.result.leaves for end in ends(body) if isinstance(end.result, Flat)]
             wider = [
                 "d" if any(way[i].kind == "d" for way in after) else kind
@@ -220,6 +234,7 @@ class Recording:
             if wider == kinds:
                 break
             kinds = wider
+        # The loop itself is a value, so that it is computed in its place among the others.
         self.loops.append(RecordedLoop(flat.numbers, carried, condition, body))
         self.fresh("loop", "d", number)
         return made_like(
@@ -228,14 +243,18 @@ class Recording:
         )
 
     def decide(self, condition: Symbol) -> bool:
-        """The answer to a question of Python's on this way."""
+        """Answer a question of Python's on this way."""
+        # The same question has the same answer on one way.
         if condition.number in self._answers:
             return self._answers[condition.number]
+        # A question on fixed whole numbers alone does not fork: the code is for this answer.
         if self._is_choice(condition):
             return bool(self.guarded(condition))
+        # Count the asking line, to name it if there are too many ways.
         frame = sys._getframe(2)
         file = frame.f_code.co_filename.replace("\\", "/").rpartition("/")[2]
         self._asked[f"line {frame.f_lineno} of {file}"] += 1
+        # Follow the prefix; beyond it, answer yes and note the way with the answer no.
         number = len(self._taken)
         answer = self._prefix[number] if number < len(self._prefix) else True
         if number >= len(self._prefix):
@@ -243,6 +262,7 @@ class Recording:
         self._taken.append(answer)
         self._answers[condition.number] = answer
         block = self.block
+        # The first pass forks the block; later passes take its other branch.
         if block.condition is None:
             block.condition, block.yes, block.no = (
                 condition,
@@ -255,7 +275,7 @@ class Recording:
         return answer
 
     def _is_choice(self, condition):
-        """Whether a condition follows from whole numbers alone that are part of the code."""
+        """True if a condition depends only on whole numbers that are part of the code."""
         for one in condition.sources():
             if one.op == "load":
                 if one.operands[0] not in self._choices:
@@ -265,8 +285,10 @@ class Recording:
         return True
 
     def value(self, op: str, kind: str, *operands: Any) -> Symbol:
-        """The value of an operation, that computed before where there is one on this way."""
+        """The value of an operation; one already computed on this way is used again."""
+        # Symbols are equal by identity. Numbers are compared with their type: 1 is not 1.0 in C.
         key = op, *(id(o) if isinstance(o, Symbol) else (type(o), repr(o)) for o in operands)
+        # Values of the blocks before this one are known here: search up to the root.
         block: Block | None = self.block
         while block is not None:
             if key in block.known:
@@ -276,7 +298,7 @@ class Recording:
         return symbol
 
     def fresh(self, op: str, kind: str, *operands: Any) -> Symbol:
-        """A new value."""
+        """Add a new value to the current block."""
         if self.count >= MOST_VALUES:
             raise Untraceable(f"it computes more than {MOST_VALUES} values in a step")
         for operand in operands:
@@ -287,10 +309,12 @@ class Recording:
         return symbol
 
     def kept(self, function: Callable, arguments: tuple) -> Any:
-        """What a function gives that is called again only where its arguments have changed."""
+        """The result of a function that is called again only when its arguments change."""
         given = Flat(arguments)
+        # Equal calls in a step share one place for their result.
         key = function, *(id(one) if isinstance(one, Symbol) else one for one in given.numbers)
         if key not in self._call_numbers:
+            # Call it once with the example: the result tells its shape.
             numbers = (
                 typed(self.example(one), leaf.kind)
                 for one, leaf in zip(given.numbers, given.leaves, strict=True)
@@ -298,9 +322,11 @@ class Recording:
             example = made_like(arguments, numbers)
             self._call_numbers[key] = len(self.calls)
             changing = [place for place, one in enumerate(given.numbers) if isinstance(one, Symbol)]
+            # It may do what a step must not: it runs in Python, not in C.
             with anything(), np.errstate(all="ignore"):
                 self.calls.append(Call(function, example, changing, function(*example)))
         number = self._call_numbers[key]
+        # The call is a value, so C makes it before its results are used.
         result = self.calls[number].result
         self.value("call", "d", number, *(one for one in given.numbers if isinstance(one, Symbol)))
         flat = Flat(result)
@@ -310,23 +336,25 @@ class Recording:
         return marked(made_like(result, iter(kept)))
 
     def refuse_left_behind(self, value: Any) -> None:
-        """Raise Untraceable for a value of another way or of the inside of a loop, which Python kept elsewhere."""
+        """Raise Untraceable for a value of another way or loop that Python has kept."""
         if isinstance(value, Symbol) and value.block not in self.block.lineage:
             raise Untraceable(
                 "it keeps a value of a loop or of another way in a variable of its own"
             )
 
     def guarded(self, symbol: Symbol) -> int:
-        """The whole number that a value is in the example; compiled code gives up where it is another one."""
+        """The value in the example, as a constant of the code; C gives up where it differs."""
+        # A loop changes its values at each turn; no single number can be guarded.
         if any(one.op in ("carried", "after") for one in symbol.sources()):
             raise Untraceable("it asks for a whole number that follows from a loop")
         found = int(self.example(symbol))
+        # C tests the guard at run time, and the record notes on which numbers it relies.
         self.value("guard", "d", symbol, found)
         self.relied_on.append(symbol)
         return found
 
     def table(self, numbers: np.ndarray) -> int:
-        """Number of a constant table."""
+        """Number of a constant table; equal tables share one number."""
         numbers = np.ascontiguousarray(numbers, dtype=float).ravel()
         number = self._table_numbers.setdefault(numbers.tobytes(), len(self.tables))
         if number == len(self.tables):
@@ -334,7 +362,7 @@ class Recording:
         return number
 
     def example(self, value: Any) -> Any:
-        """What a value is in the example.
+        """Value of a symbol in the example.
 
         Raises
         ------
@@ -348,6 +376,7 @@ class Recording:
         return self._examples[value.number]
 
     def _computed(self, value):
+        # Evaluate by operation. Operands are evaluated the same way, each only once.
         op = value.op
         operands = value.operands
         if op == "load":
@@ -358,6 +387,7 @@ class Recording:
             return self.example(self._starts[operands[0]][operands[1]])
         if op == "row":
             index, table, width, column = operands
+            # A row of a table: elements lie row by row.
             return float(self.tables[table][self.example(index) * width + column])
         if op == "load_row":
             index, (place,), width, column = operands
@@ -381,12 +411,12 @@ def ends(block: Block) -> Iterator[Block]:
 
 
 def typed(number: Any, kind: str) -> float | int | bool:
-    """A number as one of Python, of the kind of a symbol."""
+    """A number with the Python type of a symbol's kind."""
     return float(number) if kind == "d" else bool(number) if kind == "b" else int(number)
 
 
 def marked(value: Any) -> Any:
-    """An object that holds symbols, known as such to functions that remember by the identity of their arguments."""
+    """Mark an object that holds symbols, so that caches by identity treat it as symbolic."""
     for part in value if isinstance(value, tuple) else (value,):
         if hasattr(part, "__dict__"):
             part.__dict__["maths"] = Maths

@@ -1,4 +1,7 @@
-"""What a step may call while it is recorded: arithmetic. Anything else would happen once, and then never again."""
+"""Calls that a step may make while it is recorded: arithmetic only.
+
+Other calls are refused: they would run at recording time only.
+"""
 
 import sys
 from collections.abc import Iterator
@@ -48,11 +51,13 @@ def only_arithmetic(code: str) -> Iterator[None]:
     Untraceable
         Before such a function is called.
     """
+    # Numeric modules, the package itself and the FMU's code are allowed.
     allowed = MODULES | {code}
 
     def watch(frame: Any, event: str, function: Any) -> None:
         if event != "c_call":
             return
+        # A method of a compiled type has no module; its object's type has one.
         module = function.__module__ or type(getattr(function, "__self__", None)).__module__
         if module == "_contextvars":
             return  # how NumPy treats errors meanwhile
@@ -63,8 +68,10 @@ def only_arithmetic(code: str) -> Iterator[None]:
             "release",
         ):
             return  # the lock of a cached property
+        # The recording itself runs inside the step and may do more.
         is_own = frame.f_globals.get("__name__", "").startswith("shipcosim.native")
         if is_own or (
+            # Random numbers would be drawn once, while recording, and then be constants.
             module.partition(".")[0] in allowed
             and not module.startswith(RANDOM)
             and not (module == "builtins" and function.__name__ in FORBIDDEN)
@@ -72,6 +79,8 @@ def only_arithmetic(code: str) -> Iterator[None]:
             return
         raise Untraceable(f"it calls {module}.{function.__name__}, which is no arithmetic")
 
+    # A profiler sees every call of a compiled function before it runs; Python code needs no check,
+    # as it ends in such calls.
     before = sys.getprofile()
     sys.setprofile(watch)
     try:
@@ -82,7 +91,7 @@ def only_arithmetic(code: str) -> Iterator[None]:
 
 @contextmanager
 def anything() -> Iterator[None]:
-    """Let a function that stays in Python do what it likes."""
+    """Lift the restriction while a function runs that stays in Python."""
     before = sys.getprofile()
     sys.setprofile(None)
     try:

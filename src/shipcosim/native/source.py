@@ -1,4 +1,4 @@
-"""C of a recorded step: one function that changes a memory of doubles in place."""
+"""C text of a recorded step: one function that changes an array of doubles in place."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ BINARY = {
 
 
 def source_of(step: Step) -> str:
-    """C text with the function ``step`` of a component.
+    """Write the C text of a component with the function ``step``.
 
     Its arguments are the memory, as `Step` lays it out; the results of functions that stay in Python, one behind the
     other, each behind the arguments that it belongs to; the function that calls them, and the host it belongs to.
@@ -86,21 +86,24 @@ def source_of(step: Step) -> str:
 
 
 def kept_sizes(recording: Recording) -> list[tuple[int, int]]:
-    """Numbers of arguments and results of each function that stays in Python."""
+    """Number of arguments and results of each function that stays in Python."""
     return [(len(call.changing), len(Flat(call.result).numbers)) for call in recording.calls]
 
 
 class Writer:
-    """Writes the blocks of a recording."""
+    """Writes the blocks of a recording as C."""
 
     def __init__(self, step: Step):
         self.step = step
         self.recording = step.recording
         self.sizes = kept_sizes(step.recording)
+        # Each call owns a piece of `k`: its arguments, then its results.
         firsts = np.cumsum([0, *(a + b for a, b in self.sizes)]).tolist()
         self.arguments = firsts[:-1]
         self.results = [first + size[0] for first, size in zip(firsts, self.sizes, strict=False)]
+        # Only values that a result depends on are written; this keeps the C text short.
         self.used = _used(step)
+        # Values that are needed after a loop keep their variable, even if the body ignores them.
         self.after = {
             symbol.operands
             for block in _all_blocks(step.root, step.recording)
@@ -110,6 +113,7 @@ class Writer:
         self.lines: list[str] = []
 
     def text(self) -> str:
+        # Constant tables stand before the function.
         tables = [
             f"static const double table_{number}[] = {{{', '.join(map(literal, table.tolist()))}}};"
             for number, table in enumerate(self.recording.tables)
@@ -126,6 +130,8 @@ class Writer:
         self.lines.append("    " * depth + line)
 
     def _block(self, block: Block, depth: int, finish):
+        # Values in order, then the fork. Each branch goes on to its own end, so nothing has to be
+        # joined.
         for symbol in block.values:
             if symbol.number in self.used:
                 self._value(symbol, depth)
@@ -139,26 +145,30 @@ class Writer:
         self._put(depth, "}")
 
     def _finish(self, result, depth):
+        # Where Python raises an error, C gives up and Python raises it.
         if not isinstance(result, list):
             self._put(depth, self._fail(result))
             return
+        # A sum is finite only if all terms are: one test for all outputs. Nothing is written before
+        # it.
         checked = [operand(number) for place, number in result if place in self.step.outputs]
         if checked:
             self._put(depth, f"if (!isfinite({' + '.join(checked)})) return {GIVEN_UP};")
+        # All new values are constants by now, so the order of the writes does not matter.
         for place, number in result:
             self._put(depth, f"m[{self._place(place)}] = {operand(number)};")
         self._put(depth, f"return {DONE};")
 
     def _fail(self, error: Exception) -> str:
-        """What to do on a way that ends with an error of Python's."""
+        """Write what follows where Python raises an error."""
         return f"return {GIVEN_UP};"
 
     def _other(self, symbol: Symbol, found: Any) -> str:
-        """What to do where a whole number that belongs to the code is another one."""
+        """Write what follows where a guarded whole number differs."""
         return f"return {GIVEN_UP};"
 
     def _place(self, place: int) -> int:
-        """Where a number lies in the memory."""
+        """Place of a number in the memory."""
         return place
 
     def _value(self, symbol: Symbol, depth):
@@ -173,6 +183,7 @@ class Writer:
             self._call(operands, depth)
         elif op == "loop":
             self._loop(self.recording.loops[operands[0]], operands[0], depth)
+        # A carried value is declared at the head of its loop.
         elif op != "carried":
             self._put(depth, f"const {_type(symbol)} {_name(symbol)} = {self._expression(symbol)};")
 
@@ -185,6 +196,7 @@ class Writer:
             return f"k[{self.results[operands[0]] + operands[1]}]"
         if op == "after":
             return f"c{operands[0]}_{operands[1]}"
+        # A row of a table: its elements lie row by row.
         if op == "row":
             index, table, width, column = operands
             return f"table_{table}[(long){operand(index)} * {width} + {column}]"
@@ -204,11 +216,13 @@ class Writer:
             return f"{condition} ? {a} : {b}"
         if op == "round":
             return f"rounded({operand(operands[0])}, 1e{operands[1]})"
+        # All others are one C operator or function.
         return (UNARY if len(operands) == 1 else BINARY)[op].format(*map(operand, operands))
 
     def _call(self, operands, depth):
         number, *arguments = operands
         first = self.arguments[number]
+        # The cached result holds while all arguments are equal. NaN is never equal.
         same = (
             " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
         )
@@ -216,11 +230,13 @@ class Writer:
         for i, a in enumerate(arguments):
             self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
         where = f"k + {first}, k + {self.results[number]}"
+        # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
         self._put(depth + 1, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
         self._put(depth, "}")
 
     def _loop(self, loop: RecordedLoop, number, depth):
+        # Carried values that nobody reads need no variable.
         needed = [
             place
             for place, symbol in enumerate(loop.carried)
@@ -230,12 +246,15 @@ class Writer:
             symbol = loop.carried[place]
             start = loop.start[place]
             self._put(depth, f"{_type(symbol)} c{number}_{place} = {operand(start)};")
+        # The condition is a block of statements, so C loops forever and breaks where it fails.
         self._put(depth, "for (;;) {")
+        # Each turn sees the values as constants; the variables change at its end, all together.
         for place, symbol in enumerate(loop.carried):
             if symbol.number in self.used:
                 self._put(depth + 1, f"const {_type(symbol)} {_name(symbol)} = c{number}_{place};")
         self._put(depth + 1, "int going;")
         self._block(loop.going, depth + 1, self._decide)
+        # The body ends by writing the carried values that it has changed.
         self._put(depth + 1, "if (!going) break;")
 
         def turn(result, inner):
@@ -271,25 +290,27 @@ def _type(symbol):
 
 
 def operand(value: Any) -> str:
-    """A symbol or a number in C."""
+    """A symbol or number in C."""
     return _name(value) if isinstance(value, Symbol) else literal(value)
 
 
 def literal(value: Any) -> str:
-    """A number in C."""
+    """A number in C, to the last bit."""
     if kind_of(value) == "b":
         return str(int(value))
     if not np.isfinite(value):
         return "NAN" if np.isnan(value) else "INFINITY" if value > 0.0 else "-INFINITY"
+    # repr gives the shortest text that reads back to the same double.
     text = repr(float(value))
     return f"({text})" if text.startswith("-") else text
 
 
 def _used(step: Step) -> set[int]:
-    """Numbers of the values that something depends on."""
+    """Numbers of the values that a result depends on."""
     used: set[int] = set()
     due: list[Any] = []
 
+    # Roots: guards, conditions, and the results or error texts at the ends of all ways.
     def note(block: Block):
         due.extend(symbol for symbol in block.values if symbol.op in ("guard",))
         if block.condition is not None:
@@ -308,20 +329,24 @@ def _used(step: Step) -> set[int]:
             due.append(result)
 
     note(step.root)
+    # Calls and loops are values of their own; find them by the number that their results name.
     made: dict[tuple, list[Symbol]] = {}
     for block in _all_blocks(step.root, step.recording):
         for symbol in block.values:
             if symbol.op in ("call", "loop"):
                 made.setdefault((symbol.op, symbol.operands[0]), []).append(symbol)
+    # Go from the roots to all operands.
     while due:
         value = due.pop()
         if not isinstance(value, Symbol) or value.number in used:
             continue
         used.add(value.number)
         due.extend(value.operands)
+        # A cached result needs its call.
         if value.op in ("kept", "kept_row"):
             value_call = value.operands[0] if value.op == "kept" else value.operands[1][0]
             due.extend(made["call", value_call])
+        # A value after a loop needs the loop: start values, condition and body.
         elif value.op in ("after", "loop"):
             due.extend(made["loop", value.operands[0]])
             loop = step.recording.loops[value.operands[0]]
@@ -331,6 +356,7 @@ def _used(step: Step) -> set[int]:
     return used
 
 
+# The main tree and the trees of all loops.
 def _all_blocks(root: Block, recording: Recording):
     roots = [root, *(block for loop in recording.loops for block in (loop.going, loop.body))]
     while roots:

@@ -1,4 +1,4 @@
-"""Numbers that record what is computed with them: a model runs on them in place of floats, and what it did is kept.
+"""Numbers that record what is computed with them; models run on them instead of floats.
 
 A `Symbol` is one value in a `Recording`. Arithmetic with it adds a value to the recording. Where Python asks whether a
 symbol is true, the recording forks: the model runs once for either answer.
@@ -14,7 +14,7 @@ import numpy as np
 
 
 class Untraceable(Exception):
-    """What a component does cannot be written as compiled code; the text says what it was."""
+    """A component does something that cannot be compiled; the text says what."""
 
 
 SAID = "\x01"
@@ -23,6 +23,7 @@ SAID = "\x01"
 
 def _binary(op, kind=None):
     def forward(self, other):
+        # NumPy takes over for arrays, element by element.
         if isinstance(other, np.ndarray):
             return NotImplemented
         return self.combined(op, self, other, kind)
@@ -70,7 +71,8 @@ class Symbol:
         return Maths
 
     def combined(self, op: str, a: Any, b: Any, kind: str | None = None) -> Any:
-        """The value of an operation of two operands."""
+        """Record an operation with two operands."""
+        # Python repeats a sequence by `*`; the count must be a whole number known now.
         if op == "*" and (isinstance(a, (tuple, list)) or isinstance(b, (tuple, list))):
             count, repeated = cast("tuple[Any, Any]", (a, b) if isinstance(a, Symbol) else (b, a))
             return operator.index(count) * repeated
@@ -80,12 +82,13 @@ class Symbol:
             )
         a = plain(a)
         b = plain(b)
+        # Whole numbers stay whole, except in a division or a power.
         if kind is None:
             kind = "i" if op not in ("/", "**") and kind_of(a) != "d" and kind_of(b) != "d" else "d"
         return self.recording.value(op, kind, a, b)
 
     def sources(self) -> Iterator[Symbol]:
-        """This value and all that it is computed from."""
+        """This value and all values that it is computed from."""
         due: list[Any] = [self]
         seen: set[int] = set()
         while due:
@@ -96,7 +99,7 @@ class Symbol:
                 due.extend(value.operands)
 
     def function(self, op: str, kind: str = "d") -> Symbol:
-        """The value of a function of this value."""
+        """Record a function of this value."""
         return self.recording.value(op, kind, self)
 
     __add__, __radd__ = _binary("+")
@@ -154,7 +157,7 @@ class Symbol:
         return np.array(self, dtype=object)[key]
 
     def item(self) -> Symbol:
-        """Itself, as the number in an array of none dimensions."""
+        """This symbol, as NumPy's arrays without dimensions give their number."""
         return self
 
     def __iter__(self):
@@ -163,6 +166,7 @@ class Symbol:
     def __repr__(self):
         return f"v{self.number}"
 
+    # The value is unknown now: leave a mark in the text that C later replaces.
     def __format__(self, how: str) -> str:
         self.recording.said[self.number] = self
         return f"{SAID}{self.number}:{how}{SAID}"
@@ -203,7 +207,7 @@ class Symbol:
         return self.combined("atan2", self, other, "d")
 
     def astype(self, kind: type) -> Symbol:
-        """As whole number or float."""
+        """This value as a whole number or float."""
         return Maths.number(self) if kind is float else Maths.whole(self)
 
 
@@ -211,12 +215,12 @@ NUMBERS = (Symbol, int, float, np.number, np.bool_)
 
 
 def plain(value: Any) -> Any:
-    """A number of NumPy as one of Python."""
+    """A NumPy number as a Python number."""
     return value.item() if isinstance(value, np.generic) else value
 
 
 def kind_of(value: Any) -> str:
-    """Kind of a number, as `Symbol.kind`."""
+    """Kind of a number, as in `Symbol.kind`."""
     if isinstance(value, Symbol):
         return value.kind
     return (
@@ -229,7 +233,7 @@ def kind_of(value: Any) -> str:
 
 
 def first_symbol(*values: Any) -> Symbol | None:
-    """The first symbol among values and the elements of arrays."""
+    """The first symbol among values, in arrays, sequences, dicts and objects."""
     for value in values:
         if isinstance(value, Symbol):
             return value
@@ -237,6 +241,7 @@ def first_symbol(*values: Any) -> Symbol | None:
             for element in value.flat:
                 if isinstance(element, Symbol):
                     return element
+        # Search containers, and only those objects that are marked as holding symbols.
         inside = value if isinstance(value, (tuple, list)) else ()
         inside = (
             value.values()
@@ -251,7 +256,7 @@ def first_symbol(*values: Any) -> Symbol | None:
 
 
 def _elementwise(function: Callable) -> Callable:
-    """A function of numbers, of arrays too."""
+    """A function of numbers that also takes arrays."""
 
     def call(*values):
         if any(isinstance(value, np.ndarray) for value in values):
@@ -266,6 +271,7 @@ def _of_one(op: str, of_float: Callable, kind: str = "d") -> Callable:
 
 
 def _where(condition, a, b):
+    # A known condition chooses now, without a value in the recording.
     symbol = first_symbol(condition, a, b)
     if symbol is None or not isinstance(condition, Symbol):
         return a if condition else b
@@ -273,6 +279,7 @@ def _where(condition, a, b):
         return a
     a = plain(a)
     b = plain(b)
+    # Two kinds mix to a float, as C has one type for the result.
     kinds = {kind_of(a), kind_of(b)}
     return symbol.recording.value("where", kinds.pop() if len(kinds) == 1 else "d", condition, a, b)
 
@@ -289,7 +296,7 @@ def _first(*values):
 
 
 class Maths:
-    """Elementary functions of symbols, and of arrays of them; those of `models.core.maths` go on to these."""
+    """Elementary functions of symbols and arrays of them; `models.core.maths` calls these."""
 
     sin = _of_one("sin", np.sin)
     cos = _of_one("cos", np.cos)
@@ -322,7 +329,7 @@ class Maths:
 
     @staticmethod
     def acts(value: Any, neutral: float) -> bool:
-        """Whether a parameter can change anything: asked where it can have another value when the code runs."""
+        """True if a parameter can have an effect; always true if it is fixed in the code."""
         symbol = first_symbol(value)
         return not (isinstance(symbol, Symbol) and symbol.recording.stands_alone) or bool(
             value != neutral
@@ -330,7 +337,8 @@ class Maths:
 
     @staticmethod
     def repeat_of(fmu: Any, going: Callable, turn: Callable) -> None:
-        """Loop over the attributes of a component; see `Recording.repeat`."""
+        """Record a loop over the attributes of a component; see `Recording.repeat`."""
+        # Parameters cannot change in a loop, so they need not be carried.
         fixed = {variable.name for variable in fmu.variables if variable.causality == "parameter"}
         fixed |= {group.name for group in fmu.groups}
         values = vars(fmu)
@@ -339,6 +347,7 @@ class Maths:
             values.update(state)
             return function()
 
+        # Record one turn only to see which attributes it changes. These are the state of the loop.
         before = dict(values)
         changed = set()
 
@@ -350,6 +359,7 @@ class Maths:
 
         condition = with_state(going, before)
         condition.recording.record(noticed, condition.recording.block)
+        # Sorted, so that the recording is the same each time.
         names = sorted(changed - fixed)
 
         def turned(state):
@@ -357,6 +367,7 @@ class Maths:
             return {name: values[name] for name in names}
 
         start = {name: before[name] for name in names}
+        # Record the loop on that state alone; all other attributes keep their values.
         after = condition.recording.repeat(lambda state: with_state(going, state), turned, start)
         values.update({**before, **after})
 
@@ -376,18 +387,20 @@ class Maths:
 
     @staticmethod
     def interp(x: Any, xs: Sequence[float], ys: Sequence[float]) -> Any:
-        """Linear interpolation, as `models.core.interpolation.interp` of a float."""
+        """Linear interpolation, as `models.core.interpolation.interp` for a float."""
         if isinstance(x, np.ndarray):
             return np.array(
                 [Maths.interp(element, xs, ys) for element in x.flat], dtype=object
             ).reshape(x.shape)
         if first_symbol(xs, ys) is not None:
             # Linear interpolation in a short table of values in memory.
+            # Start left of the table, then take the last interval whose start is not beyond x.
             found = ys[0]
             for k in range(len(xs) - 1):
                 between = ys[k] + (ys[k + 1] - ys[k]) * (x - xs[k]) / (xs[k + 1] - xs[k])
                 found = Maths.where(x >= xs[k], between, found)
             return Maths.where(x >= xs[len(xs) - 1], ys[len(xs) - 1], found)
+        # Constant points become tables of the C text, and the search runs there.
         recording = x.recording
         first = recording.table(np.asarray(xs))
         second = recording.table(np.asarray(ys))
@@ -395,8 +408,9 @@ class Maths:
 
     @staticmethod
     def row_of(table: Any, index: Symbol) -> Any:
-        """Row of a table, or element of a sequence, whose number is a symbol."""
+        """The row of a table, or element of a sequence, at a symbolic index."""
         recording = index.recording
+        # Constant numbers: a table in C, read at the index.
         if isinstance(table, np.ndarray) and table.dtype != object:
             flat = recording.table(table)
             width = int(np.prod(table.shape[1:], dtype=int))
@@ -408,6 +422,7 @@ class Maths:
                 if table.ndim > 1
                 else found[0]
             )
+        # Values that lie in sequence in the memory are read at the index too.
         if (place := _consecutive(table)) is not None:
             op, first, shape = place
             width = int(np.prod(shape[1:], dtype=int))
@@ -415,6 +430,8 @@ class Maths:
                 recording.value(op, "d", index, first, width, column) for column in range(width)
             ]
             return np.array(found, dtype=object).reshape(shape[1:]) if len(shape) > 1 else found[0]
+        # Anything else: choose among all elements by comparison. Negative indices count from the
+        # end, as in Python.
         chosen = table[-1]
         for number in range(len(table) - 2, -1, -1):
             chosen = _chosen(
@@ -424,13 +441,14 @@ class Maths:
 
 
 def _consecutive(table):
-    """Operation, first operand and shape of an array whose elements lie one behind the other in a memory."""
+    """Operation, first operand and shape of an array that lies in sequence in the memory."""
     if not isinstance(table, np.ndarray):
         return None
     elements = table.ravel().tolist()
     first = elements[0]
     if not isinstance(first, Symbol) or first.op not in ("load", "kept"):
         return None
+    # Each element must be the one behind the last, in the same memory.
     *before, place = first.operands
     for number, element in enumerate(elements):
         if not isinstance(element, Symbol) or (element.op, element.operands) != (
@@ -442,7 +460,7 @@ def _consecutive(table):
 
 
 def _chosen(condition, a, b):
-    """One of two values of the same make."""
+    """Choose between two values of the same structure."""
     if isinstance(a, tuple):
         parts = [_chosen(condition, one, other) for one, other in zip(a, b, strict=True)]
         return type(a)._make(parts) if hasattr(a, "_make") else tuple(parts)  # pyright: ignore
@@ -452,7 +470,7 @@ def _chosen(condition, a, b):
 def primitive(
     symbol: Symbol, name: str, shape: tuple[int, ...], arguments: Sequence[Any]
 ) -> np.ndarray:
-    """The result of a function of the C runtime, as an array of symbols.
+    """Call a function of the C runtime; its result is an array of symbols.
 
     Parameters
     ----------
@@ -467,15 +485,17 @@ def primitive(
     """
     size = int(np.prod(shape, dtype=int))
     recording = symbol.recording
+    # The primitive is one value, an array in C. Each element is a value that reads it.
     made = recording.value("primitive", "d", name, size, *arguments)
     parts = [recording.value("part", "d", made, place) for place in range(size)]
+    # Fill an array made before: NumPy would try to read the symbols as sequences.
     found = np.empty(size, dtype=object)
     found[:] = parts
     return found.reshape(shape).view(SymbolArray)
 
 
 class SymbolArray(np.ndarray):
-    """An array that may hold symbols: its comparisons are symbols too, and its extremes need no answers."""
+    """An array that may hold symbols: comparisons and extremes are symbols too."""
 
     @property
     def maths(self) -> Any:
@@ -483,16 +503,20 @@ class SymbolArray(np.ndarray):
         return None if first_symbol(self) is None else Maths
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **named: Any) -> Any:
+        # Plain arrays avoid that NumPy calls this method again.
         given = [one.view(np.ndarray) if isinstance(one, SymbolArray) else one for one in inputs]
         named.pop("out", None)
+        # Without this, NumPy would ask each comparison for its truth and so fork the recording.
         if method == "__call__" and ufunc.__name__ in COMPARISONS:
             named["dtype"] = object
         elif method == "__call__" and ufunc.__name__ in FUNCTIONS:
             return as_symbols(FUNCTIONS[ufunc.__name__](*given))
+        # Large products become one C primitive. Written out they would be thousands of values.
         elif ufunc is np.matmul and min(one.ndim for one in given) > 1 and given[0].shape[-1] > 3:
             symbol = first_symbol(*given)
             if symbol is not None and symbol.recording.stands_alone:
                 return _products(symbol, *given)
+        # Extremes as symbols: a comparison by NumPy would fork for each element.
         elif ufunc in _EXTREMES:
             ufunc = _EXTREMES[ufunc]
             named = {key: value for key, value in named.items() if key == "axis"}
@@ -503,7 +527,7 @@ class SymbolArray(np.ndarray):
 
 
 def _products(symbol, a, b):
-    """Product of matrices, of the last two axes."""
+    """Product of matrices over the last two axes."""
     stack = np.broadcast_shapes(a.shape[:-2], b.shape[:-2])
     if stack:
         a, b = (np.broadcast_to(one, (*stack, *one.shape[-2:])) for one in (a, b))
@@ -532,7 +556,7 @@ _EXTREMES = {
 
 
 def as_symbols(value: Any) -> Any:
-    """Arrays of objects, alone or in a tuple or list, as `SymbolArray`; anything else as it is."""
+    """Arrays of objects as `SymbolArray`, also in tuples and lists; other values unchanged."""
     if isinstance(value, np.ndarray) and value.dtype == object:
         return value.view(SymbolArray)
     if type(value) is tuple:

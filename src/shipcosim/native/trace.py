@@ -1,4 +1,4 @@
-"""One step of a component as a recording: which numbers it keeps, and what it makes of them."""
+"""Record one step of a component: the numbers of its state, and their new values."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """What one step of a component does to its memory: its numbers, time at the start of the step, and its length.
+    """What one step does to the memory: numbers, time at the start of the step, step size.
 
     Parameters
     ----------
@@ -67,22 +67,25 @@ class Step:
 
 
 def shape_of(fmu: Any) -> Shape:
-    """What is a number in a component after its start.
+    """Separate numbers and structure of a component after its start.
 
     Raises
     ------
     Untraceable
         It keeps what is no plain data.
     """
+    # Compute cached values of the parameters now, so that they are part of the memory.
     whole, constant, unchanging = _structure_of(type(fmu))
     for group in fmu.groups:
         remember(getattr(fmu, group.name))
+    # The fast comparison of structure finds a shape seen before; only a new one is taken apart.
     numbers, rest = numbers_of(vars(fmu), constant, unchanging)
     # by name, which is that of a content: each run has a class of its own
     key = type(fmu).__module__, type(fmu).__qualname__, whole, constant, unchanging, rest
     known = _SHAPES.get(key)
     if known is None:
         flat = Flat(vars(fmu), constant, unchanging)
+        # Whole numbers of the parameters may decide in the code; all other numbers may change.
         choices = (
             n
             for n, leaf in enumerate(flat.leaves)
@@ -104,6 +107,7 @@ MOST_SHAPES = 200
 def _structure_of(cls):
     """Names of parameters that are whole numbers, of what belongs to the structure, of dataclasses of parameters."""
     parameters = [variable for variable in cls.variables if variable.causality == "parameter"]
+    # Texts and flags are structure. Integers are numbers that may become part of the code.
     whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")
     constant = frozenset(variable.name for variable in cls.variables if variable.type == "String")
     constant |= {variable.name for variable in parameters if variable.type == "Boolean"}
@@ -125,7 +129,7 @@ def trace(
     fmu : Fmu
         An instance after its start; it stays as it is.
     shape : Shape
-        What is a number in it.
+        Its numbers and its structure.
     time, step_size : float
         Of the example step. [s, s]
     numbers : sequence of float, optional
@@ -148,9 +152,11 @@ def trace(
     )
 
     def run():
+        # Each way starts from the memory: every number of the state is a load.
         loads = [
             recording.value("load", leaf.kind, place) for place, leaf in enumerate(before.leaves)
         ]
+        # A clone without its start: its state is the memory's. The original stays unchanged.
         clone = object.__new__(type(fmu))
         for name in STANDS:
             setattr(clone, name, getattr(fmu, name))
@@ -158,8 +164,10 @@ def trace(
         vars(clone).update(attributes_like(values, loads, constant, unchanging))
         time = recording.value("load", "d", n)
         step_size = recording.value("load", "d", n + 1)
+        # Run the model's own step on symbols, arithmetic only.
         with only_arithmetic(type(fmu).__module__.partition(".")[0]):
             clone.step(time, step_size)
+        # Compiled code has no log. An error makes C give up on this way; Python writes the message.
         if clone.messages:
             raise ValueError("it writes to the log")
         parameters = attributes_like(values, loads, constant, unchanging)
@@ -171,6 +179,7 @@ def trace(
         return _changes(before, loads, mutable, constant, unchanging)
 
     root = recording.record(run)
+    # C keeps one type a number, so no number may turn from whole to fraction.
     _check_kinds(before, root)
     names = {(v.name,) for v in fmu.variables if v.causality == "output" and v.type == "Real"}
     outputs = frozenset(place for place, leaf in enumerate(before.leaves) if leaf.path in names)
@@ -178,7 +187,7 @@ def trace(
 
 
 def remember(parameters: Any) -> None:
-    """Let a dataclass compute all that it remembers, so that it belongs to the memory."""
+    """Let a dataclass compute its cached properties, so that they belong to the memory."""
     for cls in type(parameters).__mro__:
         for name, item in vars(cls).items():
             if isinstance(item, cached_property):
@@ -186,6 +195,7 @@ def remember(parameters: Any) -> None:
 
 
 def _changes(before: Flat, loads: list[Symbol], values: Mapping[str, Any], constant, unchanging):
+    # Compare the state after the step with that before; only numbers that changed are written.
     after = Flat(values, constant, unchanging)
     if not after.same_shape(before):
         raise Untraceable(f"its state changes its shape: {before.difference(after)}")
@@ -200,7 +210,7 @@ def _changes(before: Flat, loads: list[Symbol], values: Mapping[str, Any], const
 
 
 def _check_kinds(before, root):
-    """A whole number that becomes a fraction would be cut off."""
+    """Refuse whole numbers that become fractions: C would cut them off."""
     for end in ends(root):
         for place, number in end.result if isinstance(end.result, list) else ():
             if before.leaves[place].kind != "d" and kind_of(number) == "d":

@@ -1,4 +1,4 @@
-"""Runs of a plan on workers: chunks as long as is good for them, and ends of workers survived."""
+"""Dispatch runs to workers in adaptive chunks; crashed workers are replaced."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ENDED = "Its worker process ended, more than once: the run crashes it, or needs 
 
 
 def rows_of(plan: Plan, numbers: Iterator[int], workers: Workers) -> Iterator[list[Row]]:
-    """Rows of runs as they are done, in any order.
+    """Rows of finished runs, in any order.
 
     Parameters
     ----------
@@ -53,10 +53,12 @@ class _Dispatch:
         self._size = 1
         self._n_done = 0
 
+    # Wait for any chunk, hand out its rows, and fill up again: workers never wait for each other.
     def rows(self) -> Iterator[list[Row]]:
         """See `rows_of`."""
         while self._fill():
             done, _ = wait(self._in_flight, return_when=FIRST_COMPLETED)
+            # A pool breaks as a whole: if one process ends, all chunks under way are lost too.
             if any(self._is_lost(future) for future in done):
                 done, _ = wait(self._in_flight)  # where one process ends, those beside it do, too
             lost = []
@@ -74,11 +76,13 @@ class _Dispatch:
         return error is not None and self._workers.is_lost(error)
 
     def _fill(self) -> bool:
-        """Give workers something to do; whether anything is under way. Suspects run alone."""
+        """Give work to the workers; true if anything is under way. Suspects run alone."""
+        # After a crash nothing else runs beside a suspect, so the next crash is surely its own.
         if self._suspects:
             if not self._in_flight:
                 self._submit(self._suspects.popleft(), alone=True)
             return True
+        # Each worker has a chunk in reserve, so that it does not wait for this process.
         while len(self._in_flight) < AHEAD * self._workers.n and (chunk := self._next()):
             self._submit(chunk)
         return bool(self._in_flight)
@@ -90,6 +94,7 @@ class _Dispatch:
         runs = [self._plan.run(number) for number in numbers]
         try:
             future = self._workers.submit(runs)
+        # The future carries the error, so that a lost chunk is treated the same way everywhere.
         except Exception as error:  # a worker may have ended since its last answer
             if not self._workers.is_lost(error):
                 raise
@@ -98,27 +103,33 @@ class _Dispatch:
         self._in_flight[future] = numbers, alone
 
     def _taken(self, chunk: Chunk) -> list[Row]:
-        """Rows of a chunk; how long it took says how large the next ones are."""
+        """Take the rows of a chunk; its duration decides the size of the next ones."""
         self._n_done += len(chunk.rows)
         if self._n_done > self._workers.n:  # the first run of each worker loads and compiles
             fitting = int(self._workers.chunk_time * len(chunk.rows) / max(chunk.seconds, 1e-6))
+            # Aim at a fixed time per chunk. It grows by at most a factor of two, as the first runs
+            # may be short by chance.
             self._size = min(max(fitting, 1), 2 * self._size, MOST_RUNS)
         return chunk.rows
 
     def _ended(self, lost: list[tuple[list[int], bool]]) -> list[Row]:
-        """Rows of runs that end their workers again and again; the others are done again, one chunk at a time."""
+        """Rows of runs that crash their workers again and again; the others are run again."""
+        # New workers first. Each lost chunk becomes a suspect and runs alone.
         self._workers.renew()
         failed = []
         for numbers, was_alone in lost:
+            # A chunk that crashed alone is halved: bisection finds the run that crashes.
             if len(numbers) > 1:
                 half = len(numbers) // 2 if was_alone else len(numbers)
                 self._suspects.extend(part for part in (numbers[:half], numbers[half:]) if part)
                 continue
+            # A crash counts only if the run was alone.
             self._ends[numbers[0]] += was_alone
             if self._ends[numbers[0]] < ENDS:
                 self._suspects.append(numbers)
             else:
                 failed.append(Row(numbers[0], error=ENDED))
+        # Nothing has worked and several runs crash: something is wrong with all of them.
         if not self._n_done and len(failed) and self._ends.total() >= 3 * ENDS:
             remedy = "Run the scenario alone to see why: shipcosim run SCENARIO --engine native."
             raise ShipcosimError(

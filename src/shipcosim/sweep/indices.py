@@ -57,11 +57,14 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
     factors = [one.name for one in plan.study.factor]
     rows = []
     said = []
+    # The indices hold for one combination of the other factors at a time.
     for levels, part in _parts(runs, factors):
         for measure in plan.measures:
+            # Saltelli's design: blocks of (parameters + 2) samples. An index needs the whole block.
             values = _by_sample(plan, part, measure.name)
             blocks = values.reshape(-1, len(columns) + 2)
             known = np.asarray(np.isfinite(blocks).all(axis=1))
+            # Report how many blocks are lost, and why: failed runs or runs not done yet.
             if not known.all():
                 # A sentence on blocks that are not used.
                 done = _done(plan, part).reshape(blocks.shape)
@@ -72,6 +75,7 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
                 unknown = int((~known).sum())
                 missing = f"indices without {unknown} of {len(known)} blocks, {', '.join(why)}."
                 said.append(f"{_of(measure.name, levels)}: {missing}")
+            # Without variance, or with very few blocks, an index would be noise.
             if known.sum() >= FEWEST and np.ptp(blocks[known]) > 0.0:
                 rows += _rows(levels, measure.name, columns, blocks[known], plan.study.seed)
             else:
@@ -85,14 +89,14 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
 
 
 def _parts(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], Any]]:
-    """Runs that are alike but for their samples, with the levels of their factors."""
+    """Runs that differ only in their samples, with the levels of their factors."""
     grouped = runs.groupby(list(factors), sort=False, dropna=False) if factors else [((), runs)]
     for key, part in grouped:
         yield dict(zip(factors, key, strict=True)), part
 
 
 def _by_sample(plan: Plan, part: Any, quantity: str) -> np.ndarray:
-    """A quantity by the number of the sample; NaN where it has no value."""
+    """A quantity by number of the sample; NaN where it has no value."""
     values = np.full(plan.shape[-1], np.nan)
     sound = part[part["error"] == ""]
     values[sound["sample"].to_numpy(int)] = sound[quantity].to_numpy(float)
@@ -109,6 +113,8 @@ def _rows(
     levels: dict, quantity: str, columns: Sequence[str], blocks: np.ndarray, seed: int
 ) -> list[dict[str, Any]]:
     """Rows of a quantity, the largest total index first."""
+    # First order: the variance that the parameter explains alone. Total: with all its interactions.
+    # The interval is a bootstrap over the blocks.
     from SALib.analyze import sobol
 
     found = sobol.analyze(
@@ -122,6 +128,7 @@ def _rows(
     rows = []
     for k in np.argsort(-found["ST"], kind="stable"):
         row = levels | {"quantity": quantity, "parameter": columns[k]}
+        # SALib gives half the width of the interval.
         for name, short in (("first_order", "S1"), ("total", "ST")):
             value = float(found[short][k])
             half = float(found[f"{short}_conf"][k])

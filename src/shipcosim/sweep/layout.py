@@ -1,4 +1,4 @@
-"""From a study to its plan, checked with its scenario and system: what does not fit is said at its line."""
+"""Make the plan of a study, checked with its scenario and system; problems name the line."""
 
 from __future__ import annotations
 
@@ -45,6 +45,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     ShipcosimError
         With everything that does not fit together.
     """
+    # The scenario with the study's own times, then the system with the study's components.
     scenario = _scenario(study)
     read = _system(
         study,
@@ -57,8 +58,10 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         name: str(_beside(study, fmu) or fmu) for name, fmu in study.components.items()
     }
     system = with_values(read, scenario.set, str(scenario.path))
+    # First check what all runs share; the levels of the factors build on it.
     levels = Levels(study, scenario, system)
     levels.check_names()
+    # The order is that of precedence: parameter sets, then `set`, then the settings of the call.
     fitted = [levels.fitting(name, ("parameters",)) for name in study.parameters]
     values = {signal: value for one in fitted for signal, value in one.items()}
     values |= levels.checked(study.set, ("set",)) | dict(settings or {})
@@ -66,6 +69,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     levels.check_events(events, ("events",))
     if levels.problems:
         raise ShipcosimError(levels.problems)
+    # Shared values and events go into the scenario, so that each run holds only what is its own.
     changed = {
         "components": components,
         "set": scenario.set | values,
@@ -73,15 +77,18 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     }
     scenario = scenario.model_copy(update=changed)
     system = with_values(system, values, "--set")
+    # Now the factors, with the system as all runs see it.
     levels = Levels(study, scenario, system)
     found = [levels.of(number) for number in range(len(study.factor))]
     samples = ranges_of(study, levels, system) if study.tune else samples_of(study, levels, system)
+    # Quantities may name signals that only events of some level change.
     happening = [event for one in found for level in one for event in level.events]
     measures, problems = measures_of(study, scenario, system, happening)
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
     problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
     if problems:
         raise ShipcosimError(problems)
+    # One checked system for each combination of swapped FMUs.
     systems = {
         swapped: _swapped(study, scenario, swapped, system, build)
         for swapped in _combinations(found)
@@ -90,7 +97,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
 
 
 def _scenario(study: Study) -> Scenario:
-    """What all runs have in common, but for what the study gives to its system."""
+    """The scenario that all runs share."""
     try:
         path = study.scenario_path
     except ShipcosimError as error:
@@ -99,6 +106,7 @@ def _scenario(study: Study) -> Scenario:
             problem_of(study, ("scenario",), found, error.problems[0].remedy)
         ) from None
     scenario = read_scenario(path)
+    # Times of the study replace those of the scenario; a wrong one is reported at the study's line.
     times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
     changed = {name: time for name, time in times.items() if time is not None}
     scenario = scenario.model_copy(update=changed)
@@ -119,9 +127,10 @@ def _system(
     keys: Mapping[str, tuple[str | int, ...]],
     build: bool,
 ) -> System:
-    """The system of a scenario with other FMUs in place of components' own; `keys` say where the study names each."""
+    """A scenario's system with swapped FMUs; `keys` are the places that name them in the study."""
     problems = []
     paths = {}
+    # An FMU lies beside the study or is known by name.
     for name, fmu in components.items():
         try:
             paths[name] = _beside(study, fmu) or library.find(
@@ -134,6 +143,7 @@ def _system(
         raise ShipcosimError(problems)
     try:
         return system_of(scenario, components=paths, build=build)
+    # Problems with swapped FMUs are reported at their line in the study.
     except ShipcosimError as error:
         at = {f"{WHERE}, {name}": place for name, place in keys.items()}
         located = [
@@ -146,9 +156,10 @@ def _system(
 def _swapped(
     study: Study, scenario: Scenario, swapped: Swapped, system: System, build: bool
 ) -> System:
-    """The system with the FMUs that some runs have in place of components' own."""
+    """The system with the FMUs that some runs swap in."""
     if not swapped:
         return system
+    # Find the cases that name these FMUs, for the line in messages.
     cases = [
         (("factor", i, "case", j, "components"), case)
         for i, factor in enumerate(study.factor)
@@ -166,7 +177,8 @@ def _swapped(
 
 
 def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
-    """Sets of swapped components that runs have, none where there is one without first."""
+    """Combinations of swapped components that runs have, the empty one first."""
+    # Every level of a factor may meet every level of the others.
     per_factor = [list({tuple(level.components.items()) for level in one}) for one in levels]
     found = {
         tuple(sorted(dict(pair for part in parts for pair in part).items()))
@@ -176,13 +188,13 @@ def _combinations(levels: Sequence[Sequence[Level]]) -> list[Swapped]:
 
 
 def _beside(study: Study, fmu: str) -> Path | None:
-    """Path of an FMU that lies beside the study; None where it is one by its name."""
+    """Path of an FMU beside the study; None if it is a name."""
     path = study.folder / fmu
     return path if path.is_file() else None
 
 
 def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
-    """A fork that is missing, or at no time of a run."""
+    """Problems of a fork: missing, or at a time that no run has."""
     waiting = [("factor", i, "at_fork") for i, one in enumerate(study.factor) if one.at_fork]
     sampled = study.sample.of if study.sample else {}
     waiting += [("sample", "of", name, "at_fork") for name, one in sampled.items() if one.at_fork]
@@ -192,6 +204,7 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
                 study, keys, "The study has no fork.", 'Give its time: fork_at = "300 s".'
             )
         return
+    # The fork is an event, so it must fall on a step before the end.
     count = whole_steps(study.fork_at, scenario.step_size)
     if count is None or study.fork_at >= scenario.stop_time:
         step = scenario.step_size
@@ -201,7 +214,7 @@ def _of_fork(study: Study, scenario: Scenario) -> Iterator[Problem]:
 
 
 def _of_summaries(study: Study) -> Iterator[Problem]:
-    """Summaries that name what is not there."""
+    """Problems of summaries that name unknown quantities or factors."""
     quantities = [one.name for one in study.quantity]
     factors = [one.name for one in study.factor] + (
         ["sample"] if study.sample or study.tune else []

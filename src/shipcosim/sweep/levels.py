@@ -1,4 +1,4 @@
-"""Levels of factors: what each value, case or seed of a factor changes in a run."""
+"""Levels of factors: the change that each value, case or seed makes in a run."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Level:
 
 
 class Levels:
-    """Makes the levels of a study's factors, and collects what is wrong with them.
+    """Make the levels of a study's factors, and collect their problems.
 
     Parameters
     ----------
@@ -75,6 +75,7 @@ class Levels:
     def of(self, number: int) -> list[Level]:
         """Levels of the factor with a number."""
         factor = self._study.factor[number]
+        # Cases, directions and conditions: each sets several things at once.
         if cases := factor.cases:
             made_by = "directions" if factor.directions else "conditions"
             keys = [("case", i) if factor.case else (made_by,) for i in range(len(cases))]
@@ -84,11 +85,13 @@ class Levels:
             ]
         if factor.seeds is not None:
             return self._of_seeds(factor, ("factor", number, "seeds"))
+        # Listed or evenly spaced values of one or more signals.
         key = "values" if factor.values is not None else "from"
         signals = self.existing(factor.signal, ("factor", number, "signal"))
         if not signals:
             return []
         values = factor.values or self._spaced(factor, signals[0], number)
+        # At the fork a value acts as an event; otherwise as a start value.
         if factor.at_fork:
             return [self.at_fork(signals, value, ("factor", number, key)) for value in values]
         found = (
@@ -97,7 +100,7 @@ class Levels:
         return [Level(next(iter(one.values())), one) for one in found if one]
 
     def checked(self, values: Mapping[str, Value], keys: Sequence[str | int]) -> dict[str, Value]:
-        """Start values in the units of their variables; none where one does not fit, which is said.
+        """Start values in the units of their variables; empty, with a problem, if one does not fit.
 
         Parameters
         ----------
@@ -106,6 +109,7 @@ class Levels:
         keys : sequence of str and int
             Where they stand in the study.
         """
+        # All at once is fast; only after an error each is tried alone, to name the wrong one.
         expanded = self.expanded(values)
         try:
             system = with_values(self._system, expanded, "")
@@ -125,7 +129,7 @@ class Levels:
                 return
 
     def check_names(self) -> None:
-        """Check that names of the study are of their own, and stand for components."""
+        """Check that the study's names are new, and stand for components."""
         components = list(self._system.components)
         for name, group in self._study.names.items():
             if name in components:
@@ -140,26 +144,27 @@ class Levels:
                     self.problems.append(problem_of(self._study, ("names", name), found, remedy))
 
     def at_fork(self, signals: Sequence[str], value: Value, keys: Sequence[str | int]) -> Level:
-        """Level of an event at the fork."""
+        """Level of a value that acts as an event at the fork."""
         event = Event(time=self._study.fork_at or 0.0, override=dict.fromkeys(signals, value))
         for _, _, found, remedy in event_complaints(event, self._system):
             self.problems.append(problem_of(self._study, keys, found, remedy))
         number = value if self.problems else _number(value, units_of(self._system)(signals[0]))
         return Level(number, events=(event,))
 
+    # A name of the study stands for several components; each gets the value.
     def expanded(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """Values by signal, where names of the study stand for several components."""
         return {signal: value for name, value in values.items() for signal in self.signals_of(name)}
 
     def signals_of(self, name: str) -> list[str]:
-        """Signals that a name means: one, or that of several components."""
+        """Signals of a name: one, or the same of several components."""
         for group, components in self._study.names.items():
             if name.startswith(f"{group}."):
                 return [component + name[len(group) :] for component in components]
         return [name]
 
     def existing(self, names: Iterable[str], keys: Sequence[str | int]) -> list[str]:
-        """Signals that names mean; none where one does not exist, which is said."""
+        """Signals of names; empty, with a problem, if one does not exist."""
         signals = [signal for name in names for signal in self.signals_of(name)]
         problems = []
         for signal in signals:
@@ -173,6 +178,7 @@ class Levels:
         return [] if problems else signals
 
     def _of_case(self, case: Case, keys: tuple[str | int, ...]) -> Level:
+        # Order of precedence within a case: parameter sets first, then single values.
         values: dict[str, Value] = {}
         for name in case.parameters:
             values |= self.fitting(name, (*keys, "parameters"))
@@ -183,7 +189,7 @@ class Levels:
         return Level(case.label, values, tuple(events), case.components, case.stop_time)
 
     def event(self, event: Event) -> Event:
-        """An event whose signals are those of components."""
+        """An event with the study's names replaced by components."""
         reset = [signal for name in event.reset for signal in self.signals_of(name)]
         return event.model_copy(
             update={
@@ -195,6 +201,7 @@ class Levels:
 
     def fitting(self, name: str, keys: Sequence[str | int]) -> dict[str, Value]:
         """Start values of a parameter set that fit the system."""
+        # A set of the system by name, or a file beside the study.
         paths = [
             Path(self._scenario.system_path) / "resources" / f"{name}.ssv",
             self._study.folder / name,
@@ -227,6 +234,7 @@ class Levels:
         step = self._scenario.step_size
         if time is None:
             return
+        # Events at time zero are allowed; an end at zero is not.
         count = whole_steps(time, step)
         if count is None or (count == 0 and not may_be_zero):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
@@ -236,8 +244,9 @@ class Levels:
             )
 
     def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:
-        """Evenly spaced values of a factor, both ends included, in the unit of its signal."""
+        """Evenly spaced values of a factor, ends included, in the unit of its signal."""
         unit = units_of(self._system)(signal)
+        # A step is a difference: temperatures and the like have no offset in it.
         try:
             first, last = (_number(value, unit) for value in (factor.start, factor.to))
             step = None if factor.step is None else _number(factor.step, unit, difference=True)
@@ -246,18 +255,23 @@ class Levels:
                 problem_of(self._study, ("factor", number, "from"), error.found, error.remedy)
             )
             return []
+        # Either a number of values, or a step.
         if step is None:
             return np.linspace(first, last, factor.count or 2).tolist()
+        # A step in the wrong direction never arrives, and a tiny one makes more levels than memory
+        # holds.
         if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
             found = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
             self.problems.append(
                 problem_of(self._study, ("factor", number, "step"), found, "Give another step.")
             )
             return []
+        # A small tolerance, so that rounding does not lose the last value.
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
 
     def _of_seeds(self, factor: Factor, keys: Sequence[str | int]) -> list[Level]:
-        """Levels of seeds: each signal gets its own number, drawn from the study's seed, the level and its name."""
+        """Levels of seeds: each signal gets its own number from study seed, level and name."""
+        # Without named signals every parameter called seed is drawn anew.
         signals = (
             self.existing(factor.signal, (*keys[:2], "signal"))
             if factor.signal
@@ -269,6 +283,7 @@ class Levels:
                 problem_of(self._study, keys, found, "Name the signals: signal = [...].")
             )
         levels = []
+        # Seeds of one level differ between signals, so that two sensors have independent noise.
         for level in range(1, (factor.seeds or 0) + 1):
             values = {signal: _drawn(self._study.seed, level, signal) for signal in signals}
             levels.append(Level(level, values))
@@ -299,12 +314,13 @@ def seeds_of(system: System) -> Iterator[str]:
 
 
 def _drawn(seed: int, level: int, signal: str) -> int:
+    # The name enters by its checksum: a new component does not change the seeds of others.
     generator = np.random.default_rng([seed, level, zlib.crc32(signal.encode())])
     return int(generator.integers(1, LARGEST_SEED))
 
 
 def _number(value: Any, unit: Unit | None, difference: bool = False) -> Any:
-    """A value with its unit converted; others as they are."""
+    """A value converted to a unit; other values unchanged."""
     if not isinstance(value, str) or amount(value) is None:
         return value
     return number_in(value, unit, difference=difference)

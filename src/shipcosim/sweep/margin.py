@@ -1,4 +1,4 @@
-"""Stability margins of the DP loop of a run: a quantity that follows from start values alone."""
+"""Stability margins of the DP loop of a run, from its start values alone."""
 
 from __future__ import annotations
 
@@ -47,6 +47,7 @@ class Margin:
 
     def of(self, values: Mapping[str, Any]) -> float:
         """The margin of a run by its start values. [rad, 1 or s]"""
+        # The run's own gains where it sets them, else those of all runs.
         own = tuple(
             float(values.get(f"{self.component}.{name}", value))
             for name, value in self.values.items()
@@ -55,6 +56,7 @@ class Margin:
 
 
 def margin_of(quantity: Quantity, system: System) -> Margin:
+    # The wave filter is tuned to the peak of the waves, ω = 2π / T_p.
     """Margin of a quantity, of a system that `complaint_of_margin` says nothing against."""
     component: Any = system.components[quantity.component]
     values = {name: float(component.start_value(name)) for name in _names()}
@@ -69,6 +71,7 @@ def margin_of(quantity: Quantity, system: System) -> Margin:
 def complaint_of_margin(study: Study, number: int, system: System) -> Problem | None:
     """What is wrong with the component of a margin."""
     name = study.quantity[number].component
+    # A controller is recognised by its parameters, not by its name.
     having = [
         c.name
         for c in system.components.values()
@@ -91,13 +94,16 @@ def _names() -> list[str]:
 def _least(
     names: tuple[str, ...], values: tuple[float, ...], wave_frequency: float
 ) -> dict[str, float]:
-    """Least margins over the axes; kept, since runs differ in seeds more often than in gains."""
+    """Least margins over the axes; cached, since runs often differ only in seeds."""
+    # Build the parameter groups that the analysis of the loop needs.
     given = dict(zip(names, values, strict=True))
     ship, noise, law = (
         part(**{one.name: given[one.name] for one in fields(part)}) for part in PARTS
     )
+    # The loop linearised about rest: ship, observer and control law, without further delays.
     loop = loops.linear_loop(ship, noise, law, loops.Delays(), wave_frequency)
     if not loops.is_stable(loop):
         return NONE
+    # Surge, sway and yaw each have margins; the least one counts.
     found = [loops.margins(loop, axis) for axis in range(len(loops.AXES))]
     return {kind: min(getattr(one, kind) for one in found) for kind in UNITS}

@@ -1,4 +1,4 @@
-"""The runs of a study: laid out over its factors and samples, checked with the system, made one by one when needed."""
+"""The runs of a study, laid out over factors and samples, made one by one when needed."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class Plan:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many levels each factor has, then how many samples there are; the last one changes fastest."""
+        """Number of levels of each factor, then of samples; the last one changes fastest."""
         sizes = tuple(len(levels) for levels in self.levels)
         return sizes if self.samples is None else (*sizes, len(self.samples.numbers))
 
@@ -112,6 +112,7 @@ class Plan:
 
     def run(self, number: int) -> PlannedRun:
         """The run with a number."""
+        # The number of a run determines its levels, as in an array with one axis per factor.
         places = (
             [int(place) for place in np.unravel_index(number, self.shape)] if self.shape else []
         )
@@ -120,6 +121,7 @@ class Plan:
         events: list[Event] = []
         swapped: dict[str, str] = {}
         stop_time = None
+        # Later factors replace values of earlier ones; their events add up.
         for factor, levels, place in zip(self.study.factor, self.levels, places, strict=False):
             level = levels[place]
             columns[factor.name] = level.label
@@ -137,8 +139,9 @@ class Plan:
     def _take_sample(
         self, samples: Samples, number: int, columns: dict, values: dict, events: list[Event]
     ) -> None:
-        """Add what a sample changes."""
+        """Add the changes that a sample makes."""
         at_fork = {}
+        # A sampled value acts from the start, or together with all others in one event at the fork.
         for column, value in zip(samples.columns, samples.values(number), strict=True):
             columns[column.name] = value
             target = at_fork if column.at_fork else values
@@ -155,7 +158,7 @@ class Plan:
         return self.scenario.model_copy(update={"events": events, "stop_time": stop_time})
 
     def alone(self, number: int) -> Scenario:
-        """The scenario of a run with all that it has of its own, and what the scenario expects."""
+        """The scenario of a run with all its changes, and the scenario's expectations."""
         run = self.run(number)
         scenario = self.scenario_of(run)
         changed = {
@@ -165,7 +168,8 @@ class Plan:
         return scenario.model_copy(update=changed)
 
     def input_of(self, run: PlannedRun) -> dict[str, Any]:
-        """The full input of a run, which is a scenario: ``shipcosim.run(Scenario(**input))`` runs it alone."""
+        """The full input of a run: ``shipcosim.run(Scenario(**input))`` runs it alone."""
+        # Only what differs is made anew; there may be millions of runs.
         found = dict(self._common_input)
         if run.swapped:
             found["components"] = self._portable_components(dict(run.swapped))
@@ -181,7 +185,7 @@ class Plan:
 
     @cached_property
     def _common_input(self) -> dict[str, Any]:
-        """What the inputs of all runs have in common."""
+        """The part that the inputs of all runs share."""
         return {
             "system": self._named_system,
             "parameters": self._named_parameters,
@@ -200,6 +204,8 @@ class Plan:
     @cached_property
     def columns(self) -> list[ColumnOf]:
         """Columns of the table of runs, but for its number, error and input."""
+        # Columns in the order of the table: factors, samples, quantities. Units come from the
+        # signals.
         unit_of = units_of(self.system)
         found = []
         for factor, levels in zip(self.study.factor, self.levels, strict=True):
@@ -221,6 +227,7 @@ class Plan:
     @cached_property
     def duration(self) -> float:
         """Simulated time of all runs. [s]"""
+        # Each factor with its own ends multiplies the runs; those without keep the ends so far.
         ends = [self.scenario.stop_time]
         for levels in self.levels:
             own = [level.stop_time for level in levels]
@@ -231,13 +238,16 @@ class Plan:
         return float(sum(ends)) * (1 if self.samples is None else len(self.samples.numbers))
 
     def digest(self, engine: str) -> str:
-        """Hash of all that the table of runs follows from."""
+        """Hash of everything that determines the table of runs."""
+        # Summaries and views are made from the table, so they may change without new runs.
         ignored = {"description", "summary", "view"}
         of_systems = [
             (key, fingerprint(system), hashes(system), start_values(system))
             for key, system in self.systems.items()
         ]
         of_inputs = {name: signal.start for name, signal in self.system.inputs.items()}
+        # Versions, study, scenario, FMUs and wiring: if any of them changes, old results are not
+        # used.
         facts = [
             __version__,
             engine,
@@ -254,7 +264,7 @@ class Plan:
 
     @property
     def rows_per_track_row(self) -> int:
-        """How many rows of a run there are for one of its track."""
+        """Rows of a run for each row of its track."""
         row = self.scenario.output_interval or self.scenario.step_size
         tracks = self.study.tracks
         return max(1, round(tracks.interval / row)) if tracks is not None and tracks.interval else 1
@@ -272,7 +282,7 @@ class Plan:
 
 
 def _portable(scenario: Scenario, name: str, kind: str = "fmu", path: Path | None = None) -> str:
-    """A name that is known anywhere in the project, else the absolute path."""
+    """A name known anywhere in the project, else the absolute path."""
     if library.named(kind, name, scenario.project) is not None:
         return name
     found = path or Path(name)
@@ -280,7 +290,7 @@ def _portable(scenario: Scenario, name: str, kind: str = "fmu", path: Path | Non
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know, as it can be compared."""
+    """A comparable form of values that JSON does not know."""
     if isinstance(value, Event):
         return value.model_dump()
     return str(value)

@@ -1,4 +1,4 @@
-"""Quantities: what a run is reduced to."""
+"""Quantities: numbers and verdicts to which a run is reduced."""
 
 from __future__ import annotations
 
@@ -71,14 +71,17 @@ class Measure:
         return self.reduce == "time_beyond"
 
     def of(self, table: xarray.Dataset) -> float | bool:
-        """The quantity of a run by its table; NaN where it has no row, or never gets there."""
+        """The quantity of a run from its table; NaN if it has no row or is never reached."""
+        # A verdict: all expectations must hold.
         if self.is_truth:
             return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
         rows = rows_of(table, self.expect[0])
+        # Time counts from `since`; rows before it do not matter.
         rows = rows[table["time"].values[rows] >= self.since - 1e-9] if self.since else rows
         if len(rows) == 0:
             return np.nan
         values = values_of(table, self.expect[0], rows, self.units.__getitem__)
+        # One signal by itself, or the distance √Σ(x - x₀)² of several from a point.
         single: Any = (
             values[:, 0] if self.expect[0].near is None else np.linalg.norm(values, axis=1)
         )
@@ -88,11 +91,13 @@ class Measure:
 
 def _at(times: np.ndarray, values: np.ndarray, time: float) -> Any:
     """Value of the last row that is not after a time."""
+    # Times are multiples of the step; the tolerance is for their rounding.
     row = int(np.searchsorted(times, time + 1e-9 * max(1.0, abs(time)), side="right")) - 1
     return values[row] if row >= 0 else np.nan
 
 
 def _time_beyond(times: np.ndarray, values: np.ndarray, limit: float) -> Any:
+    # First time of a magnitude above the limit; NaN means never.
     beyond = np.flatnonzero(np.abs(values) > limit)
     return times[beyond[0]] if len(beyond) else np.nan
 
@@ -114,7 +119,7 @@ REDUCED: dict[str, Reduction] = {
 def measures_of(
     study: Study, scenario: Scenario, system: System, events: Iterable[Event] = ()
 ) -> tuple[tuple[Measure, ...], list[Problem]]:
-    """Quantities of a study in the units of a system, and what is wrong with them.
+    """Quantities of a study in a system's units, and their problems.
 
     Parameters
     ----------
@@ -126,6 +131,7 @@ def measures_of(
     events : iterable of Event
         That some of the runs have.
     """
+    # Signals that events change count as known, though nothing may feed them.
     changed = {signal for event in [*scenario.events, *events] for _, signal, _ in event.changes}
     problems = [
         problem_of(
@@ -139,6 +145,7 @@ def measures_of(
         for key, found, remedy in expectation_complaints(expect, system, changed)
     ]
     tracked = study.tracks.signals if study.tracks else []
+    # Tracks need signals that exist; an expectation with any limit checks the same.
     for signal in tracked:
         for _, found, remedy in expectation_complaints(
             Expectation(signal=[signal], at_most=0.0), system, changed
@@ -158,13 +165,17 @@ def _claims(quantity: Quantity, scenario: Scenario) -> list[Expectation]:
     if not quantity.judges:
         return [quantity.claim]
     within = [
-        one for one in scenario.expect if not one.during or one.during[1] <= scenario.stop_time
+        # An expectation with a window beyond the end of the run cannot be judged.
+        one
+        for one in scenario.expect
+        if not one.during or one.during[1] <= scenario.stop_time
     ]
     return [*quantity.expect, *(within if quantity.scenario_expectations else ())]
 
 
 def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
-    """Windows and times that no run reaches."""
+    """Windows and times that lie beyond every run."""
+    # A case may run longer than the scenario: the longest end counts.
     ends = [case.stop_time or 0.0 for factor in study.factor for case in factor.case or ()]
     end = max(scenario.stop_time, *ends, 0.0)
     for number, one in enumerate(study.quantity):
@@ -189,6 +200,7 @@ def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
 
 def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     if quantity.margin:
+        # A margin follows from start values and needs no table.
         text = (
             quantity.description
             or f"{quantity.margin} margin of {quantity.component}, the least of its axes"
@@ -196,6 +208,7 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
         margin = margin_of(quantity, system)
         return Measure(quantity.name, text, UNITS[quantity.margin], (), {}, margin=margin)
     unit_of = units_of(system)
+    # Limits and windows in plain numbers, in the units of the signals.
     expect = tuple(expectation_in_numbers(one, unit_of) for one in _claims(quantity, scenario))
     units = {signal: unit_of(signal) for one in expect for signal in one.signals}
     if quantity.reduce is None:
@@ -204,6 +217,7 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     unit = {"time_beyond": "s", "share_beyond": "1"}.get(
         quantity.reduce, first.name if first else "1"
     )
+    # The limit of a distance or value is stored in the expectation, where its unit was converted.
     limit = expect[0].within if quantity.near is not None else expect[0].at_most
     argument = {"at": quantity.time, "percentile": quantity.percentile}.get(quantity.reduce, limit)
     text = quantity.description or f"{quantity.reduce} of {expect[0].subject}"

@@ -1,4 +1,4 @@
-"""Reading a study file and those that it extends, with every mistake said at its line."""
+"""Read a study file and those that it extends; problems name their line."""
 
 from __future__ import annotations
 
@@ -40,6 +40,7 @@ class Source:
 
     def location(self, keys: Sequence[str | int]) -> str:
         """File and line of a key."""
+        # An item of a list may come from an extended study; its origin is known.
         first = str(keys[0]) if keys else ""
         rest = tuple(keys[1:])
         if (
@@ -50,6 +51,8 @@ class Source:
         ):
             number, position = self.origins[first][rest[0]]
             return location_of(*self.files[number], (first, position, *rest[1:]))
+        # The most specific part of the key that has a line of its own; files that extend others
+        # come first.
         for length in range(len(keys), 0, -1):
             for path, text in self.files:
                 if (line := line_of(text, keys[:length])) and (
@@ -80,6 +83,8 @@ def study_of(source: Source) -> Study:
     """
     try:
         study = Study.model_validate(source.content)
+    # A misspelt key also looks like a missing one: report the misspelling, and only one problem per
+    # place.
     except ValidationError as error:
         problems = {}
         for finding in sorted(
@@ -105,11 +110,13 @@ def problem_of(study: Study, keys: Sequence[str | int], found: str, remedy: str 
 def _read(path: Path, before: tuple[Path, ...]) -> Source:
     text, content = read_toml(path, "Studies")
     source = Source(content, [(path, text)])
+    # Remember the file and place of each list item for messages.
     source.origins = {
         name: [(0, i) for i in range(len(content[name]))]
         for name in LISTS
         if _is_list(content, name)
     }
+    # The extended study lies beside this one or is known by name.
     base = content.pop("extends", None)
     if base is None:
         return source
@@ -128,6 +135,7 @@ def _read(path: Path, before: tuple[Path, ...]) -> Source:
         raise ShipcosimError(
             Problem(where, f"There is no study '{base}'.", error.problems[0].remedy)
         ) from None
+    # Studies that extend each other in a circle would never end.
     if found.resolve() in (resolved, *before):
         raise ShipcosimError(
             Problem(where, f"'{base}' extends this study in turn.", "Extend a study that does not.")
@@ -142,7 +150,7 @@ def _is_list(content: dict[str, Any], name: str) -> bool:
 
 
 def _over(base: Source, own: Source) -> Source:
-    """What a study has over the one that it extends; of both where no list says otherwise."""
+    """Merge a study over the one that it extends."""
     files = [*own.files, *base.files]
     shift = len(own.files)
     # What the other study says, with the scenario that lies beside it by its path.
@@ -153,6 +161,8 @@ def _over(base: Source, own: Source) -> Source:
     )
     content = _merged(anchored, own.content)
     origins = {}
+    # Lists merge by name: an item of the same name replaces the old one in its place, others are
+    # added.
     for name in LISTS:
         if not any(_is_list(one.content, name) for one in (base, own)):
             continue
@@ -176,7 +186,7 @@ def _items(source: Source, name: str) -> list[tuple[dict[str, Any], tuple[int, i
 
 
 def _merged(base: dict[str, Any], own: dict[str, Any]) -> dict[str, Any]:
-    """Tables merged key by key; what is no table is that of `own`."""
+    """Merge tables key by key; other values are those of `own`."""
     both = {
         n: _merged(base[n], own[n])
         for n in base.keys() & own.keys()
@@ -190,7 +200,7 @@ def _are_tables(*values: Any) -> bool:
 
 
 def _drawn_twice(study: Study) -> Iterator[Problem]:
-    """A study that samples and searches."""
+    """Problem of a study that both samples and searches."""
     if study.sample is not None and study.tune is not None:
         yield problem_of(
             study, ("tune",), "A study has either [sample] or [tune].", "Take one out."
@@ -198,10 +208,11 @@ def _drawn_twice(study: Study) -> Iterator[Problem]:
 
 
 def _repeated(study: Study) -> list[Problem]:
-    """Columns of the same name, and cases of the same label."""
+    """Problems of repeated column names and repeated labels of cases."""
     seen = {}
     problems = []
     of_sample = [] if study.sample is None else list(study.sample.of.items())
+    # Factors, samples, searches, quantities and summaries share the columns of the tables.
     columns = [(("factor", i, "name"), one.name) for i, one in enumerate(study.factor)]
     columns += [(("sample", "of", signal), one.name or signal) for signal, one in of_sample]
     of_search = [] if study.tune is None else list(study.tune.of.items())
@@ -215,6 +226,7 @@ def _repeated(study: Study) -> list[Problem]:
                 problem_of(study, keys, found, "Give each column of the tables a name of its own.")
             )
         seen.setdefault(name, str(keys[0]))
+    # Labels identify the cases in the table.
     for i, factor in enumerate(study.factor):
         labels = [one.label for one in factor.case or ()]
         for j, label in enumerate(labels):

@@ -74,7 +74,7 @@ class Samples:
 
     @property
     def facts(self) -> Any:
-        """What the values follow from, beside the study."""
+        """Everything that the values depend on, beside the study."""
         return (
             self.numbers.tolist() if self.bounds is None else [self.bounds.tolist(), self.library]
         )
@@ -99,7 +99,7 @@ class Samples:
 
 
 def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
-    """Samples of a study; None where it has none. What is wrong is among the problems of `levels`.
+    """Samples of a study; None if it has none. Problems go to `levels`.
 
     Raises
     ------
@@ -114,13 +114,17 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     lines = [
         line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)
     ]
+    # Each column maps probabilities to values (inverse transform sampling).
     quantiles = [_quantiles(study, levels, system, *line) for line in lines]
     usable = [one for one in quantiles if one is not None]
     if len(usable) < len(quantiles) or not usable:
         return None
+    # Points in the unit cube, by the chosen method; kept off 0 and 1, where a normal distribution
+    # is infinite.
     spread = np.clip(SPREADS[sample.method](sample.runs, len(usable), study.seed), EDGE, 1.0 - EDGE)
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     found = Samples(tuple(column for column, _ in usable), numbers)
+    # Only the extremes can break a bound.
     _check_ends(study, levels, found, [key for key, _, _ in lines])
     return found
 
@@ -128,7 +132,7 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
 def _lines(
     study: Study, levels: Levels, system: System, key: str, one: Distribution
 ) -> Iterator[tuple[str, str, Distribution]]:
-    """Key, name and distribution of each column of a line of [sample.of]; ``vessel.*`` is one for each tolerance."""
+    """Key, name and distribution of each column of a line; ``vessel.*`` gives one per tolerance."""
     if not key.endswith(EVERY):
         yield key, key, one
         return
@@ -140,6 +144,7 @@ def _lines(
             problem_of(study, keys, found, "It takes tolerance = true, and neither name nor also.")
         )
         return
+    # All parameters with a tolerance, except those that have a line of their own.
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
     names = [f"{group}.{name}" for name in component.tolerances] if component else []
     if not names:
@@ -159,9 +164,10 @@ def _lines(
 def _quantiles(
     study: Study, levels: Levels, system: System, key: str, name: str, one: Distribution
 ) -> tuple[SampledColumn, Callable[[np.ndarray], np.ndarray]] | None:
-    """Column of samples, and its values by their probabilities; None where something is wrong."""
+    """A column of samples, and its quantile function; None with a problem."""
     keys = "sample", "of", key
     signals = [signal for each in (name, *one.also) for signal in levels.signals_of(each)]
+    # Samples are drawn in their own unit and converted linearly to that of the signal.
     try:
         component, variable = system.split(signals[0])
         for other in signals[1:]:
@@ -193,15 +199,17 @@ def _conversion(spelling: str | None, unit: Any) -> tuple[float, float]:
     """Factor and offset from a unit to that of a signal."""
     if spelling is None:
         return 1.0, 0.0
+    # Two values determine the linear conversion.
     zero, one = (number_in(f"{value} {spelling}", unit) for value in (0.0, 1.0))
     return one - zero, zero
 
 
 def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
-    """Quantiles of a distribution of scipy.stats."""
+    """Quantile function of a distribution of scipy.stats."""
     from scipy import stats
 
     kinds = stats.rv_continuous, stats.rv_discrete
+    # Check name and shape parameters here: scipy's own errors do not name the line.
     known = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
     if one.distribution not in known:
         found = f"scipy.stats has no distribution '{one.distribution}'."
@@ -216,6 +224,7 @@ def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     if missing := [name for name in needed if name not in one.shape]:
         found = f"'{missing[0]}' is missing."
         raise ShipcosimError(Problem("", found, f"{one.distribution} has: {', '.join(allowed)}."))
+    # Wrong parameters show as values that are not finite.
     if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **one.shape)).all():
         found = f"{one.distribution} with {', '.join(f'{n} = {v:g}' for n, v in one.shape.items()) or 'no numbers'}."
         raise ShipcosimError(
@@ -225,7 +234,7 @@ def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
 
 
 def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.ndarray]:
-    """Quantiles of the normal distribution about the start value, with the tolerance that goes with it."""
+    """Quantile function of the normal distribution about the start value, with its tolerance."""
     from scipy.stats import norm
 
     component, name = system.split(signal)
@@ -238,7 +247,7 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
 
 
 def _check_ends(study: Study, levels: Levels, found: Samples, lines: Sequence[str]) -> None:
-    """Check the least and the largest value of each column against bounds and types."""
+    """Check the extremes of each column against bounds and types."""
     for i, (key, column) in enumerate(zip(lines, found.columns, strict=True)):
         for row in (int(np.argmin(found.numbers[:, i])), int(np.argmax(found.numbers[:, i]))):
             value = found.values(row)[i]
@@ -270,7 +279,7 @@ def _random(runs: int, parameters: int, seed: int) -> np.ndarray:
 
 
 def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
-    """Saltelli's design for Sobol indices of first order and in total: a block of parameters + 2 samples for each run.
+    """Saltelli's design for first-order and total Sobol indices: blocks of parameters + 2 samples.
 
     References
     ----------
@@ -286,7 +295,7 @@ def _saltelli(runs: int, parameters: int, seed: int) -> np.ndarray:
 
 
 def salib_problem(parameters: int) -> dict[str, Any]:
-    """Parameters of the unit cube as SALib takes them."""
+    """Parameters of the unit cube in SALib's form."""
     names = [str(number) for number in range(parameters)]
     return {"num_vars": parameters, "names": names, "bounds": [[0.0, 1.0]] * parameters}
 

@@ -1,4 +1,4 @@
-"""What is done, on disk: parts while runs are done, then one table. The only part of a sweep that knows Parquet."""
+"""Results on disk: parts during the runs, then one table. Only this module knows Parquet."""
 
 from __future__ import annotations
 
@@ -74,6 +74,7 @@ class Store:
         with _said(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
             about = self._about_there()
+            # The same plan: go on from what is there. Another plan: set its results aside.
             if about is not None and about.get("plan") == self._digest and not force:
                 # Note which runs are done already.
                 table = self._collected()
@@ -97,13 +98,14 @@ class Store:
             self._rows.append(row)
             self.done[row.number] = True
             self.failed += bool(row.error)
+        # Small parts often: little is lost if the process is killed, and few files result.
         if self._rows and (
             monotonic() - self._written > BETWEEN_PARTS or len(self._rows) >= LARGEST_PART
         ):
             self.flush()
 
     def flush(self) -> None:
-        """Write the rows that wait."""
+        """Write the waiting rows."""
         if not self._rows:
             return
         import pyarrow.parquet as parquet
@@ -111,6 +113,7 @@ class Store:
         rows = self._rows
         self._rows = []
         name = f"{min(row.number for row in rows)}-{len(rows)}-{max(row.number for row in rows)}.parquet"
+        # Tracks first: a part of runs without its tracks would count as done.
         written = {f"tracks-{name}": self._tracks(rows)} if self._plan.study.tracks else {}
         for file, table in (written | {f"runs-{name}": self._part(rows)}).items():
             content = io.BytesIO()
@@ -127,6 +130,7 @@ class Store:
             If the disk is full: all that is done stays in the parts.
         """
         self.flush()
+        # The table is written from the parts; they are removed only when all runs are done.
         with _said(self.folder):
             table = self._collected()
             self._write_runs(table)
@@ -136,7 +140,7 @@ class Store:
                 shutil.rmtree(self._parts)
 
     def rows(self) -> pandas.DataFrame:
-        """Number, error and quantities of the runs that are done."""
+        """Number, error and quantities of the finished runs."""
         self.flush()
         return self._collected().to_pandas()
 
@@ -147,7 +151,7 @@ class Store:
         return pandas.read_parquet(self.folder / "runs.parquet")
 
     def about(self) -> dict[str, Any]:
-        """What study.json holds."""
+        """The content of study.json."""
         columns = [asdict(one) for one in [*self._plan.columns, *_of_summaries(self._plan)]]
         counts = {"planned": len(self._plan), "done": int(self.done.sum()), "failed": self.failed}
         return {
@@ -174,7 +178,7 @@ class Store:
         return found if isinstance(found, dict) else None
 
     def write_about(self, **more: Any) -> dict[str, Any]:
-        """Write study.json, with more of what is known; what it holds."""
+        """Write study.json with additional facts; return its content."""
         about = self.about() | {name: value for name, value in more.items() if value}
         write_file(
             self.folder / "study.json", json.dumps(about, indent=1, ensure_ascii=False).encode()
@@ -188,6 +192,7 @@ class Store:
     def _part(self, rows: list[Row]) -> pyarrow.Table:
         import pyarrow
 
+        # One column per quantity, of fixed type, so that parts can be joined.
         columns: dict[str, Any] = {
             "run": pyarrow.array([row.number for row in rows], pyarrow.int64()),
             "error": pyarrow.array([row.error for row in rows], pyarrow.string()),
@@ -203,6 +208,7 @@ class Store:
         import pyarrow
 
         signals = self._plan.study.tracks.signals if self._plan.study.tracks else []
+        # Failed runs have no track. The number of the run repeats for each of its rows.
         kept = [row for row in rows if row.tracks]
         numbers = np.repeat([row.number for row in kept], [len(row.tracks["time"]) for row in kept])
         columns = {"run": pyarrow.array(numbers, pyarrow.int64())}
@@ -212,10 +218,11 @@ class Store:
         return pyarrow.table(columns)
 
     def _write_tracks(self) -> None:
-        """tracks.parquet, from the parts of runs that are done; it stays where there are no parts."""
+        """Write tracks.parquet from the parts of finished runs; without parts it stays."""
         import pyarrow
         import pyarrow.parquet as parquet
 
+        # Only tracks whose runs are written too: others belong to runs that will be repeated.
         rows = sorted(self._parts.glob("runs-*.parquet"))
         parts = [path.with_name(path.name.replace("runs-", "tracks-", 1)) for path in rows]
         if self._plan.study.tracks is None or not parts:
@@ -230,12 +237,13 @@ class Store:
         write_file(self.folder / "tracks.parquet", content.getvalue())
 
     def _collected(self) -> pyarrow.Table:
-        """Rows of all parts and of the table that is there, each once, in the order of the plan."""
+        """Rows of all parts and of the existing table, each once, in the order of the plan."""
         import pyarrow
         import pyarrow.parquet as parquet
 
         names = ["run", "error", *(measure.name for measure in self._plan.measures)]
         tables = [self._part([])]
+        # A damaged part is skipped: its runs count as not done.
         for path in [self.folder / "runs.parquet", *sorted(self._parts.glob("runs-*.parquet"))]:
             try:
                 tables.append(parquet.read_table(path, columns=names).select(names))
@@ -244,11 +252,12 @@ class Store:
         table = pyarrow.concat_tables(
             [one.select(names).cast(tables[0].select(names).schema) for one in tables]
         )
+        # A run may be in the table and in a part: take the first. `unique` also sorts by number.
         _, first = np.unique(table["run"].to_numpy(), return_index=True)
         return table.take(first)
 
     def _write_runs(self, table: pyarrow.Table) -> None:
-        """runs.parquet and runs.csv, a group of rows at a time."""
+        """Write runs.parquet and runs.csv, a group of rows at a time."""
         import pyarrow.csv
         import pyarrow.parquet as parquet
 
@@ -256,6 +265,7 @@ class Store:
         kinds = self._kinds()
         new = {name: self.folder / f".{name}.unfinished" for name in ("runs.parquet", "runs.csv")}
         try:
+            # Group by group, because the inputs of all runs together may exceed the memory.
             first = self._group(table.slice(0, 0), kinds)
             with (
                 parquet.ParquetWriter(
@@ -269,6 +279,7 @@ class Store:
                     group = self._group(table.slice(start, GROUP), kinds)
                     whole.write_table(group, GROUP)
                     plain.write_table(group.drop_columns(["input"]))
+            # Rename when complete: a reader never sees half a table.
             for name, path in new.items():
                 os.replace(path, self.folder / name)
         finally:
@@ -291,9 +302,10 @@ class Store:
         return found
 
     def _group(self, done: pyarrow.Table, kinds: dict[str, Any]) -> pyarrow.Table:
-        """Rows of the table of runs."""
+        """Make rows of the table of runs."""
         import pyarrow
 
+        # Inputs are made here again from the plan, not stored with the parts: they are large.
         runs = [self._plan.run(number) for number in done["run"].to_pylist()]
         inputs = [json.dumps(self._plan.input_of(run), ensure_ascii=False) for run in runs]
         columns: dict[str, Any] = {"run": done["run"]}
@@ -308,7 +320,7 @@ class Store:
 
 
 class _said:
-    """Turns what the operating system says into one error."""
+    """Turn errors of the operating system into one ShipcosimError."""
 
     def __init__(self, folder: Path):
         self._folder = folder
@@ -324,7 +336,7 @@ class _said:
 
 
 def _kind(labels: list[Value]) -> Any:
-    """Arrow type of labels: numbers where all are, texts else."""
+    """Arrow type of labels: numbers if all are numbers, else texts."""
     import pyarrow
 
     if all(isinstance(label, bool) for label in labels):
@@ -338,6 +350,7 @@ def _of_summaries(plan: Plan) -> list[ColumnOf]:
     units = {column.name: column.unit for column in plan.columns}
     found = []
     for one in plan.study.summary:
+        # Shares have no unit; others have that of their quantity.
         unit = {"share": "1", "last_held": None}.get(one.statistic, units.get(one.quantity))
         found.append(
             ColumnOf(

@@ -1,4 +1,4 @@
-"""Records of a study: what varies over a scenario, what is kept of each run, and how the runs are summed up."""
+"""Records of a study: factors, quantities of each run, and summaries of the runs."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Case(Part):
 
 
 class Factor(Part):
-    """What varies, and its values: listed, evenly spaced, as cases, as weather by direction or number, or as seeds."""
+    """A factor and its values: listed, evenly spaced, cases, weather, or seeds."""
 
     name: Column
     signal: ListOfNames = Field(default=[], description="signals that get the value")
@@ -85,6 +85,7 @@ class Factor(Part):
 
     @model_validator(mode="after")
     def _has_values(self) -> Factor:
+        # Exactly one kind of values, and its keys complete.
         kinds = {
             "values": self.values,
             "from": self.start,
@@ -113,7 +114,7 @@ class Factor(Part):
 
     @property
     def cases(self) -> list[Case]:
-        """Cases that are listed, or that directions and conditions stand for; empty where it has none."""
+        """Cases as listed, or made from directions and conditions; empty if there are none."""
         made = (
             weather.directions(self.directions)
             if self.directions
@@ -123,7 +124,7 @@ class Factor(Part):
 
 
 class Distribution(Part):
-    """Where samples of a signal come from: a distribution of scipy.stats, with its shape parameters, loc and scale."""
+    """Distribution of a sampled signal: one of scipy.stats, with its parameters."""
 
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, float] = Field(init=False)
@@ -158,7 +159,7 @@ class Distribution(Part):
 
 
 class Sample(Part):
-    """What is drawn at random or spread evenly over distributions."""
+    """Values drawn at random or spread evenly over distributions."""
 
     method: Literal["sobol", "latin_hypercube", "random", "saltelli"] = "sobol"
     runs: Count
@@ -180,7 +181,7 @@ _NEEDS = {"at": "time", "percentile": "percentile", "time_beyond": "limit", "sha
 
 
 class Quantity(Part):
-    """One number, or true or false, that is kept of a run."""
+    """A number or a verdict that is kept of a run."""
 
     name: Column
     description: str = ""
@@ -208,6 +209,7 @@ class Quantity(Part):
 
     @model_validator(mode="after")
     def _is_one(self) -> Quantity:
+        # A margin follows from the start values alone, so no key of a signal fits to it.
         if self.margin is not None:
             if self.model_fields_set - {
                 "name",
@@ -226,6 +228,7 @@ class Quantity(Part):
             return self
         if self.peak_period is not None or "component" in self.model_fields_set:
             raise ValueError("component and peak_period belong to margin. Give margin, too.")
+        # Either a reduced signal, or a verdict by expectations.
         if self.judges == bool(self.signal):
             raise ValueError(
                 "A quantity has either signal and reduce, or expect or scenario_expectations = true."
@@ -239,6 +242,7 @@ class Quantity(Part):
             return self
         if self.reduce is None:
             raise ValueError(f"reduce is missing. It is one of {', '.join(REDUCTIONS)}.")
+        # Each reduction needs its own argument and no other.
         for name in dict.fromkeys(_NEEDS.values()):
             is_needed = _NEEDS.get(self.reduce) == name
             if is_needed != (getattr(self, name) is not None):
@@ -256,12 +260,13 @@ class Quantity(Part):
 
     @property
     def judges(self) -> bool:
-        """Whether it says if expectations hold."""
+        """True if the quantity is a verdict."""
         return bool(self.expect or self.scenario_expectations)
 
     @property
     def claim(self) -> Expectation:
-        """An expectation of the same signals, whose distance or value and whose window this quantity has."""
+        """An expectation with the signals, distance or value, and window of this quantity."""
+        # The limit is a dummy where the reduction has none; only signals and window are used then.
         limit: dict[str, Any] = {"at_most": self.limit if self.limit is not None else 0.0}
         if self.near is not None:
             limit = {"near": self.near, "within": self.limit if self.limit is not None else 1.0}
@@ -269,7 +274,7 @@ class Quantity(Part):
 
 
 class Summary(Part):
-    """A number of all runs that are alike but for one factor."""
+    """A number over all runs that differ in the given factors only."""
 
     name: Column
     quantity: str
@@ -296,7 +301,7 @@ class Summary(Part):
 
 
 class Range(Part):
-    """Values of a parameter among which a search looks."""
+    """Range of a parameter in a search."""
 
     low: Amount
     high: Amount
@@ -308,7 +313,7 @@ class Range(Part):
 
 
 class Objective(Part):
-    """What a search wants small or large: a quantity over the runs of a trial."""
+    """An objective of a search: a quantity over the runs of a trial."""
 
     quantity: str
     direction: Literal["minimise", "maximise"]
@@ -316,7 +321,7 @@ class Objective(Part):
 
 
 class Tune(Part):
-    """A search for values of parameters that no others beat in all objectives: NSGA-II, generation by generation."""
+    """A search for Pareto-optimal parameter values by NSGA-II, generation by generation."""
 
     trials: Count
     population: Annotated[int, Field(ge=2)]
@@ -325,7 +330,7 @@ class Tune(Part):
 
 
 class View(Part):
-    """How the page shows something; its keys depend on its kind."""
+    """A view on the results page; its keys depend on its kind."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -334,14 +339,14 @@ class View(Part):
 
 
 class Tracks(Part):
-    """Signals that are kept of each run over time, thinned."""
+    """Signals over time that are kept of each run, thinned."""
 
     signals: ListOfNames = Field(min_length=1)
     interval: Seconds | None = Field(default=None, gt=0.0)
 
 
 class Study(Part):
-    """A study: a scenario, what varies over it, what is kept of each run."""
+    """A study: a scenario, its variations, and what is kept of each run."""
 
     description: str = ""
     scenario: str = Field(min_length=1)
@@ -367,7 +372,7 @@ class Study(Part):
 
     @property
     def path(self) -> Path | None:
-        """File that it was read from."""
+        """File from which it was read."""
         return self._path
 
     @property
@@ -398,5 +403,5 @@ class Study(Part):
 
 
 def is_name(value: float | str) -> bool:
-    """Whether a value of `near` is a signal's name, not an amount."""
+    """True if a value of `near` is a signal's name, not an amount."""
     return isinstance(value, str) and amount(value) is None

@@ -1,4 +1,4 @@
-"""A study from beginning to end: planned, run as far as it is not on disk, summed up."""
+"""A study from plan to tables: run what is not on disk, then summarise."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def run_study(
     progress: Progress | None = None,
     force: bool = False,
 ) -> Swept:
-    """Run what is not done of a study.
+    """Run the part of a study that is not done yet.
 
     Parameters
     ----------
@@ -94,6 +94,7 @@ def run_study(
         raise ShipcosimError(
             Problem("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'.")
         )
+    # The store knows which runs are done, also from an interrupted study.
     store = Store(folder, plan, engine, force)
     search = Search(plan) if plan.study.tune else None
     _run(
@@ -105,6 +106,7 @@ def run_study(
         progress,
     )
     store.finish()
+    # Tables follow from the stored runs alone, so they can be made again without running.
     runs = store.runs()
     summary = summarised(plan, runs)
     tables, remarks = _further(plan, runs, search)
@@ -127,14 +129,17 @@ def _further(
 
 
 def _parts(plan: Plan, store: Store, search: Search | None) -> Iterator[np.ndarray]:
-    """Numbers of runs that are to be done, in parts of which each follows from the one before."""
+    """Numbers of the runs to do, in parts that each depend on the one before."""
     if search is None:
         yield np.flatnonzero(~store.done)
         return
+    # In a search each generation depends on the results of the last. Replay the finished ones from
+    # disk.
     every = np.arange(len(plan)).reshape(plan.shape)
     for trials in search.generations():
         numbers = every[..., trials.start : trials.stop].ravel()
         yield numbers[~store.done[numbers]]
+        # Without all results of a generation the next one cannot be proposed.
         if not store.done[numbers].all():
             return
         search.tell(store.rows())
@@ -151,6 +156,7 @@ def _run(
     workers = None
     room = at_most
     try:
+        # `at_most` limits the runs of this call. Workers start only if there is something to do.
         for numbers in parts:
             now = numbers[:room]
             room = None if room is None else room - len(now)
@@ -161,6 +167,7 @@ def _run(
                 store.add(rows)
                 if progress is not None:
                     progress(int(store.done.sum()), len(plan))
+    # Also after an interrupt: what is done is written.
     finally:
         if workers is not None:
             workers.close()

@@ -1,4 +1,4 @@
-"""Summaries: a number of all runs that are alike but for one factor, with its interval."""
+"""Summaries over runs that differ only in given factors, with confidence intervals."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Interval = tuple[float, float, float]
 
 
 def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
-    """Summaries of a study: a row for each combination of the factors that remain.
+    """Summaries of a study: a row for each combination of the remaining factors.
 
     Parameters
     ----------
@@ -42,6 +42,7 @@ def summarised(plan: Plan, runs: pandas.DataFrame) -> pandas.DataFrame:
     factors = [one.name for one in plan.study.factor] + (
         ["sample"] if plan.samples is not None else []
     )
+    # Summaries over the same factors share their rows.
     groups: dict[tuple[str, ...], list[Summary]] = {}
     for one in plan.study.summary:
         gone = {*one.over, one.along}
@@ -57,6 +58,7 @@ def _rows(
     rows = []
     for key, part in grouped:
         row: dict[str, Any] = dict(zip(remaining, key, strict=True))
+        # Failed runs are counted, but their values are not used.
         row |= {"runs": len(part), "failed": int((part["error"] != "").sum())}
         for one in summaries:
             row |= _summary(plan, one, part[part["error"] == ""])
@@ -68,6 +70,7 @@ def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
     if one.statistic == "last_held":
         return {one.name: _last_held(plan, one, part)}
     values = part[one.quantity].to_numpy(dtype=float)
+    # "Never" is later than any time: infinite instead of missing, or an average would be too early.
     if any(measure.name == one.quantity and measure.may_never_be for measure in plan.measures):
         values = np.where(np.isnan(values), np.inf, values)
     value, low, high = STATISTICS[one.statistic](values[~np.isnan(values)], one)
@@ -76,10 +79,11 @@ def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
 
 
 def _last_held(plan: Plan, one: Summary, part: Any) -> Any:
-    """Label of the last case up to which all are held."""
+    """Label of the last case up to which all hold."""
     factor = next(i for i, factor in enumerate(plan.study.factor) if factor.name == one.along)
     found = one.none
     share = one.share if one.share is not None else SHARE
+    # Levels come in increasing severity. Stop at the first in which too few runs hold.
     for level in plan.levels[factor]:
         held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(
             dtype=float
@@ -91,7 +95,7 @@ def _last_held(plan: Plan, one: Summary, part: Any) -> Any:
 
 
 def wilson(held: int, n: int) -> Interval:
-    """Share of `n` that holds, with its interval of Wilson.
+    """Share of `n` that holds, with Wilson's interval.
 
     References
     ----------
@@ -104,6 +108,8 @@ def wilson(held: int, n: int) -> Interval:
     """
     if n == 0:
         return np.nan, np.nan, np.nan
+    # Wilson's score interval: middle and half width before division by 1 + z²/n. Unlike p ± z σ it
+    # stays within 0 and 1.
     share = held / n
     z2 = _NORMAL**2
     middle = share + z2 / (2 * n)
@@ -139,25 +145,31 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     """
     from scipy.stats import binom
 
+    # The number of values below the true percentile is binomial, B(n, p). Its quantiles are the
+    # ranks of the limits.
     n = len(values)
     ordered = np.sort(values)
     each = (1.0 - CONFIDENCE) / 2.0
     if n == 0:
         return np.nan, np.nan, np.nan
+    # Largest rank whose tail is at most 2.5 %.
     low = int(binom.ppf(each, n, percent / 100.0))
     if binom.cdf(low, n, percent / 100.0) > each:
         low -= 1
     high = int(binom.ppf(1.0 - each, n, percent / 100.0)) + 1
+    # Beyond the sample no limit can be given: more runs are needed.
     limits = (
         float(ordered[low]) if low >= 0 else np.nan,
         float(ordered[high - 1]) if high <= n else np.nan,
     )
+    # Interpolation between a finite and an infinite value makes no sense: take the upper neighbour.
     after = ordered[int(np.ceil(percent / 100.0 * (n - 1) - 1e-9))]
     return float(np.percentile(values, percent) if np.isfinite(after) else after), *limits
 
 
 def seeds_needed(percent: float) -> int:
-    """Least number of runs whose largest value is an upper limit of a percentile."""
+    """Smallest number of runs whose maximum is an upper limit of a percentile."""
+    # P(all n below the percentile) = pⁿ ≤ 2.5 %.
     return int(np.ceil(np.log((1.0 - CONFIDENCE) / 2.0) / np.log(percent / 100.0)))
 
 
@@ -166,6 +178,7 @@ def _mean(values: np.ndarray) -> Interval:
 
     if len(values) < 2:
         return (float(values.mean()) if len(values) else np.nan), np.nan, np.nan
+    # Student's t interval of the mean, mean ± t s / √n.
     half = t.ppf((1.0 + CONFIDENCE) / 2.0, len(values) - 1) * values.std(ddof=1) / sqrt(len(values))
     return float(values.mean()), float(values.mean() - half), float(values.mean() + half)
 

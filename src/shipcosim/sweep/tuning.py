@@ -1,4 +1,4 @@
-"""Search for parameters that no others beat in several quantities: Optuna's NSGA-II, a generation at a time."""
+"""Search for Pareto-optimal parameters: Optuna's NSGA-II, one generation at a time."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATISTICS = {"mean": np.mean, "maximum": np.max, "minimum": np.min}
 
 
 def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
-    """Samples of a search, of which none is proposed yet; None where something is wrong, which is said.
+    """Samples of a search, none proposed yet; None with a problem.
 
     Parameters
     ----------
@@ -47,6 +47,7 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
     made = [_range(study, levels, system, key, one) for key, one in study.tune.of.items()]
     columns = [one[0] for one in made if one is not None]
     names = [one.name for one in study.quantity]
+    # Objectives are quantities of the study.
     for number, one in enumerate(study.tune.objective):
         if one.quantity not in names:
             keys = ("tune", "objective", number, "quantity")
@@ -57,6 +58,7 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
     bounds = np.array(
         [one[1] for one in made if one is not None]
     )  # proposals depend on the version of Optuna, too
+    # All trials are reserved as NaN; each generation fills its own.
     return Samples(
         tuple(columns),
         np.full((study.tune.trials, len(columns)), np.nan),
@@ -68,12 +70,13 @@ def ranges_of(study: Study, levels: Levels, system: System) -> Samples | None:
 def _range(
     study: Study, levels: Levels, system: System, key: str, one: Range
 ) -> tuple[SampledColumn, tuple[float, float, float]] | None:
-    """Column of a line of [tune.of], with its least, largest and present value; None where something is wrong."""
+    """Column of a line of [tune.of]: lowest, highest, present value; None with a problem."""
     signals = levels.existing([key], ("tune", "of", key))
     ends = {}
     others = levels.existing(one.also, ("tune", "of", key, "also"))
     if not signals:
         return None
+    # Check both ends against bounds and types; values between them then fit too.
     for end, value in (("low", one.low), ("high", one.high)):
         checked = levels.checked(dict.fromkeys(signals, value), ("tune", "of", key, end))
         ends[end] = next(iter(checked.values()), None)
@@ -83,6 +86,7 @@ def _range(
     low, high, now = (
         float(value) for value in (ends["low"], ends["high"], start_value(system, signals[0]))
     )
+    # A logarithmic range needs positive numbers, and the present value starts the search.
     if not low < high or (one.log and low <= 0.0):
         found = f"low = {low:g} and high = {high:g}."
         remedy = "low is the smaller one, and with log above 0."
@@ -101,7 +105,7 @@ def _range(
 
 
 class Search:
-    """A search of a plan: proposes a generation, is told how it went, proposes the next one.
+    """A search: propose a generation, take its results, propose the next.
 
     It follows from the study's seed and from what it is told, so that one that is told again what is on disk goes on
     as if it had not stopped.
@@ -124,6 +128,7 @@ class Search:
         self._plan = plan
         self._tune = plan.study.tune
         self._samples = plan.samples
+        # Whole numbers stay whole in the proposals.
         kinds = [
             IntDistribution if one.is_whole else FloatDistribution for one in plan.samples.columns
         ]
@@ -137,6 +142,7 @@ class Search:
         self._among: dict[str, Any] = {
             c.name: kind(low, high, log=one.log) for c, kind, (low, high, _), one in every
         }
+        # The seed makes the search reproducible.
         sampler = optuna.samplers.NSGAIISampler(
             population_size=self._tune.population, seed=plan.study.seed
         )
@@ -148,13 +154,14 @@ class Search:
             self._search = optuna.create_study(directions=directions, sampler=sampler)
         finally:
             optuna.logging.set_verbosity(verbosity)
+        # The first trial has the present values, so that the result shows what is gained.
         now = zip(plan.samples.columns, plan.samples.bounds[:, 2].tolist(), strict=True)
         self._search.enqueue_trial(
             {one.name: round(value) if one.is_whole else value for one, value in now}
         )
 
     def generations(self) -> Iterator[range]:
-        """Numbers of the trials of each generation, proposed; it has to be told before the next one."""
+        """Trial numbers of each generation, proposed; its results must be told before the next."""
         size = self._tune.population
         trials = self._tune.trials
         for first in range(0, trials, size):
@@ -165,7 +172,7 @@ class Search:
             yield numbers
 
     def tell(self, runs: Any) -> None:
-        """Tell how the generation went.
+        """Take the results of a generation.
 
         Parameters
         ----------
@@ -173,8 +180,10 @@ class Search:
             Runs that are done, with `run`, `error` and quantities. A trial of which one failed, or has no value, is
             worse than any other.
         """
+        # A trial's runs are those of its sample, over all levels of the other factors.
         for trial in self._asked:
             samples_of = np.unravel_index(runs["run"].to_numpy(int), self._plan.shape)[-1]
+            # A failed trial gets the worst possible values, so that it has no offspring.
             found = _objectives(self._tune.objective, runs[samples_of == trial.number])
             worst = [
                 -np.inf if one.direction == "maximise" else np.inf for one in self._tune.objective
@@ -197,6 +206,7 @@ class Search:
         """
         import pandas
 
+        # Quantities are summed up as their objective does, others by their mean.
         statistics = {one.quantity: STATISTICS[one.statistic] for one in self._tune.objective}
         best = {trial.number for trial in self._search.best_trials}
         rows = []
@@ -210,6 +220,7 @@ class Search:
                 row[measure.name] = (
                     float(statistics.get(measure.name, np.mean)(values)) if is_whole else np.nan
                 )
+            # A trial with missing runs cannot be called optimal.
             is_best = number in best and not any(np.isnan(row[name]) for name in statistics)
             row |= {
                 "runs": len(part),
@@ -222,7 +233,7 @@ class Search:
 
 
 def _objectives(objectives: list[Objective], runs: Any) -> list[float] | None:
-    """Objectives of a trial; None where one of its runs failed or has no value."""
+    """Objectives of a trial; None if a run failed or has no value."""
     if (runs["error"] != "").any():
         return None
     found = [

@@ -1,4 +1,4 @@
-"""Weather of the static capability as levels of a factor: directions around the ship, conditions by their numbers."""
+"""Weather of the static capability as levels: directions around the ship, numbered conditions."""
 
 from __future__ import annotations
 
@@ -32,6 +32,7 @@ def directions(count: int) -> dict[float, StartValues]:
 
 
 def _from(angle: float) -> StartValues:
+    # A current is given by where it flows to, wind and waves by where they come from.
     towards = (angle + math.pi) % (2.0 * math.pi)
     return {
         f"{COMPONENT}.wind_from": angle,

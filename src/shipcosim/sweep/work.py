@@ -1,4 +1,4 @@
-"""What a worker process does: it gets a job once, then chunks of runs, and gives back a row a run."""
+"""A worker process: takes a job once, then chunks of runs, and returns a row per run."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Job:
-    """All that a worker needs besides the package: plan, engine, FMUs.
+    """Everything that a worker needs besides the package: plan, engine, FMUs.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class PackedJob:
 
 
 def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
-    """A job as it travels.
+    """Pack a job for its way to the workers.
 
     Parameters
     ----------
@@ -99,12 +99,14 @@ def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
     with_fmus : bool
         Whether FMUs travel along: to workers on other machines.
     """
+    # Unpacked archives belong to this process and cannot travel.
     systems = {key: replace(system, _packages=()) for key, system in plan.systems.items()}
     files = {
         str(c.fmu.path): c.fmu.path
         for system in systems.values()
         for c in system.components.values()
     }
+    # Hashes of the FMUs, so that a worker on another machine can tell if it has the same file.
     contents = {path: file.read_bytes() for path, file in files.items()}
     paths = {path: hashlib.sha256(content).hexdigest() for path, content in contents.items()}
     fmus = {paths[path]: content for path, content in contents.items()} if with_fmus else {}
@@ -113,7 +115,7 @@ def pack(plan: Plan, engine: str, with_fmus: bool) -> PackedJob:
 
 
 class Column(NamedTuple):
-    """What is needed of a signal."""
+    """The part of a signal that quantities need."""
 
     values: np.ndarray
 
@@ -121,7 +123,7 @@ class Column(NamedTuple):
 def table_of(
     times: np.ndarray, columns: Iterable[tuple[str, np.ndarray, str, str]]
 ) -> dict[str, Column]:
-    """Columns by name: what quantities need of a table."""
+    """Columns by name, as quantities need them of a table."""
     return {"time": Column(times)} | {name: Column(values) for name, values, *_ in columns}
 
 
@@ -139,13 +141,14 @@ def run_chunk(job: PackedJob | str, runs: Sequence[PlannedRun]) -> Chunk:
     Chunk
     """
     with _ONE_AT_A_TIME:
+        # The time to unpack the job is no part of the measured time: it occurs once.
         bench = _bench(job)
         began = perf_counter()
         return Chunk([bench.row(run) for run in runs], perf_counter() - began)
 
 
 class _Bench:
-    """A job in a worker, with the systems that it has made ready."""
+    """A job in a worker, with its prepared systems."""
 
     def __init__(self, packed: PackedJob):
         job: Job = pickle.loads(packed.content)
@@ -158,11 +161,14 @@ class _Bench:
         self._ready: OrderedDict[Swapped, OneAfterAnother] = OrderedDict()
         measures: Sequence[Measure] = job.plan.measures
         self._tracked = tuple(job.plan.study.tracks.signals) if job.plan.study.tracks else ()
+        # Only signals that a quantity or a track uses are kept: the rest would cost memory and
+        # time.
         judged = [name for m in measures for one in m.expect for name in one.signals]
         self._signals = frozenset([*judged, *self._tracked])
 
     def _ready_for(self, run: PlannedRun) -> OneAfterAnother:
-        """The system of a run, ready to go."""
+        """The prepared system of a run."""
+        # Systems are cached by their swapped FMUs; the one unused for longest is closed.
         key = run.swapped if run.swapped in self._plan.systems else ()
         if key not in self._ready:
             while len(self._ready) >= MOST_SYSTEMS:
@@ -176,8 +182,9 @@ class _Bench:
         return self._ready[key]
 
     def row(self, run: PlannedRun) -> Row:
-        """What is kept of a run; whatever goes wrong in it is its error."""
+        """Make a run and its row; any error becomes part of the row."""
         try:
+            # Any error of a run must stay with this run: the worker goes on.
             done = self._ready_for(run).run(Variation(run.values, self._plan.scenario_of(run)))
         except Exception as error:
             return Row(
@@ -190,6 +197,7 @@ class _Bench:
             for name in ("time", *self._tracked)
             if self._tracked
         }
+        # Margins come from the start values, all other quantities from the table.
         quantities = {
             m.name: m.margin.of(run.values) if m.margin else done.kept[m.name][1].item()
             for m in self._plan.measures
@@ -206,6 +214,7 @@ class _Bench:
         return [name for name in names if name in self._signals]
 
     def _reduced(self, table: Any) -> dict[str, Any]:
+        # Reduce right after the run: a table of all signals is never kept.
         found = {
             measure.name: measure.of(table)
             for measure in self._plan.measures
@@ -220,7 +229,7 @@ class _Bench:
         return found | tracks
 
     def _system(self, system: System) -> System:
-        """The system with its FMUs where this worker has them."""
+        """The system with its FMUs at their place on this machine."""
         components = {
             name: replace(
                 component, fmu=replace(component.fmu, path=self._path(component.fmu.path))
@@ -230,10 +239,11 @@ class _Bench:
         return replace(system, components=components)
 
     def _path(self, path: Path) -> Path:
-        """Where an FMU is: at its own place, if that is the same file, else one of what came with the job."""
+        """Path of an FMU here: its own place if the file is the same, else a copy."""
         digest = self._job.paths[str(path)]
         if digest not in self._at:
             here = path
+            # A file of the same path may differ on another machine, so its content decides.
             if not path.is_file() or hashlib.sha256(path.read_bytes()).hexdigest() != digest:
                 here = Path(self._folder.name) / digest / path.name
                 here.parent.mkdir(exist_ok=True)
@@ -251,6 +261,7 @@ _BENCHES: OrderedDict[str, _Bench] = OrderedDict()
 def _bench(job: PackedJob | str) -> _Bench:
     name = job if isinstance(job, str) else job.digest
     if name not in _BENCHES:
+        # A worker may serve several studies; keep the last few.
         while len(_BENCHES) >= MOST_JOBS:
             _BENCHES.popitem(last=False)[1].close()
         packed = pickle.loads(Path(job).read_bytes()) if isinstance(job, str) else job

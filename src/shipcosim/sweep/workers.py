@@ -1,4 +1,4 @@
-"""Who runs the chunks: processes of this machine or workers of a Dask cluster, by `concurrent.futures`."""
+"""Workers that run the chunks: local processes or a Dask cluster, by `concurrent.futures`."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ class Workers(ABC):
 
     @abstractmethod
     def is_lost(self, error: BaseException) -> bool:
-        """Whether an error says that a worker has ended, not that something is wrong with the job."""
+        """True if an error means that a worker has ended, not that the job is wrong."""
 
 
 class Processes(Workers):
-    """Processes of this machine, each with the job in a file.
+    """Processes of this machine, which read the job from a file.
 
     Parameters
     ----------
@@ -97,6 +97,7 @@ class Processes(Workers):
         return ProcessPoolExecutor(self.n, mp_context=get_context("spawn"), initializer=_begin)
 
     def _end(self) -> None:
+        # Processes in a crashed or hanging run would not end by themselves.
         processes = list((getattr(self._executor, "_processes", None) or {}).values())
         self._executor.shutdown(wait=False, cancel_futures=True)
         for process in processes:
@@ -106,7 +107,7 @@ class Processes(Workers):
 
 
 class Cluster(Workers):
-    """Workers of a Dask cluster, which need the package alone: the job travels to them with its FMUs.
+    """Workers of a Dask cluster; the job travels to them with its FMUs.
 
     Parameters
     ----------
@@ -140,6 +141,7 @@ class Cluster(Workers):
             found = "It has no worker."
             remedy = f"Start some: dask worker {address} --nthreads 1."
             raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy))
+        # The job goes to all workers once; each chunk then only refers to it.
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)
         self._job: Any = self._client.scatter(self._packed, broadcast=True, hash=False)
@@ -171,7 +173,8 @@ def cores() -> int:
 
 
 def _begin() -> None:
-    """A worker leaves Ctrl-C to the process that started it, and numerical libraries to one thread."""
+    """Prepare a worker: no Ctrl-C, and one thread for numerical libraries."""
+    # All cores have a process each; more threads would only compete.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     from threadpoolctl import threadpool_limits
 
@@ -180,7 +183,7 @@ def _begin() -> None:
 
 @contextmanager
 def _without_main_module() -> Iterator[None]:
-    """New processes import this package alone, not the script that calls it, which would start the study again."""
+    """Keep new processes from importing the calling script, which would start the study again."""
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
     try:

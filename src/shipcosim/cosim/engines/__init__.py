@@ -1,1 +1,1 @@
-"""Engines of others behind the same call: libcosim and ecos."""
+"""Other engines behind one interface: libcosim and ecos."""

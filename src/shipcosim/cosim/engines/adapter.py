@@ -1,4 +1,4 @@
-"""A run on another engine: the job that it is given, and the table made of the outputs that it returns.
+"""A run on another engine: its job, and the table made from the outputs that it returns.
 
 The engine gets the components, their start values and the connections between them. What no component feeds is known
 before the run: inputs of the system, and inputs without connection that events change. These are set from here.
@@ -40,7 +40,7 @@ MOST_STEPS = 100
 
 
 class EngineError(Exception):
-    """An engine failed. The text is what it said."""
+    """An engine failed. The text is the engine's message."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class ExternalInput:
 
 
 class Job:
-    """What an engine is to do.
+    """The task of an engine.
 
     Parameters
     ----------
@@ -84,6 +84,7 @@ class Job:
     """
 
     def __init__(self, system: System, scenario: Scenario, options: RunOptions):
+        # The other engines exchange all values at the same time, which is Jacobi's order.
         if options.order != "jacobi":
             raise ShipcosimError(
                 f"Only the engine fmpy knows the order '{options.order}'; the others have jacobi."
@@ -97,12 +98,17 @@ class Job:
         self._fed = input_values(inputs, system, self.times) if inputs is not None else {}
         self._known = {"inputs_sha256": digest(inputs)} if inputs is not None else {}
         self.plan = make_plan(system, scenario, self._fed)
+        # Connections with the outermost system are not the engine's: their values are set from
+        # here.
         self.connections = [
             c for c in system.connections if c.source[0] is not None and c.target[0] is not None
         ]
+        # Events act on external inputs (known before the run) or on values that the engine passes
+        # on. Only the latter are changes for the engine.
         self._all_changes = list(changes(scenario, self.plan, self._grid))
         self._values = {kind: self._external_values(kind) for kind in self.plan.layouts}
         self.external = dict(self._external_inputs())
+        # Two changes of one signal at one step: the last one counts.
         last = {(change.step, change.end): change for change in self._all_changes}
         self.changes = [
             c for c in last.values() if c.end[0] is not None and c.end not in self.external
@@ -120,11 +126,14 @@ class Job:
 
     def intervals(self) -> Iterator[tuple[int, int, dict[End, float]]]:
         """(first step, last, {End: value} that change before it), over the whole run."""
+        # Values before and after each step, to find where any input changes.
         values = np.array([found.values for found in self.external.values()], dtype=float)
         values = values.reshape(len(self.external), self.n_steps + 1)
+        # An interval ends where an input moves, and after MOST_STEPS, so that Ctrl-C is noticed.
         moving = np.flatnonzero((np.diff(values[:, :-1], axis=1) != 0).any(axis=0)) + 1
         starts = sorted({*range(0, self.n_steps, MOST_STEPS), *moving.tolist()})
         before = {end: found.start for end, found in self.external.items()}
+        # Pass on only the inputs that differ from the interval before.
         for first, last in zip(starts, [*starts[1:], self.n_steps], strict=True):
             now = {end: found.values[first].item() for end, found in self.external.items()}
             yield first, last, {end: value for end, value in now.items() if value != before[end]}
@@ -142,10 +151,12 @@ class Job:
         attributes : dict
             What is known beyond the plan and the scenario.
         """
+        # A failed engine may have fewer rows; use those that all columns have.
         rows = min(
             (len(column) for columns in outputs.values() for column in columns),
             default=len(self.times),
         )
+        # Engines record every step; the table has a row per output interval.
         every = slice(0, rows, self._grid.steps_per_row)
         recorded = {
             kind: [c[every] for c in self._columns(kind, arrays)]
@@ -162,6 +173,7 @@ class Job:
 
     def _external_values(self, kind):
         """(n + 1, external values) array."""
+        # The values over time as events and tables give them, or constant start values.
         over_time = external_values(self.scenario, self.plan, kind, self._grid, self._fed, {})
         if over_time is not None:
             return over_time
@@ -169,6 +181,8 @@ class Job:
         return np.tile(start, (self.n_steps + 1, 1))
 
     def _external_inputs(self):
+        # An external source reaches inputs through connections; apply the connection and then the
+        # events on the input itself.
         for kind, layout in self.plan.layouts.items():
             from_other_type = {row for row, _, _ in layout.type_changes}
             for end, connection in zip(layout.inputs, layout.connections, strict=True):
@@ -181,6 +195,7 @@ class Job:
         """Outputs, external values and inputs that the table shows, in the order of the recorder."""
         layout = self.plan.layouts[kind]
         external, inputs = recorded_rows(self.plan, kind)
+        # The order is that of our own recorder, so that the tables have the same columns.
         yield from outputs
         yield from (self._values[kind][:, row] for row in external)
         for i in inputs:
@@ -189,6 +204,7 @@ class Job:
             if end in self.external:
                 yield self.external[end].values
             else:
+                # The engine does not return connected inputs: compute them from the outputs.
                 yield self._modified(connection.input_values(outputs), end)
 
     def _modified(self, values, end):
@@ -199,7 +215,7 @@ class Job:
 
 
 class Session(Protocol):
-    """A job on its way in an engine. Each method may raise EngineError."""
+    """A run of a job in an engine. Each method may raise EngineError."""
 
     @property
     def n_done(self) -> int:
@@ -234,7 +250,7 @@ def run_on(
     open_session : callable
         Opens the context manager of a session; may raise EngineError.
     job : Job
-        What it is to do.
+        Its task.
     about : dict
         Attributes of the table: the engine's version, remarks on it.
 
@@ -257,7 +273,9 @@ def run_on(
         }
         return job.table(session.outputs(), known | dict(about))
 
+    # Ctrl-C is checked between intervals, so the engine is never stopped within a call.
     with delayed_interrupt() as check_interrupt, _opened(engine, open_session, job) as session:
+        # On an error the rows so far are kept: they show what led to it.
         try:
             _advance(session, job, check_interrupt)
         except EngineError as error:
@@ -281,6 +299,7 @@ def _advance(session, job, check_interrupt):
     for first, last, inputs in job.intervals():
         check_interrupt()
         for end, value in inputs.items():
+            # Inputs first: they hold from the step that starts now.
             session.set_input(end, value)
         if progress is not None and perf_counter() >= report_at:
             progress(first, job.n_steps)
@@ -296,20 +315,21 @@ def unsupported(
     complaint_of: Callable[[Connection], str | None],
     others: Iterable[Problem] = (),
 ) -> list[Problem]:
-    """What an engine cannot do of a job, which it would otherwise ignore or die of.
+    """Problems of an engine with a job, which it would otherwise ignore or crash on.
 
     Parameters
     ----------
     engine : str
         Its name.
     job : Job
-        What it would have to do.
+        The job to check.
     complaint_of : callable
-        What is wrong with a connection between variables of one type, for this engine.
+        Problem of a connection between variables of one type, for this engine.
     others : iterable of Problem
-        What is wrong beside the connections.
+        Problems other than those of connections.
     """
     problems = list(others)
+    # Types and interfaces that the engine does not have, by component.
     for component in job.system.components.values():
         if interface_type_of(component) == "ModelExchange":
             found = f"runs as model exchange, which {engine} does not do."
@@ -326,6 +346,7 @@ def unsupported(
                     f"has enumerations, which {engine} has not: {', '.join(items[:5])}.",
                 )
             )
+    # Connections: problems common to all other engines first, then the engine's own.
     for connection in job.connections:
         if found := _unsupported_connection(job, connection) or complaint_of(connection):
             place = f"{label(connection.source)} -> {label(connection.target)}"
@@ -351,13 +372,13 @@ def _unsupported_connection(job, connection):
 
 
 def sums(connections: list[Connection]) -> list[Connection]:
-    """Those that are added to others on their way into an input."""
+    """Connections whose values are added to others in an input."""
     count = Counter(connection.target for connection in connections)
     return [connection for connection in connections if count[connection.target] > 1]
 
 
 def is_linear(connection: Connection) -> bool:
-    """Whether a connection changes values by factor and offset."""
+    """True if a connection changes values by factor and offset."""
     return (connection.factor, connection.offset) != (1.0, 0.0)
 
 
@@ -368,7 +389,8 @@ def indices(job: Job, name: str, kind: str) -> tuple[list[int], list[Variable]]:
 
 
 def held(values: np.ndarray, steps: np.ndarray, n_rows: int) -> np.ndarray:
-    """Values at each step, where some are only known at some steps and hold from there on."""
+    """Values at each step; a value known only at some steps holds until the next one."""
+    # A component with a longer step has fewer values. Take the last at or before each step.
     if len(values) == n_rows:
         return values
     return values[np.searchsorted(steps, np.arange(n_rows), side="right") - 1]

@@ -1,4 +1,4 @@
-"""The engine ecos, through ecospy. The only door to it.
+"""The engine ecos, through ecospy; no other module imports it.
 
 ecos gets the system as we read it, through its interface: models, one parameter set with every start value, and
 connections. A connection that transforms, or that an event changes, gets a function of ours that ecos calls for each
@@ -62,7 +62,7 @@ def check_installed() -> None:
 
 
 def _problems(job):
-    """What ecos cannot do, beside connections."""
+    """Problems of ecos other than connections."""
     for name, multiple in job.plan.multiples.items():
         if multiple > 1:
             found = f"steps {multiple} base steps at a time; ecos only lets components step with the base step."
@@ -75,7 +75,7 @@ def _problems(job):
 
 @dataclass
 class Transformation:
-    """What ecos does with each value that a connection passes on.
+    """The change of each value that a connection passes on in ecos.
 
     Parameters
     ----------
@@ -89,8 +89,10 @@ class Transformation:
     source: Modifier = (1, 0)
     target: Modifier = (1, 0)
 
+    # The order is that of the model: modify the output, transform it, then modify the input.
     def __call__(self, value: float) -> float:
         value = _modified(value, self.source)
+        # Skip the transformation where it is none, so that values stay exact.
         if is_linear(self.connection):
             value = self.connection.factor * value + self.connection.offset
         return _modified(value, self.target)
@@ -106,7 +108,7 @@ class EcosSession:
     Parameters
     ----------
     job : Job
-        What it is to do.
+        Its task.
     """
 
     def __init__(self, job: Job):
@@ -117,6 +119,7 @@ class EcosSession:
         for change in job.changes:
             self._changes[change.step].append(change)
         self._records = [_Record(job, kind) for kind in TYPES]
+        # If opening fails, the stack undoes what was opened so far.
         with ExitStack() as stack:
             stack.enter_context(imports_undone())
             self._open(stack)
@@ -138,17 +141,21 @@ class EcosSession:
         step = _function("step")
         simulation = c_void_p(self._simulation.sim)
         one = c_size_t(1)
+        # Changes act before the step that starts at their time.
         for k in range(self.n_done, last):
             if k in self._changes:
                 self._act(self._changes[k])
             step(simulation, one)
             self.n_done = k + 1
+            # Each step is read at once, because ecos keeps no history in full precision.
             for record in self._records:
                 record(simulation, k + 1)
 
     def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind."""
         columns = {record.kind: record.columns(self.n_done + 1) for record in self._records}
+        # ecos applies a bias or override on the way to the inputs only. The recorded output must
+        # show it too, from the step after the change on.
         for row, end in enumerate(self._job.plan.layouts["Real"].outputs):
             unmodified = columns["Real"][row].copy()
             for change in (change for change in self._job.changes if change.end == end):
@@ -174,12 +181,15 @@ class EcosSession:
             record(c_void_p(self._simulation.sim), 0)
 
     def _fill(self, structure):
+        # Start values go into a parameter set: ecos sets them during its initialisation.
         values = {}
         for name, component in self._job.system.components.items():
             structure.add_model(name, str(component.fmu.path.resolve()))
             for variable, value in self._job.starts(name).items():
                 values[_identifier((name, variable))] = value
         structure.add_parameter_set(START, values)
+        # A connection needs a Python function only if it transforms, or an event may change an end.
+        # Others stay native and fast.
         modified = {change.end for change in self._job.changes}
         for connection in self._job.connections:
             kind = self._job.plan.variable(connection.source).kind
@@ -194,13 +204,15 @@ class EcosSession:
                 getattr(structure, f"make_{name}_connection")(*ends)
 
     def _act(self, changes):
-        """Make changes that are due before a step: first those to inputs, which get the values from before it."""
+        """Make the changes due before a step; inputs first, they use the values before it."""
         variable = self._job.plan.variable
         for change in sorted(
             changes, key=lambda change: variable(change.end).causality == "output"
         ):
             for transformation in self._transformations[change.end]:
                 if transformation.connection.target == change.end:
+                    # The input gets its new value at once, since the connection acts only after the
+                    # step.
                     transformation.target = _modifier(change)
                     source = self._simulation.get_real(
                         _identifier(transformation.connection.source)
@@ -211,13 +223,14 @@ class EcosSession:
 
 
 class _Record:
-    """Values of all outputs of one kind, row by row; what is not in ecospy is called as it calls it itself."""
+    """Values of all outputs of one kind, row by row, through calls of the library itself."""
 
     def __init__(self, job, kind):
         name, self._type, _ = TYPES[kind]
         ends = job.plan.layouts[kind].outputs
         self.kind = kind
         self._get = _function(f"get_{name}")
+        # Names, places and buffer are prepared once: the calls run at every step.
         self._n = len(ends)
         self._values = (self._type * len(ends))()
         self._names = [c_char_p(_identifier(end).encode()) for end in ends]
@@ -241,14 +254,14 @@ def _identifier(end: End) -> str:
 
 
 def _modifier(change):
-    """A change as (scale, shift)."""
+    """A change as (scale, shift): an override is (0, value), a bias (1, value)."""
     return {"override": (0, change.value), "bias": (1, change.value), "reset": (1, 0)}[
         change.action
     ]
 
 
 def _function(name):
-    """A function of ecos' library, without ecospy's conversions, which would cost more than the call."""
+    """A function of ecos' library without ecospy's conversions, which cost more than the call."""
     from ecospy.lib import dll
 
     function = dll[f"ecos_simulation_{name}"]

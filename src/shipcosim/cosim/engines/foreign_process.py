@@ -1,4 +1,4 @@
-"""libcosim and ecos as their users run them: they read the file themselves, in a process that may crash.
+"""Run libcosim and ecos as their users do: each reads the file, in a process of its own.
 
 As a script this is that process: it gets a job in JSON and leaves the values of all outputs.
 """
@@ -43,7 +43,7 @@ def readers(
     scenario : Scenario
         Its steps; a tool that reads a file knows no events of ours.
     set_name : str, optional
-        Of the parameter set that ecos is told.
+        Of the parameter set that ecos applies.
 
     Returns
     -------
@@ -55,16 +55,19 @@ def readers(
     ShipcosimError
         If something happens in the scenario.
     """
+    # The tool reads the file alone, so nothing of our scenario reaches it.
     if scenario.events or scenario.set or scenario.components:
         found = "A tool that reads the file itself knows no events, start values or swapped FMUs of ours."
         raise ShipcosimError(
             Problem(scenario.name or "scenario", found, "Compare the system alone.")
         )
+    # ecos reads SSP files only.
     hosts = ["libcosim"] if Path(path).suffix == ".xml" else ["libcosim", "ecos"]
     return {host: partial(_run, host, str(path), scenario, set_name) for host in hosts}
 
 
 def _run(host, path, scenario, set_name, system):
+    # The outputs that a tool can return: numbers and flags of components.
     grid = time_grid_of(scenario)
     outputs = {
         f"{name}.{v.name}": (name, v.name, v.value_reference, v.kind, v.unit or "")
@@ -81,18 +84,21 @@ def _run(host, path, scenario, set_name, system):
     }
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
         values = _values(host, job, Path(folder))
+    # The tools return no start values, so the table begins after the first step.
     columns = [(name, values[:, i], end[-1], "") for i, (name, end) in enumerate(outputs.items())]
     return make_table(grid.times[1:], columns, {"engine": host})
 
 
 def _values(host, job, folder):
-    """(n, outputs) array: values after each step; those at the start are not to be had."""
+    """(n, outputs) array of values after each step; the tool returns none for the start."""
     (folder / "job.json").write_text(json.dumps(job | {"host": host}))
     command = [sys.executable, "-m", __name__, str(folder)]
+    # A process of its own: the tool may crash or hang without harm to this one.
     try:
         subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=LIMIT)
     except subprocess.TimeoutExpired:
         raise ShipcosimError(Problem(host, f"does not end within {LIMIT:g} s.")) from None
+    # A message of the tool is a refusal; no file at all is a crash.
     if (folder / "refused.txt").exists():
         raise ShipcosimError(
             Problem(host, f"refuses the file. {(folder / 'refused.txt').read_text()}")
@@ -116,6 +122,7 @@ def main(folder: str) -> None:
             str(error).splitlines()[0][:300] if str(error) else type(error).__name__
         )
         return
+    # Rename when complete: a crash during the writing must not look like a result.
     np.save(place / "partial.npy", np.array(rows, dtype=float))
     (place / "partial.npy").rename(place / "values.npy")
 
@@ -126,6 +133,7 @@ def _libcosim(job):
     from libcosimpy.CosimObserver import CosimObserver
 
     log_output_level(CosimLogLevel.FATAL)
+    # An OSP file has its own step size; for an SSP libcosim gets ours, in nanoseconds.
     if job["path"].endswith(".xml"):
         execution = CosimExecution.from_osp_config_file(job["path"])
     else:

@@ -1,4 +1,4 @@
-"""The engine libcosim, of the Open Simulation Platform, through libcosimpy. The only door to it.
+"""The engine libcosim of the Open Simulation Platform; only this module imports libcosimpy.
 
 libcosim takes little of an SSP: parameters bound to components and plain connections. Therefore it gets the system as
 we read it, in the form of its own that has most: simulators with their steps, connections, and a function for each
@@ -70,7 +70,7 @@ class LibcosimSession:
     Parameters
     ----------
     job : Job
-        What it is to do.
+        Its task.
     """
 
     def __init__(self, job: Job):
@@ -84,6 +84,7 @@ class LibcosimSession:
         self._folder = Path(
             self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-"))
         )
+        # The constructor cannot use a `with` block: free everything by hand if opening fails.
         try:
             self._open()
         except BaseException:
@@ -115,6 +116,8 @@ class LibcosimSession:
 
     def outputs(self) -> dict[str, list[np.ndarray]]:
         """Values of all outputs at the start and after each step, by kind. Ends the execution."""
+        # libcosim records each variable only at the steps of its component; `held` fills the steps
+        # between.
         n_rows = self.n_done + 1
         columns = {}
         for kind in SERIES:
@@ -131,18 +134,22 @@ class LibcosimSession:
         from libcosimpy.CosimManipulator import CosimManipulator
 
         log_output_level(CosimLogLevel.FATAL)
+        # libcosim takes the structure from a file, with our connections and transformations in it.
         structure = self._folder / "OspSystemStructure.xml"
         structure.write_text(structure_of(self._job), encoding="utf-8")
         try:
             self._execution = CosimExecution.from_osp_config_file(str(structure))
         except AssertionError as error:
             raise EngineError(str(error)) from error
+        # Start values go through the interface, where numbers stay exact. They must be set before
+        # the first step.
         self._indices: dict[str, int] = {
             name: self._execution.slave_index_from_instance_name(name)
             for name in self._job.system.components
         }
         for name in self._job.system.components:
             self._start(name)
+        # One manipulator sets inputs from outside, another one makes the events.
         self._override = CosimManipulator.create_override()
         self._check(self._execution.add_manipulator(self._override))
         self._load_events()
@@ -172,6 +179,7 @@ class LibcosimSession:
         from libcosimpy.CosimEnums import CosimVariableType
         from libcosimpy.CosimObserver import CosimObserver
 
+        # Two rows more than steps: the start, and one in reserve.
         self._series = CosimObserver.create_time_series(self._job.n_steps + 2)
         self._check(self._execution.add_observer(self._series))
         for kind, (type_name, *_) in SERIES.items():
@@ -181,6 +189,7 @@ class LibcosimSession:
                     self._check(
                         start(slave, variable.value_reference, CosimVariableType[type_name])
                     )
+        # Booleans need an observer of their own, see FlagObserver.
         self._flags = None
         if self._job.plan.layouts["Boolean"].outputs:
             self._flags = FlagObserver(self._folder, self._flag_names())
@@ -193,7 +202,7 @@ class LibcosimSession:
         return {name: flags for name, flags in named.items() if flags}
 
     def _samples(self, kind, slave, variable, n_rows):
-        """Values and numbers of the steps after which a variable was observed. libcosimpy's own call loses the last."""
+        """Observed values and their step numbers; libcosimpy's own call loses the last."""
         _, name, c_type, dtype = SERIES[kind]
         values = np.zeros(n_rows, dtype)
         steps = np.zeros(n_rows, np.int64)
@@ -202,6 +211,7 @@ class LibcosimSession:
             array.ctypes.data_as(POINTER(kind))
             for array, kind in ((values, c_type), (steps, c_int64), (times, c_int64))
         ]
+        # Call the C function directly, with one array each for values, steps and times.
         call = _function(
             f"cosim_observer_slave_get_{name}_samples",
             c_int64,
@@ -219,12 +229,14 @@ class LibcosimSession:
         self._execution = self._flags = (
             None  # what the observer has written is complete once both are gone
         )
+        # The file's name contains the time of its creation; find it by pattern.
         for name, flags in self._flag_names().items():
             flag_file = next(
                 f
                 for f in self._folder.iterdir()
                 if re.fullmatch(rf"{re.escape(name)}_\d+_\d+_\d+\.csv", f.name)
             )
+            # Columns of the file: time, step number, then the flags.
             table = np.loadtxt(flag_file, delimiter=",", skiprows=1, ndmin=2)
             for i, flag in enumerate(flags):
                 columns[name, flag] = held(table[:n_rows, 2 + i], table[:n_rows, 1], n_rows)

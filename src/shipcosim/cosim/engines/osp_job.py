@@ -1,4 +1,4 @@
-"""A job in the form that libcosim takes: its OspSystemStructure.xml, its scenario, and what neither can say."""
+"""A job in libcosim's form: OspSystemStructure.xml, scenario, and what they cannot express."""
 
 import json
 from collections.abc import Callable, Iterator, Mapping
@@ -46,6 +46,7 @@ def structure_of(
 def event_of(job: Job, change: SignalChange) -> dict[str, object]:
     """Event of OSP that makes a change of a job."""
     component, variable = change.end
+    # The event's time as text of the step size times the step: the same double as in our grid.
     time = float(seconds_text(job.scenario.step_size * change.step))
     event = {"time": time, "model": component, "variable": variable, "action": change.action}
     if change.action != "reset":
@@ -63,12 +64,13 @@ def events_json(job: Job) -> str:
 
 
 def unsupported_by_libcosim(job: Job) -> list[Problem]:
-    """What libcosim cannot do of a job."""
+    """Problems of libcosim with a job."""
     return unsupported("libcosim", job, _complaint_of(job), _problems(job))
 
 
 def _problems(job: Job) -> Iterator[Problem]:
-    """What libcosim would ignore or die of, beside connections."""
+    """Problems other than connections, which libcosim would ignore or crash on."""
+    # libcosim counts in nanoseconds; a step that is no whole number of them would drift.
     if abs(job.scenario.step_size * 1e9 - nanoseconds(job.scenario.step_size)) > 1e-6:
         found = f"The step size {job.scenario.step_size!r} s is no whole number of nanoseconds, in which libcosim counts."
         yield Problem("step_size", found)
@@ -87,6 +89,7 @@ def _complaint_of(job: Job) -> Callable[[Connection], str | None]:
         )
         if (source, target) != ("output", "input"):
             return f"it goes from {source} to {target}"
+        # OSP has functions for a linear transformation and for a sum, but not for both in one.
         return (
             "it is transformed and added to others"
             if connection in added and is_linear(connection)
@@ -98,5 +101,5 @@ def _complaint_of(job: Job) -> Callable[[Connection], str | None]:
 
 
 def nanoseconds(seconds: float) -> int:
-    """Seconds in the unit in which libcosim counts."""
+    """Seconds in libcosim's unit."""
     return round(seconds * 1e9)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def imports_undone() -> Iterator[None]:
-    """Put `sys.path` back in the end, and forget modules that were imported from what was added to it.
+    """Restore `sys.path` at the end, and forget modules that came from entries added to it.
 
     PythonFMU adds the folder of each FMU. A later run would otherwise take a module of the same name from there.
     """
@@ -17,6 +17,7 @@ def imports_undone() -> Iterator[None]:
     finally:
         added = tuple(entry for entry in sys.path if entry not in before)
         sys.path[:] = before
+        # A module may stay in use by its FMU; it only leaves the list of imported modules.
         for name, module in list(sys.modules.items()):
             if added and (getattr(module, "__file__", None) or "").startswith(added):
                 del sys.modules[name]

@@ -15,7 +15,7 @@ OWN_OPTIONS = ("start_time", "until", "resume", "store", "isolate")
 
 
 def engines_missing() -> dict[str, Problem]:
-    """Engines that are not installed, with what to install."""
+    """Engines that are not installed, and what to install."""
     missing = {}
     for name, module in {"libcosim": libcosim, "ecos": ecos}.items():
         try:

@@ -1,1 +1,1 @@
-"""Systems exported: as one FMU, and as files for OSP."""
+"""Export of systems: as one FMU, and as files for OSP."""

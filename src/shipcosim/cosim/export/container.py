@@ -57,14 +57,17 @@ def write_container(
     ShipcosimError
         With everything that the container cannot express.
     """
+    # Find all problems before anything is written.
     problems = list(_problems(system, step_size))
     exposed = exposed_variables(system, connectors_only, problems)
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError(errors)
+    # Each FMU file goes into the resources once, however many components use it.
     paths = _paths(system)
     files = {f"resources/{paths[fmu]}/{name}": data for fmu in paths for name, data in _files(fmu)}
     files |= {f"binaries/{name}": data for name, data in _files(LIBRARIES)}
     configuration = _configuration(system, exposed, paths, step_size, sweeps)
+    # The token identifies the content: any change of files or wiring gives another one.
     token = _token(configuration, files)
     description = container_description(system, exposed, token, step_size)
     files["modelDescription.xml"] = description
@@ -76,11 +79,12 @@ def write_container(
 
 
 def _problems(system, step_size):
-    """What the container cannot express."""
+    """Problems that the container cannot express."""
     targets = set()
     for component in system.components.values():
         yield from _component_problems(component, step_size)
     yield from _repeated(system)
+    # A second connection into one input would be a sum, so remember the inputs seen.
     for connection in system.connections:
         name = f"{label(connection.source)} -> {label(connection.target)}"
         known = f"{name}: " if name not in connection.place else ""
@@ -89,6 +93,7 @@ def _problems(system, step_size):
                 connection.place, f"{known}{found}", "The container FMU copies values as they are."
             )
         targets.add(connection.target)
+    # A system parameter is set as it is; its value cannot be converted on the way.
     for connection in system.given:
         if (connection.factor, connection.offset, connection.mapping) != (1.0, 0.0, None):
             name = f"{label(connection.source)} -> {label(connection.target)}"
@@ -111,6 +116,7 @@ def _component_problems(component, step_size):
             "is asked for as model exchange.",
             "The container FMU does co-simulation alone.",
         )
+    # Start values of array elements, binaries and clocks have no type in the library.
     for name in component.start:
         if library_type(fmu, name) is None:
             what = (
@@ -128,8 +134,9 @@ def _component_problems(component, step_size):
 
 
 def _repeated(system):
-    """Components whose FMU can be instantiated only once, but is used by others too."""
+    """Components that share an FMU which can be instantiated only once."""
     for component in system.components.values():
+        # Components are compared by the FMU's file.
         others = [c.name for c in system.components.values() if c.fmu.path == component.fmu.path]
         if len(others) > 1 and component.fmu.capability("canBeInstantiatedOnlyOncePerProcess"):
             found = f"{component.fmu.path.name} can be instantiated only once in a process, but makes up"
@@ -141,7 +148,7 @@ def _repeated(system):
 
 
 def _connection_faults(connection, system, targets):
-    """Sentences on what the container would do differently."""
+    """Sentences on what the container would do differently for a connection."""
     if (connection.factor, connection.offset) != (1.0, 0.0):
         yield (
             f"the value is multiplied by {connection.factor:g} and {connection.offset:g} added "
@@ -155,6 +162,7 @@ def _connection_faults(connection, system, targets):
         yield "several connections are added up."
     if connection.source[0] is None and connection.target[0] is None:
         yield "an input of the system is its output, with no component between."
+    # The library copies between variables of one type only.
     ends = [end for end in (connection.source, connection.target) if end[0] is not None]
     types = list(
         dict.fromkeys(
@@ -168,7 +176,7 @@ def _connection_faults(connection, system, targets):
 
 
 def _paths(system):
-    """Folder in the resources for each FMU file, of plain letters: not every FMU can read others in an address."""
+    """Resource folder of each FMU file, in plain letters that every FMU can read."""
     files = dict.fromkeys(component.fmu.path for component in system.components.values())
     return {
         file: f"{number:02}_{re.sub('[^A-Za-z0-9_]', '', file.stem)}"
@@ -185,7 +193,9 @@ def _files(file):
 
 
 def _configuration(system, exposed, paths, step_size, sweeps):
-    """What the library reads, but for the token."""
+    """The library's configuration, without the token."""
+    # Components are addressed by number. The connections are repeated: once for each sweep that the
+    # start needs.
     numbers = {name: number for number, name in enumerate(system.components)}
     return {
         "containerVersion": VERSION,
@@ -242,7 +252,8 @@ def _variable(one, system, numbers):
 
 
 def _connections(system, numbers):
-    """Connections between components, those of one type between two of them together, sources first."""
+    """Connections between components, bundled by pair and type, sources first."""
+    # The library copies values of one type between two components in one call.
     together = {}
     for connection in system.connections:
         (source, variable) = connection.source
@@ -250,6 +261,7 @@ def _connections(system, numbers):
         if source is not None and target is not None:
             kind = library_type(system.components[source].fmu, variable)
             together.setdefault((source, target, kind), []).append(connection)
+    # In the order of the data flow one pass carries a value as far as possible.
     place = {name: position for position, name in enumerate(sources_first(system))}
     for source, target, kind in sorted(
         together, key=lambda key: (place[key[0]], place[key[1]], key[2])
@@ -270,7 +282,8 @@ def _reference(system, end):
 
 
 def _token(configuration, files):
-    """Token unique to the content."""
+    """Token that is unique to the content."""
+    # Sorted, so that the same content gives the same token. Contents enter by their own hash.
     content = hashlib.sha256(json.dumps([BINARY, configuration], sort_keys=True).encode())
     for name in sorted(files):
         content.update(name.encode() + hashlib.sha256(files[name]).digest())

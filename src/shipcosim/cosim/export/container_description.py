@@ -1,4 +1,4 @@
-"""modelDescription.xml of the container FMU of a system."""
+"""modelDescription.xml of a system's container FMU."""
 
 from xml.etree import ElementTree as xml
 
@@ -45,10 +45,12 @@ def container_description(
         else "flat",
         numberOfEventIndicators="0",
     )
+    # The container can do what all its FMUs can.
     xml.SubElement(root, "CoSimulation", _abilities(system))
     _add_units(root, system, exposed)
     types = _add_types(root, exposed)
     _add_experiment(root, system, step_size)
+    # FMI 2.0 describes time as a variable; a name must be free for it.
     variables = xml.SubElement(root, "ModelVariables")
     time = xml.SubElement(variables, "ScalarVariable", name=_time_name(exposed), valueReference="0")
     time.attrib |= {"causality": "independent", "variability": "continuous", "description": "time"}
@@ -80,6 +82,7 @@ def _add_units(root, system, exposed):
         return
     definitions = xml.SubElement(root, "UnitDefinitions")
     for name in used:
+        # An FMU has one definition per unit name; two definitions in its parts cannot be merged.
         found = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
         if len({(unit.exponents, unit.factor, unit.offset) for unit in found}) > 1:
             text = f"The unit {name} is defined in two ways by its FMUs."
@@ -93,7 +96,8 @@ def _add_units(root, system, exposed):
 
 
 def _add_types(root, exposed):
-    """Enumerations, each with a name of its own; returns the names by items."""
+    """Write the enumerations under new names; return the names by items."""
+    # Equal enumerations of different FMUs become one type.
     kinds = dict.fromkeys(
         tuple(one.variable.items.items()) for one in exposed if one.variable.items
     )
@@ -132,6 +136,7 @@ def _scalar_variable(reference, one, system, types):
     if one.description:
         element.set("description", one.description)
     element.set("variability", _variability(one))
+    # FMI 2.0 table of causality, variability and initial: outputs are calculated, others are exact.
     if one.causality != "input":
         element.set("initial", "calculated" if one.causality == "output" else "exact")
     values = (
@@ -143,6 +148,7 @@ def _scalar_variable(reference, one, system, types):
         if variable.items
         else FMI2_TYPES[str(library_type(system.components[name].fmu, own))]
     )
+    # Attributes by type, as the schema allows them.
     if kind == "Enumeration":
         values["declaredType"] = types[tuple(variable.items.items())]
     if kind == "Real" and one.unit:
@@ -167,6 +173,7 @@ def _variability(one):
 
 def _add_structure(root, exposed):
     structure = xml.SubElement(root, "ModelStructure")
+    # Indices count from 1, and the first variable is time.
     indices = [
         str(index) for index, one in enumerate(exposed, start=2) if one.causality == "output"
     ]

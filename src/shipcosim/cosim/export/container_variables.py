@@ -1,4 +1,4 @@
-"""Variables of a system that is one FMU: its connectors, and what of its components can be seen from outside."""
+"""Variables of a container FMU: the system's connectors and its components' variables."""
 
 import re
 from dataclasses import dataclass
@@ -42,10 +42,11 @@ class ContainerVariable:
 
 
 def library_type(fmu: FmuDescription, name: str) -> str | None:
-    """What the container's library calls the type of a variable; None where it has no name for it."""
+    """The library's name for a variable's type; None where it has none."""
     variable = fmu.variables[name]
     if variable.whole is not None or variable.dimensions or variable.kind in ("Binary", "Clock"):
         return None
+    # Enumerations are Int64 in FMI 3.0 and 32-bit integers before.
     if variable.kind == "Enumeration":
         return "Int64" if fmu.fmi_version.startswith("3") else "Int32"
     return LIBRARY_TYPES.get(variable.type, variable.type)
@@ -65,11 +66,13 @@ def exposed_variables(
     problems : list of Problem
         Takes what a connector cannot be, and remarks on what is left out.
     """
+    # A connector that cannot be shown is an error: the user asked for it.
     exposed = [
         one for one in _connectors(system, problems) if _is_shown(one, system, problems, "error")
     ]
     if connectors_only:
         return exposed
+    # Then the variables of the components, except inputs that something feeds already.
     names = {one.name for one in exposed}
     fed = {end for one in exposed if one.causality != "output" for end in one.ends}
     fed |= {connection.target for connection in system.connections}
@@ -77,6 +80,7 @@ def exposed_variables(
         if one.name in names:
             found = f"A connector of the system and a variable of a component are both called {one.name}."
             problems.append(Problem(system.name, found, "Rename the connector."))
+        # Variables that FMI 2.0 cannot show are left out with a remark.
         elif _is_shown(one, system, problems, "remark"):
             exposed.append(one)
     return exposed
@@ -89,7 +93,10 @@ def _connectors(system, problems):
             found = f"The {causality} {signal.name} is connected to nothing and is left out."
             problems.append(Problem(system.name, found, severity="remark"))
             continue
+        # Type and bounds come from the first variable that the connector leads to.
         variable = _variable(system, ends[0])
+        # FMI wants a start value for inputs and parameters; without one, the components' values
+        # must agree.
         start = signal.start
         if start is None and causality != "output":
             start = _common_start(system, signal, ends, problems)
@@ -148,7 +155,7 @@ def _variables(system, fed):
 
 
 def _is_shown(one, system, problems, severity):
-    """Whether FMI 2.0 has a type for a variable; says so where it has not."""
+    """True if FMI 2.0 has a type for a variable; otherwise note a problem."""
     name, variable = one.ends[0]
     kind = library_type(system.components[name].fmu, variable)
     if kind in FMI2_TYPES:
@@ -169,6 +176,6 @@ def _variable(system, end):
 
 
 def is_structured(name: str) -> bool:
-    """Whether a name keeps FMI's structured naming convention."""
+    """True if a name follows FMI's structured naming convention."""
     part = r"(?:[A-Za-z_][A-Za-z0-9_]*|'[^']+')(?:\[[0-9]+(?:,[0-9]+)*\])?"
     return re.fullmatch(rf"{part}(?:\.{part})*", name) is not None

@@ -1,4 +1,4 @@
-"""A system exported as one FMU, after it has been run beside the system itself.
+"""Export a system as one FMU, after comparing it with the system itself.
 
 The container passes connections on once at the start, where our master repeats it until nothing changes any more; and
 an FMU may put out something else as soon as it gets an input. Neither can be seen in files. So both are run for some
@@ -64,18 +64,22 @@ def export_fmu(
     """
     if not check:
         return write_container(system, Path(path), step_size, connectors_only=connectors_only)
+    # Our own run is the reference. It is made only once.
     ours = None
     differing = []
     with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+        # Try as few sweeps as possible: each costs time at every step of the FMU.
         for sweeps in SWEEPS:
             tried = Path(folder) / f"{sweeps}.fmu"
             remarks = write_container(
                 system, tried, step_size, connectors_only=connectors_only, sweeps=sweeps
             )
             ours = _run(system, step_size, RunOptions()) if ours is None else ours
+            # The container runs in a process of its own, because an FMU in it may end the process.
             container = _run(block_of(tried), step_size, RunOptions(isolate=True, timeout=LIMIT))
             differing = _differences(ours, container)
             if not differing:
+                # Write to the target only what has passed the comparison.
                 write_container(
                     system, Path(path), step_size, connectors_only=connectors_only, sweeps=sweeps
                 )
@@ -88,7 +92,7 @@ def export_fmu(
 
 
 def block_of(fmu: Path) -> System:
-    """System with an FMU as its only component, called ``block``."""
+    """A system with an FMU as its only component, called ``block``."""
     return System("block", str(fmu), {"block": Component("block", read_fmu(fmu))})
 
 
@@ -100,9 +104,10 @@ def _run(system, step_size, options):
 
 
 def _differences(ours, theirs):
-    """Sentences on the outputs of the container that differ from the system's, the worst first."""
+    """Describe the outputs of the container that differ from the system's, the worst first."""
     found = []
     scales = _scales(ours)
+    # Texts cannot be compared by size; the container passes them on unchanged.
     for name in theirs.data_vars:
         shown = name.removeprefix("block.")
         if shown not in ours or theirs[name].dtype.kind not in "fbi":
@@ -110,6 +115,8 @@ def _differences(ours, theirs):
         a = ours[shown].values.astype(float)
         b = theirs[name].values.astype(float)
         error = np.abs(a - b)
+        # The error is relative to the largest signal of the same unit in the component: a small
+        # difference of two large forces is no more exact than they are.
         scale = max(scales[_kind(ours, shown)], np.abs(b).max(), 1e-9)
         if error.max() > TOLERANCE * scale:
             row = int(error.argmax())

@@ -1,4 +1,4 @@
-"""A system and what happens in it as files that libcosim runs by itself: OspSystemStructure.xml, FMUs, a scenario."""
+"""A system and its events as files that libcosim runs by itself."""
 
 import os
 from pathlib import Path
@@ -24,7 +24,7 @@ TYPES = ("Real", "Integer", "Boolean", "String")
 
 
 def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], list[Problem]]:
-    """Files of a system as libcosim takes it, and what they do not say.
+    """Files of a system in libcosim's form, and what they cannot express.
 
     Nested systems are flat in them, unit conversions and linear transformations are functions, start values initial
     values, and events on inputs of the system events on what these feed.
@@ -48,6 +48,7 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     ShipcosimError
         With everything that OSP cannot express.
     """
+    # Apply the scenario's values first: the files hold one system with numbers.
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
     wrong = [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]
     if wrong:
@@ -57,6 +58,7 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     problems = [*unsupported_by_libcosim(job), *_values_problems(job)]
     if problems:
         raise ShipcosimError(problems)
+    # FMUs get plain names in the folder, and the structure refers to them by these.
     names = _file_names(system)
     sources = {
         name: quote(names[component.fmu.path]) for name, component in system.components.items()
@@ -64,6 +66,8 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
     values = {name: _initial_values(job, name) for name in system.components}
     structure = structure_of(job, sources, values, end_time=scenario.stop_time)
     files = {STRUCTURE: structure.encode()}
+    # A scenario file exists only if there are events. Its end lies beyond the run, so that nothing
+    # is taken back.
     if events := osp_events(job):
         end = 2.0 * job.times[-1]  # all changes would be taken back at this time
         files[SCENARIO] = scenario_text(scenario.description, events, float(end)).encode()
@@ -72,12 +76,16 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
 
 
 def osp_events(job: Job) -> list[dict[str, object]]:
-    """Events of OSP that do what a job's events do, by their times.
+    """Events of OSP with the same effect as a job's events, in order of time.
 
     What nothing feeds is set to the value that it has from then on: libcosim knows no inputs of the system.
     """
     events = list(job.changes)
+    # libcosim has no inputs of the system: each change of an external value becomes an override of
+    # the inputs that it feeds.
     for end, external in job.external.items():
+        # The value before each step, so that only changes become events; the first compares with
+        # the start value.
         before = np.concatenate([[external.start], external.values[:-2]])
         for step in np.flatnonzero(external.values[:-1] != before).tolist():
             events.append(SignalChange(step, "override", end, external.values[step].item()))
@@ -111,7 +119,7 @@ def _values_problems(job):
 
 
 def _file_names(system):
-    """Names of the FMUs in the folder by their paths, each another one."""
+    """File names of the FMUs by their paths, each unique."""
     names = {}
     for component in system.components.values():
         path = component.fmu.path
@@ -124,7 +132,8 @@ def _file_names(system):
 
 
 def _remarks(system, scenario):
-    """What the files do not say."""
+    """Remarks on what the files cannot express."""
+    # Connectors of the system disappear; their effect is kept by events and variables.
     lost = {
         "inputs of the system": (system.inputs, "What they feed is set instead."),
         "outputs of the system": (system.outputs, "Look at the variables that they show."),
@@ -133,6 +142,7 @@ def _remarks(system, scenario):
         if signals:
             found = f"OSP has no {what}: {', '.join(signals)} have no name there."
             yield Problem(system.name, found, remedy, "remark")
+    # libcosim reads texts in the machine's own encoding.
     for name, component in system.components.items():
         for variable, value in component.start.items():
             if isinstance(value, str) and not value.isascii():
@@ -144,7 +154,7 @@ def _remarks(system, scenario):
 
 
 def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> list[Problem]:
-    """Write what `osp_files` makes into a folder; complete or not at all.
+    """Write the files of `osp_files` into a folder; complete or not at all.
 
     Returns
     -------
@@ -153,6 +163,7 @@ def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> 
     """
     files, remarks = osp_files(system, scenario)
     folder = Path(folder)
+    # Write all files under temporary names, then rename: an error leaves the old export intact.
     partial = {name: folder / f".{name}.{os.getpid()}.part" for name in files}
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -160,6 +171,7 @@ def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> 
             partial[name].write_bytes(data)
         for name, path in partial.items():
             os.replace(path, folder / name)
+        # A scenario of an earlier export would act on this system too.
         if SCENARIO not in files:
             (folder / SCENARIO).unlink(missing_ok=True)  # of an export before
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The co-simulation algorithm: makes the start consistent, then steps the components and exchanges their values."""
+"""The co-simulation algorithm: find a consistent start, then step and exchange values."""
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
@@ -26,7 +26,7 @@ SAME = 1e-12
 
 
 class Failure(Exception):
-    """A run cannot go on; `problem` says why."""
+    """A run cannot go on; `problem` tells why."""
 
     def __init__(self, problem: Problem):
         super().__init__(str(problem))
@@ -34,7 +34,7 @@ class Failure(Exception):
 
 
 class Master:
-    """The master of a co-simulation: all components and what is exchanged between them.
+    """The master of a co-simulation: all components and the exchange between them.
 
     Parameters
     ----------
@@ -81,26 +81,32 @@ class Master:
         ------
         Failure, KeyboardInterrupt
         """
+        # Enter the initialisation everywhere first: outputs exist only in this mode.
         for component in self._components:
             self._check_interrupt()
             with _failing(component, "at the start"):
                 component.slave.enter_initialisation(start_time, stop_time)
                 component.read()
+        # Then exchange until each input equals its source, still in initialisation mode.
         self._iterate_start()
+        # Leave the mode with the settled inputs, and read again: some outputs change only here.
         for component in self._components:
             with _failing(component, "at the end of the initialisation"):
                 component.write()
                 component.slave.exit_initialisation()
                 component.read()
+        # Exchange once more: the first step starts from these values.
         self._transfer(0)
         self._check_finite(start_time)
 
     def resume(self, step: int) -> None:
-        """Exchange what is due before a step, after values and FMUs have been brought into the state they had then."""
+        """Exchange what is due before a step, after values and FMUs were restored."""
         self._transfer(step)
 
     def _iterate_start(self):
-        """Iterate over the components in initialisation mode until no input changes any more."""
+        """Iterate over the components in initialisation mode until no input changes."""
+        # A fixed-point iteration: without an algebraic loop it ends after as many sweeps as the
+        # longest chain of components.
         self._transfer(0)
         inputs = {}
         moving = {}
@@ -109,10 +115,12 @@ class Master:
         ]  # the others change no input
         for iteration in range(MOST_ITERATIONS + len(self._components)):
             last = inputs
+            # Settled: no input and no connected parameter has changed since the last sweep.
             inputs = self._inputs()
             changed = [_transferred(connection) for connection in self._parameter_connections]
             if iteration and last == inputs and not any(changed):
                 return
+            # Beyond the normal limit, note what still changes: the last sweeps name the loop.
             if iteration >= MOST_ITERATIONS:
                 moving |= {
                     name: abs(value - last[name])
@@ -120,11 +128,13 @@ class Master:
                     if value != last[name]
                 }
             self._check_interrupt()
+            # Write and read every component that feeds another one.
             for component in feeding:
                 with _failing(component, "at the start"):
                     component.write()
                     component.read()
             self._transfer(0)
+        # Changes within rounding are accepted: the loop has converged.
         if any(change > SAME * abs(inputs[name]) for name, change in moving.items()):
             names = ", ".join(name for name in inputs if name in moving)
             found = f"the start does not settle: after {MOST_ITERATIONS} sweeps over the components {names} still change."
@@ -132,7 +142,7 @@ class Master:
             raise Failure(Problem("initialisation", found, remedy))
 
     def _inputs(self):
-        """Values of all inputs by name."""
+        """Values of all inputs, by name."""
         return {
             name: value
             for kind, exchange in self._exchanges.items()
@@ -172,26 +182,31 @@ class Master:
         steps_per_row = grid.steps_per_row
         report_at = perf_counter()
         for k in range(first, last):
+            # Events act on the step that starts now, before its row is recorded.
             if k in actions:
                 self._act(actions[k])
+            # The row at time t holds the values at t, before the step.
             if k % steps_per_row == 0:
                 recorders.record()
             self._check_interrupt()
             if progress is not None and perf_counter() >= report_at:
                 progress(k - first, last - first)
                 report_at = perf_counter() + BETWEEN_REPORTS
+            # The step, then the exchange at its end: external values of the next time come with it.
             self._step(k, clock)
             for target, values in external:
                 target[:] = values[k + 1 - first]
             self._transfer(k + 1)
+            # A NaN would spread to all components; stop at the first one and name it.
             self._check_finite(clock[k + 1])
+        # The final values are a row too.
         if last % steps_per_row == 0:
             recorders.record()
         if progress is not None:
             progress(last - first, last - first)
 
     def give_back(self) -> None:
-        """Bring the FMUs into the state that the run has reached, where it does not keep them there all the time."""
+        """Bring the FMUs to the state that the run has reached, if they are not there already."""
 
     def _act(self, actions):
         for action in actions:
@@ -200,13 +215,17 @@ class Master:
             exchange.refresh()
 
     def _step(self, k, clock):
-        """Step all components; in Jacobi's order those in processes of their own do it at the same time."""
+        """Step all components; with Jacobi, those in other processes step in parallel."""
         sequential = self._sequential
         for component in self._components:
+            # Gauss-Seidel: exchange before each component, so it sees the new outputs of those
+            # before it.
             if sequential:
                 self._transfer(k + 1)
             multiple = component.multiple
             try:
+                # A component with a longer step moves only at its multiples. The step is the
+                # difference of two grid times.
                 if k % multiple == 0:
                     component.write()
                     component.step(clock[k], clock[k + multiple] - clock[k])
@@ -214,6 +233,8 @@ class Master:
                     component.read()
             except SlaveError as error:
                 raise failed_step(component, clock[k], error) from error
+        # Jacobi: read outputs only after all have stepped. Until then remote components work in
+        # parallel.
         for component in () if sequential else self._components:
             try:
                 if (k + 1) % component.multiple == 0:
@@ -230,6 +251,7 @@ class Master:
     def _check_finite(self, time):
         if "Real" not in self._exchanges:
             return
+        # Check outputs with their overrides: these are the values that go on.
         values = self._exchanges["Real"].modified_sources
         if (
             isfinite(values.dot(values)) or np.isfinite(values).all()
@@ -243,12 +265,12 @@ class Master:
 
 
 def failed_step(component: ComponentInstance, time: float, error: SlaveError) -> Failure:
-    """What a component says of its step from a time on. [s]"""
+    """The failure of a component in its step from a time on. [s]"""
     return Failure(Problem(component.name, f"failed in the step from t = {time:.9g} s. {error}"))
 
 
 def _transferred(connection, *arguments):
-    """What `transfer` of a connection returns; what the FMUs at its ends say becomes a Failure."""
+    """Call `transfer` of a connection; an error of its FMUs becomes a Failure."""
     try:
         return connection.transfer(*arguments)
     except SlaveError as error:

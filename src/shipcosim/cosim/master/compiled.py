@@ -1,4 +1,4 @@
-"""The loop over the steps in compiled code, over the arrays of the exchanges and the memories of the components."""
+"""The loop over the steps in compiled code, on the arrays of exchanges and components."""
 
 from __future__ import annotations
 
@@ -82,10 +82,10 @@ class _System(ctypes.Structure):
 
 
 class CompiledMaster(Master):
-    """The master, with the loop over the steps in compiled code, for the components that can be compiled.
+    """The master with a compiled loop, for the components that can be compiled.
 
-    The others are stepped by Python, and so are steps of a compiled component that its code gives up: what goes wrong
-    is then said as ever.
+    The others are stepped by Python, and so are steps of a compiled component that its code gives up: errors are
+    then reported as usual.
 
     Attributes
     ----------
@@ -114,6 +114,7 @@ class CompiledMaster(Master):
             self.reasons = {"all components": why}
             super().run(grid, actions, external, recorders, progress)
             return
+        # A repeated run uses the arrays of the run before, if only numbers differ.
         if (loop := self._loop) is None or not loop.take_anew(external):
             loop = _CompiledLoop(self, grid, external, recorders)
         k = grid.first
@@ -124,6 +125,7 @@ class CompiledMaster(Master):
         due = sorted(step for step in actions if step > first)
         try:
             while k < last:
+                # Events act between calls, so a call never goes past the next event.
                 if k in actions:
                     self._act(actions[k])
                     loop.take_modifiers()
@@ -133,14 +135,17 @@ class CompiledMaster(Master):
                         progress(k - first, last - first)
                         report_at = perf_counter() + BETWEEN_REPORTS
                 except KeyboardInterrupt:
+                    # The loop records a row only as it steps, so the row of this step is missing.
                     if k % grid.steps_per_row == 0:
                         recorders.record()
                     raise
                 while due and due[0] <= k:
                     due.pop(0)
+                # The call ends at the next event, at the end, or after a number of steps.
                 end = min(k + steps, due[0] if due else last, last)
                 began = perf_counter()
                 k = loop.run(k, end)
+                # Long calls are fast, short ones let Ctrl-C and progress through.
                 steps = (
                     2 * steps
                     if perf_counter() - began < 0.5 * BETWEEN_REPORTS
@@ -155,7 +160,7 @@ class CompiledMaster(Master):
             progress(last - first, last - first)
 
     def _not_compiled(self) -> str:
-        """Why nothing of this system is compiled; empty where something can be."""
+        """Why nothing in this system is compiled; empty if something can be."""
         if not is_installed():
             return "there is no compiler, install it: pip install 'shipcosim[native]'"
         if self._sequential:
@@ -166,7 +171,7 @@ class CompiledMaster(Master):
 
 
 class _CompiledLoop:
-    """The arrays of a run as the compiled loop sees them."""
+    """The arrays of a run as the compiled loop uses them."""
 
     def __init__(self, master: CompiledMaster, grid: TimeGrid, external, recorders: Recorders):
         self._master = master
@@ -179,6 +184,8 @@ class _CompiledLoop:
         self._library = libraries(
             [files("shipcosim.native").joinpath("loop.c").read_text(encoding="utf-8")]
         )[0]
+        # The C structures point to the arrays of exchanges and components; nothing is copied per
+        # step.
         self._steps = self._compiled(grid)
         self._error: BaseException | None = None
         self._c_exchanges = (_Exchange * len(self._exchanges))(
@@ -206,8 +213,10 @@ class _CompiledLoop:
         self.take_modifiers()
 
     def take_anew(self, external) -> bool:
-        """Begin again in the same arrays, with the components' numbers after another start; whether that can be."""
+        """Start again in the same arrays with other numbers; true if the code allows it."""
         time, step_size = self._first_step
+        # A component that Python steps keeps its state outside the arrays; then the loop is built
+        # anew.
         if self._reasons or not all(
             step.take_anew(time, step_size) for step in self._steps.values()
         ):
@@ -218,27 +227,31 @@ class _CompiledLoop:
         return True
 
     def run(self, k: int, end: int) -> int:
-        """Steps k to end; the step that comes next. Raises Failure."""
+        """Make the steps from k to end; return the next step. Raises Failure."""
         reached = INT(k)
+        # The loop records rows itself, so the count goes in and comes back.
         self._system.n_rows = self._recorders.n_rows
         status = self._library.run(
             ctypes.byref(self._system), INT(k), INT(end), ctypes.byref(reached)
         )
         self._recorders.n_rows = self._system.n_rows
+        # An error in a component was kept when it was raised: no exception passes through C.
         if status == FAILED:
             assert self._error is not None
             raise self._error
+        # The master finds the signal and writes the message.
         if status == NOT_FINITE:
             self._master._check_finite(float(self._clock[reached.value]))
         return reached.value
 
     def give_back(self) -> None:
-        """Give the numbers of the compiled components to their Python objects."""
+        """Copy the numbers of compiled components to their Python objects."""
         for step in self._steps.values():
             step.give_back()
 
     def take_modifiers(self) -> None:
-        """Take overrides and biases as they are now."""
+        """Copy the overrides and biases that act now."""
+        # Only the active ones: the loop applies scale and shift on these rows.
         kept = self._kept_for_now["modifiers"] = []
         for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
             for name, modifiers in (
@@ -260,7 +273,7 @@ class _CompiledLoop:
             structure.version = exchange.version
 
     def _take_external(self, external) -> None:
-        """Take the external values over time."""
+        """Use the external values over time."""
         kept = self._kept_for_now["external"] = []
         over_time = {id(target): np.ascontiguousarray(values) for target, values in external}
         for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
@@ -269,12 +282,14 @@ class _CompiledLoop:
 
     @property
     def reasons(self) -> dict[str, str]:
-        """Why components are not compiled."""
+        """Reasons why components are not compiled."""
         return {name: str(reason) for name, reason in self._reasons.items()}
 
     def _compiled(self, grid) -> dict[str, CompiledStep]:
         objects = {component.name: component.slave.python_object for component in self._components}
+        # Only FMUs of our shell have Python code that can be recorded.
         ours = {name: fmu for name, fmu in objects.items() if fmu is not None}
+        # The first step serves as the example from which the code is recorded.
         time = float(grid.times[grid.first])
         self._first_step = time, float(grid.times[grid.first + 1]) - time
         found = dict(zip(ours, compiled_steps(list(ours.values()), *self._first_step), strict=True))
@@ -287,8 +302,11 @@ class _CompiledLoop:
         return {name: step for name, step in found.items() if isinstance(step, CompiledStep)}
 
     def _exchange(self, kind: str, exchange: Exchange) -> _Exchange:
+        # The loop takes connections in order of their period, as the Python exchange does.
         single, sums, _ = exchange.numbered
         due = sorted(single, key=lambda pair: pair[1].period)
+        # Mappings lie in sequence in two arrays, keys and values; each connection knows its first
+        # entry.
         mappings = [connection.mapping for _, connection in due if connection.mapping is not None]
         firsts = np.cumsum([0, *(len(mapping) for mapping in mappings)])
         numbers = iter(range(len(mappings)))
@@ -339,6 +357,7 @@ class _CompiledLoop:
         )
 
     def _component(self, component: ComponentInstance) -> _Component:
+        # Without a compiled step the loop calls Python for this component.
         made = _Component(None, multiple=component.multiple, fixed_step=component.fixed_step or 0.0)
         step = self._steps.get(component.name)
         if step is None:
@@ -349,6 +368,7 @@ class _CompiledLoop:
         made.n_memory = len(step.memory) - 2
         made.memory = self._pointer(step.memory)
         made.kept = self._pointer(step.kept)
+        # Copies between memory and exchange: place in the memory, exchange, row.
         for name, rows in (("input", component.input_rows), ("output", component.output_rows)):
             found = [
                 (step.places[variable.name], kinds[kind], first + number)
@@ -361,11 +381,13 @@ class _CompiledLoop:
         return made
 
     def _stepped_by_python(self, number: int, k: int) -> int:
-        """Take a step that is not compiled, or read its outputs (-1 less the number); 1 where it fails."""
+        """Make a step in Python, or read outputs (number -1 - n); return 1 on failure."""
         reading = number < 0
         number = -1 - number if number < 0 else number
         component = self._components[number]
         try:
+            # The C loop counts changes of discrete inputs; Python sets them only when the count
+            # changes.
             for structure, (_, exchange) in zip(self._c_exchanges, self._exchanges, strict=True):
                 exchange.version = structure.version
             if reading:
@@ -373,8 +395,10 @@ class _CompiledLoop:
             else:
                 self._take_step(component, k)
             self._master._check_interrupt()
+        # An interrupt ends the loop after this step, without an error.
         except KeyboardInterrupt:
             self._system.stop = 1
+        # Keep the error: C returns to Python, which raises it.
         except SlaveError as error:
             began = k + 1 - component.multiple if reading else k
             self._error = failed_step(component, float(self._clock[began]), error)
@@ -386,6 +410,7 @@ class _CompiledLoop:
 
     def _take_step(self, component, k):
         compiled = self._steps.get(component.name)
+        # The object gets the state of the compiled memory, makes the step, and returns its state.
         if compiled is not None:
             compiled.give_back()
         component.write()
@@ -393,6 +418,7 @@ class _CompiledLoop:
         component.step(time, float(self._clock[k + component.multiple]) - time)
         if compiled is None:
             return
+        # If the step changed the shape of the state, Python steps this component from now on.
         try:
             compiled.take()
         except Untraceable as reason:

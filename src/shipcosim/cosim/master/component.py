@@ -1,4 +1,4 @@
-"""A component in a run: the instance of its FMU and the calls that exchange its values, prepared once."""
+"""A component in a run: its FMU's instance and the prepared calls that exchange its values."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -47,7 +47,7 @@ class ComponentInstance:
     multiple : int
         Its step, in base steps.
     fixed_step : float, optional
-        What it is told as its step, for an FMU that can take no other: the difference of two times is not always the
+        The step that it gets, for an FMU that takes no other: the difference of two times is not always the
         same number. [s]
     feeds : bool
         Whether a connection leads from it to a component.
@@ -68,11 +68,13 @@ class ComponentInstance:
 
     def __post_init__(self):
         self._do_step = do_step = self.slave.stepper()
+        # Some FMUs accept one step size only. A difference of two times may be off in the last
+        # digit, so they get the same number each time.
         if (step := self.fixed_step) is not None:
             self._do_step = lambda time, _: do_step(time, step)
 
     def steps_by(self, do_step: Callable[[float, float], int]) -> None:
-        """Step by another call than the FMU's own: that of a group with one solver."""
+        """Use another call to step: that of a group with one solver."""
         self._do_step = do_step
 
     def prepare(self, kind: str, exchange: Exchange, outputs: Rows, inputs: Rows) -> None:
@@ -90,6 +92,7 @@ class ComponentInstance:
         self.output_rows[kind], self.input_rows[kind] = outputs, inputs
         (first, variables) = outputs
         (first_input, inputs_set) = inputs
+        # The buffers are views of the exchange: the calls read and write its arrays without copies.
         if variables:
             buffer = exchange.sources[first : first + len(variables)]
             self._gets.append((f"Get{kind}", self.slave.getter(kind, variables, buffer)))
@@ -97,6 +100,7 @@ class ComponentInstance:
             call = self.slave.setter(
                 kind, inputs_set, exchange.inputs[first_input : first_input + len(inputs_set)]
             )
+            # Reals change at every step. Other types change seldom and are set only then.
             if kind == "Real":
                 self._set_reals = call
             else:
@@ -113,13 +117,13 @@ class ComponentInstance:
                 discrete.version = discrete.exchange.version
 
     def restore(self, state: bytes) -> None:
-        """Bring the FMU into a state. All discrete inputs are set again in the next step."""
+        """Restore the FMU's state. All discrete inputs are set again in the next step."""
         self.slave.restore(state)
         for discrete in self._discrete:
             discrete.version = -1
 
     def rewind(self, state: Any, values: Sequence[tuple[Variable, object]]) -> None:
-        """Bring the FMU, one of our shell, into its state before the start, but for some start values."""
+        """Return the FMU to its state before the start, with some new start values."""
         self.slave.rewind(state)
         set_start_values(self.slave, values)
         for discrete in self._discrete:
@@ -138,7 +142,8 @@ class ComponentInstance:
 
 
 def set_start_values(slave: Slave, values: Sequence[tuple[Variable, object]]) -> None:
-    """Set (variable, value) pairs on an FMU that is not initialised yet, structural parameters first."""
+    """Set (variable, value) pairs before the initialisation, structural parameters first."""
+    # FMI 3.0: structural parameters size the arrays, and only configuration mode takes them.
     structural = [pair for pair in values if pair[0].causality == "structuralParameter"]
     if structural:
         slave.call("EnterConfigurationMode")
@@ -148,6 +153,7 @@ def set_start_values(slave: Slave, values: Sequence[tuple[Variable, object]]) ->
 
 
 def _set(slave, values):
+    # One FMI call per type. Integers beyond 32 bits go through 64-bit calls.
     by_kind = {}
     for variable, value in values:
         kind = "Integer" if variable.kind == "Enumeration" else variable.kind

@@ -1,4 +1,4 @@
-"""Connections that are made one by one, not in arrays: between strings in every step, into parameters at the start."""
+"""Connections made one by one: strings at every step, parameters at the start."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -45,6 +45,7 @@ class StringConnection:
         """Pass the value on where it is due after `count` base steps and has changed."""
         if count % self.period:
             return
+        # Strings are expensive to set and change seldom: pass on changes only.
         value = self.source.get_strings([self.output])[0]
         value = (self.mapping or {}).get(value, value)
         if value != self.last:
@@ -94,11 +95,13 @@ class ParameterConnection:
         self._is_made = False
 
     def transfer(self) -> bool:
-        """Pass the value on; whether it has changed."""
+        """Pass the value on; true if it has changed."""
         self._source.check("Get", self._get())
+        # The mapping comes first, then the linear transformation, as SSP orders them.
         value = self._mapping.get(self._from[0].item(), self._from[0].item())
         if (self._factor, self._offset) != (1.0, 0.0):
             value = self._factor * value + self._offset
+        # The start iterates until nothing changes, so each transfer reports a change.
         changed = not self._is_made or value != self._to[0]
         self._to[0], self._is_made = value, True
         if changed:

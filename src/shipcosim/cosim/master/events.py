@@ -1,4 +1,4 @@
-"""Events of a scenario as what they do to the arrays, and when.
+"""Events of a scenario as changes of arrays, with their steps.
 
 As in OSP: an event at time t acts on the step that starts at t. An overridden or biased input differs from what feeds
 it from this step on; an output from what this step puts out.
@@ -19,7 +19,7 @@ from shipcosim.scenario import Scenario, whole_steps
 
 
 class SignalChange(NamedTuple):
-    """What an event does to one variable.
+    """The effect of an event on one variable.
 
     Parameters
     ----------
@@ -41,11 +41,14 @@ class SignalChange(NamedTuple):
 
 def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[SignalChange]:
     """Changes in the order in which they act, none from before the time grid's first step."""
+    # In order of time, since a later change of the same signal replaces an earlier one.
     for event in sorted(scenario.events, key=lambda event: event.time):
         step = whole_steps(event.time - grid.start_time, scenario.step_size)
         assert step is not None  # which the time grid has checked
+        # Changes before the first step are part of the snapshot already.
         for action, name, value in event.changes if step >= grid.first else ():
             end = plan.system.split(name)
+            # The name of an enumeration's item stands for its number.
             items = plan.system.inputs[name].items if end[0] is None else plan.variable(end).items
             yield SignalChange(
                 step, action, end, items.get(value, value) if isinstance(value, str) else value
@@ -58,6 +61,7 @@ def event_actions(
     """Calls that events on components' variables make, by the number of the step before which they are due."""
     actions = defaultdict(list)
     for change in changes(scenario, plan, grid):
+        # Events on the system's own inputs are part of the external values, see `external_values`.
         if change.end[0] is not None:
             modifiers, row = modifiers_of(change.end, plan, exchanges)
             arguments = [] if change.action == "reset" else [change.value]
@@ -66,7 +70,7 @@ def event_actions(
 
 
 def modifiers_of(end: End, plan: Plan, exchanges: Mapping[str, Exchange]) -> tuple[Modifiers, int]:
-    """Where overrides and biases of a component's variable are kept, and its row there."""
+    """The modifiers that hold a variable's overrides and biases, and its row there."""
     kind = plan.kind_of(end)
     layout = plan.layouts[kind]
     exchange = exchanges[kind]
@@ -102,10 +106,12 @@ def external_values(
     -------
     (n + 1, external values) array or None
     """
+    # Only inputs of the system can change over time: by events or by a table.
     ends = list(plan.layouts[kind].external)
     changing = [end for end in ends if end[0] is None and (end in plan.modified or end[1] in fed)]
     if not changing:
         return None
+    # Start values at all times; then the table's values; then the events over both.
     start = np.array(list(plan.layouts[kind].external.values()), dtype=BUFFER_TYPES[kind])
     values = np.tile(start, (grid.last - grid.first + 1, 1))
     for end in changing:
@@ -133,6 +139,7 @@ def modifiers_after(
         Those that act at its beginning, by signal.
     """
     after = {name: modifier for name, modifier in active.items() if name in plan.system.inputs}
+    # The last change of each signal counts; a reset is a bias of zero.
     for change in changes(scenario, plan, grid):
         component, name = change.end
         if component is None and change.step < grid.last:
@@ -141,7 +148,7 @@ def modifiers_after(
 
 
 def modify(values: np.ndarray, active: Modifier | None, changes: Sequence[SignalChange]) -> None:
-    """Lay overrides and biases over the values that a signal would have.
+    """Apply overrides and biases to the values that a signal would have.
 
     Parameters
     ----------
@@ -152,6 +159,8 @@ def modify(values: np.ndarray, active: Modifier | None, changes: Sequence[Signal
     changes : sequence of SignalChange
         Their steps count from the first value.
     """
+    # Each change acts on the unmodified signal: a bias after an override starts from the signal
+    # itself.
     unmodified = values.copy()
     if active is not None:
         values[:] = active[0] * unmodified + active[1]

@@ -1,4 +1,4 @@
-"""Groups of components in model exchange that are integrated as one system; which they are follows from the plan."""
+"""Groups of model-exchange components that are integrated as one system."""
 
 from collections.abc import Mapping, Sequence
 
@@ -11,7 +11,7 @@ from shipcosim.ssp import Connection
 
 
 def inner_connections(plan: Plan) -> list[Connection]:
-    """Connections that a common solver carries over: from Real to Real between components in model exchange.
+    """Connections that a common solver carries: Real to Real between model-exchange components.
 
     Both step with the base step, nothing adds up in the input, and no event of the run changes either end.
 
@@ -25,6 +25,7 @@ def inner_connections(plan: Plan) -> list[Connection]:
 
 
 def _is_inner(connection: Connection, plan: Plan) -> bool:
+    # Excluded: parameters, mappings, and connections with the outermost system.
     ends = (connection.source, connection.target)
     if (
         connection.initial
@@ -33,9 +34,11 @@ def _is_inner(connection: Connection, plan: Plan) -> bool:
     ):
         return False
     components = [plan.system.components[name or ""] for name, _ in ends]
+    # A common solver steps with the base step, and it cannot see events that change the ends.
     is_free = plan.modified.isdisjoint(ends) and all(
         plan.multiples[one.name] == 1 for one in components
     )
+    # State events would need one event search for the whole group, which is not done.
     smooth = all(
         interface_type_of(one) == "ModelExchange" and one.fmu.n_event_indicators == 0
         for one in components
@@ -64,6 +67,7 @@ def exchanged_at_steps(
     list of str
         A sentence for each pair.
     """
+    # One remark per pair; pairs inside a group are integrated together and need none.
     groups = groups_of(inner)
     said = {}
     for c in plan.system.connections:
@@ -85,7 +89,7 @@ def exchanged_at_steps(
 
 
 def _is_of_models(connection: Connection, plan: Plan) -> bool:
-    """Whether a connection goes from Real to Real between components in model exchange."""
+    """True for a connection from Real to Real between model-exchange components."""
     ends = (connection.source, connection.target)
     names = [plan.system.components[name or ""] for name, _ in ends]
     return all(interface_type_of(one) == "ModelExchange" for one in names) and all(
@@ -94,7 +98,7 @@ def _is_of_models(connection: Connection, plan: Plan) -> bool:
 
 
 def _why_apart(connection: Connection, plan: Plan) -> str:
-    """Why a connection between components in model exchange is none that a common solver carries over."""
+    """Why a common solver cannot carry a connection between model-exchange components."""
     ends = (connection.source, connection.target)
     components = {name: plan.system.components[name or ""] for name, _ in ends}
     if eventful := [str(name) for name, one in components.items() if one.fmu.n_event_indicators]:
@@ -107,17 +111,19 @@ def _why_apart(connection: Connection, plan: Plan) -> str:
 
 
 def groups_of(connections: Sequence[Connection]) -> list[set[str]]:
-    """Components that connections join, directly or by others."""
+    """Components that connections join, directly or through others."""
+    # Union of sets: a connection merges all groups that it touches.
     groups: list[set[str]] = []
     for connection in connections:
         joined = {connection.source[0] or "", connection.target[0] or ""}
         apart = [group for group in groups if group.isdisjoint(joined)]
         groups = [*apart, joined.union(*(group for group in groups if group not in apart))]
+    # A component connected to itself alone is no group.
     return [group for group in groups if len(group) > 1]
 
 
 def followed_inputs(connections: Sequence[Connection], name: str) -> frozenset[tuple[str, str]]:
-    """Kind and name of a component's inputs that a common solver carries values to."""
+    """Kind and name of a component's inputs to which a common solver carries values."""
     groups = groups_of(connections)
     return frozenset(
         ("Real", c.target[1])
@@ -132,7 +138,7 @@ def couple(
     order: Sequence[str],
     connections: Sequence[Connection],
 ) -> None:
-    """Have the groups of a run step with one solver each; the last of a group in the order of the steps does it.
+    """Give each group of a run one solver; its last component makes the step.
 
     Parameters
     ----------
@@ -148,6 +154,7 @@ def couple(
     from shipcosim.cosim.slaves.coupled import CoupledModels, Wire
 
     for group in groups_of(connections):
+        # The solver runs at the step of the last member, when the inputs of all members are set.
         names = [name for name in order if name in group]
         members = {
             name: slave
@@ -165,7 +172,9 @@ def couple(
             if c.source[0] in group
         ]
         coupled = CoupledModels(members, wires)
+        # The last member owns the solver and frees it.
         members[names[-1]].close_group = coupled.close
+        # The other members do nothing in their step: the group's solver has moved them.
         for name in names:
             instances[name].steps_by(coupled.stepper() if name == names[-1] else _nothing)
 

@@ -54,6 +54,7 @@ def input_values(table: xarray.Dataset, system: System, times: np.ndarray) -> di
     """
     try:
         return _values(table, system, times)
+    # Name the file in the messages, if the table came from one.
     except ShipcosimError as error:
         file = table.encoding.get("source", "inputs")
         raise ShipcosimError(
@@ -66,8 +67,10 @@ def _values(table, system, times):
     problems = [*_unknown(table, system), *_clock_problems(clock)]
     if problems:
         raise ShipcosimError(problems)
+    # Only rows that the run needs are checked: gaps and NaN elsewhere do no harm.
     rows = _rows(clock, times)
     problems = list(_gaps(table, clock[rows]))
+    # Convert each column; collect the problems of all before raising.
     fed = {}
     for name in table.data_vars:
         try:
@@ -80,7 +83,7 @@ def _values(table, system, times):
 
 
 def interpolated(table: xarray.Dataset, system: System, names: Iterable[str]) -> xarray.Dataset:
-    """The table with the attribute that makes some of its columns change linearly between their rows.
+    """Mark some columns of a table to change linearly between their rows.
 
     Parameters
     ----------
@@ -96,12 +99,14 @@ def interpolated(table: xarray.Dataset, system: System, names: Iterable[str]) ->
     ShipcosimError
         If there is no such column.
     """
+    # Only Reals can lie between two values.
     columns = map(str, table.data_vars)
     reals = {
         name for name in columns if name in system.inputs and system.inputs[name].type == "Real"
     }
     table = table.copy()
     problems = []
+    # A pattern may match nothing numeric; an exact name is taken as given.
     for pattern in names:
         matching = [name for name in reals if fnmatchcase(name, pattern)]
         matching = [pattern] if pattern in table.data_vars else matching
@@ -118,7 +123,8 @@ def interpolated(table: xarray.Dataset, system: System, names: Iterable[str]) ->
 
 
 def digest(table: xarray.Dataset) -> str:
-    """SHA-256 of a table's times, names, units and values."""
+    """SHA-256 of a table's times, names, units, interpolation and values."""
+    # Sorted by name: the order of the columns has no effect on the run.
     sha = hashlib.sha256(np.ascontiguousarray(table["time"].values, dtype=float).tobytes())
     for name, column in sorted(table.data_vars.items()):
         about = (
@@ -160,9 +166,10 @@ def _clock_problems(clock):
 
 
 def _rows(clock, times):
-    """The rows that are needed: from the last one at or before the first time to the first one at or after the last."""
+    """Rows from the last at or before the first time to the first at or after the last."""
     start = times[0]
     end = times[-1]
+    # No extrapolation: the table must cover the whole run.
     if clock[0] > start + CLOSE or clock[-1] < end - CLOSE:
         found = f"The table goes from {clock[0]:.9g} s to {clock[-1]:.9g} s, the run from {start:.9g} s to {end:.9g} s."
         remedy = "Start later or stop earlier: the table has to cover the run from the first step to the last."
@@ -172,9 +179,11 @@ def _rows(clock, times):
 
 
 def _gaps(table, clock):
-    """Times without rows for longer than is allowed."""
+    """Times between rows that are longer than allowed."""
     apart = np.diff(clock)
     longest = table.attrs.get("max_gap")
+    # Without a given limit: if 90 % of the rows are evenly spaced, five missing rows are a gap.
+    # Uneven logs have no usual distance.
     if longest is None:
         usual = float(np.median(apart)) if len(apart) else 0.0
         even = len(apart) >= 10 and np.mean(np.abs(apart - usual) <= 0.5 * usual) >= 0.9
@@ -201,11 +210,13 @@ def _column(column, signal, clock, times):
         raise ShipcosimError(
             Problem("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
         )
+    # Flags and integers must be whole: a rounded value would hide an error of the log.
     if signal.type != "Real" and np.any(off := values != np.round(values)):
         found = f"is {values[off][0]} at {clock[off][0]:.9g} s."
         raise ShipcosimError(
             Problem("", found, f"It feeds a {signal.type}, which takes whole numbers.")
         )
+    # Convert the unit before interpolating, so that a full turn is in the input's unit.
     factor, offset = conversion(column.attrs.get("units"), signal.unit)
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset
     if how == "linear":
@@ -214,7 +225,7 @@ def _column(column, signal, clock, times):
 
 
 def _before(clock, times):
-    """The last row at or before each time."""
+    """Index of the last row at or before each time."""
     return np.searchsorted(clock, times + CLOSE, side="right") - 1
 
 
@@ -222,9 +233,12 @@ def _interpolated(clock, values, times, turn):
     """Values between the rows, (n,); `turn` is a full turn of an angle, or None."""
     if len(clock) == 1:
         return values[_before(clock, times)]
+    # The interval of each time; the last row belongs to the last interval.
     row = np.minimum(_before(clock, times), len(clock) - 2)
     rise = np.diff(values)
+    # Angles go the shorter way round: wrap each rise to half a turn either way.
     if turn is not None:
         rise = (rise + 0.5 * turn) % turn - 0.5 * turn
+    # Linear: x = x₀ + s (x₁ - x₀), s within 0 and 1.
     share = np.clip((times - clock[row]) / np.diff(clock)[row], 0.0, 1.0)
     return values[row] + share * rise[row]

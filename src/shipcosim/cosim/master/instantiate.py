@@ -1,4 +1,4 @@
-"""The components of a run, instantiated, and the arrays and connections between them, from its plan."""
+"""Instantiate the components of a run, and make arrays and connections, from its plan."""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import lcm
@@ -23,7 +23,7 @@ Components = dict[str, ComponentInstance]
 
 
 class SlaveSource(Protocol):
-    """Where the instances of FMUs come from: `Instances` in this process, `IsolatedInstances` in others."""
+    """Source of FMU instances: `Instances` in this process, `IsolatedInstances` in others."""
 
     def instance_of(self, component: Component) -> Slave:
         """Instance of a component's FMU in which nothing has been set yet. Raises SlaveError if there is none."""
@@ -39,6 +39,8 @@ def make_exchanges(plan: Plan) -> dict[str, Exchange]:
     ) in BUFFER_TYPES.items():  # Real is last: its external values may follow the others
         layout = plan.layouts[kind]
         if layout.outputs or layout.inputs:
+            # Values that change type between exchanges are copied from the exchange of their
+            # source.
             external = np.array(list(layout.external.values()), dtype=dtype)
             type_changes = [
                 (row, exchanges[source_kind], source)
@@ -81,6 +83,7 @@ def make_components(
         If an FMU cannot be instantiated or does not take its start values.
     """
     instances = {}
+    # A component that feeds no other one needs no iteration at the start.
     feeding = {
         connection.source[0]
         for connection in plan.system.connections
@@ -92,6 +95,8 @@ def make_components(
         name = component.name
         multiple = plan.multiples[component.name]
         try:
+            # Model exchange must know which inputs a common solver carries: they cause no event at
+            # a step.
             slave = slaves.instance_of(component)
             if isinstance(slave, ModelExchange):
                 slave.followed = followed_inputs(inner, name)
@@ -106,6 +111,7 @@ def make_components(
         is_free = component.fmu.capability("canHandleVariableCommunicationStepSize")
         fixed_step = None if is_free or interface_type_of(component) == "ModelExchange" else step
         instances[name] = ComponentInstance(name, slave, multiple, fixed_step, name in feeding)
+        # Bind the arrays of all kinds to the FMU's calls once.
         for kind, exchange in exchanges.items():
             instances[name].prepare(kind, exchange, *plan.rows(kind, name))
     return instances
@@ -124,6 +130,7 @@ def make_string_connections(plan: Plan, components: Components) -> list[StringCo
             target.slave,
             plan.variable(connection.target),
         )
+        # Two steps of different length: pass on where both end, at the least common multiple.
         made.append(
             StringConnection(*ends, connection.mapping, lcm(source.multiple, target.multiple))
         )

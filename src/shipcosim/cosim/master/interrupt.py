@@ -13,6 +13,7 @@ def delayed_interrupt() -> Iterator[Callable[[], None]]:
     Raised at any moment it would end up in the Python code of an FMU, whose host reports it as an error of the FMU. A
     second Ctrl-C is not held back: for an FMU that never returns.
     """
+    # Ctrl-C is only noted here; the run asks for it where it can stop cleanly.
     noted = []
 
     def check():
@@ -23,6 +24,7 @@ def delayed_interrupt() -> Iterator[Callable[[], None]]:
         check()
         noted.append(number)
 
+    # Only the main thread can receive signals.
     if threading.current_thread() is not threading.main_thread():
         yield check
         return

@@ -7,7 +7,7 @@ ORDERS = ("jacobi", "gauss-seidel")
 
 
 def stepping_order(plan: Plan, order: str) -> list[str]:
-    """Names of the components in the order in which they step.
+    """Names of the components in stepping order.
 
     Jacobi has no order: the system's. Gauss-Seidel puts every component behind those that feed it; where these form a
     loop, the first of it in the system goes first.
@@ -16,7 +16,7 @@ def stepping_order(plan: Plan, order: str) -> list[str]:
 
 
 def sources_first(system: System) -> list[str]:
-    """Names of the components, each behind those that feed it as far as these form no loop."""
+    """Names of the components, each after those that feed it, as far as there is no loop."""
     names = list(system.components)
     feeds = {name: set() for name in names}
     for connection in system.connections:
@@ -24,6 +24,7 @@ def sources_first(system: System) -> list[str]:
         target = connection.target[0]
         if source and target and source != target:
             feeds[target].add(source)
+    # Topological order. In a loop no component is ready: then the first one in the system goes.
     ordered = []
     while names:
         ready = (name for name in names if feeds[name].issubset(ordered))

@@ -1,4 +1,4 @@
-"""The plan of a run, made before anything is instantiated: which values go where, in rows of a few arrays."""
+"""The plan of a run: which values go where, in rows of a few arrays."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
@@ -56,7 +56,7 @@ class Layout:
 
     @property
     def transferred_names(self) -> list[str]:
-        """Names of all that connections bring: the inputs and, behind them, the terms of those that are sums."""
+        """Names of all values that connections bring: the inputs, then the terms of their sums."""
         sums = [
             (label(end), len(c.terms)) for end, c in zip(self.inputs, self.connections, strict=True)
         ]
@@ -154,6 +154,7 @@ def make_plan(
     ShipcosimError
         If the master cannot run this: no interface type that it can run, steps that do not fit.
     """
+    # First the problems of all components and connections, reported together.
     base = scenario.step_size
     duration = scenario.stop_time - start_time
     problems = [
@@ -161,6 +162,7 @@ def make_plan(
     ]
     if problems := problems + list(_connection_problems(system)):
         raise ShipcosimError(problems)
+    # Variables that events change need a row of their own, even if nothing feeds them.
     ends = {system.split(signal) for event in scenario.events for _, signal, _ in event.changes}
     ends |= {system.split(signal) for signal in modified}
     multiples = {
@@ -173,9 +175,10 @@ def make_plan(
 
 
 def _sorted_connections(plan, from_table):
-    """Connections in arrays by the input that they feed; the others go into the plan's lists."""
+    """Sort connections by the input that they feed; parameters and strings go into lists."""
     by_input = {}
     for connection in plan.system.connections:
+        # An output of the system gets no value here, and a source without value feeds nothing.
         if connection.target[0] is None or not _has_values(connection.source, plan, from_table):
             continue
         plan.connected.add(connection.target)
@@ -189,6 +192,7 @@ def _sorted_connections(plan, from_table):
 
 
 def _kinds(system):
+    # One FMU with wide integers widens the integers of the whole system: an exchange has one type.
     types = {
         variable.type
         for component in system.components.values()
@@ -247,7 +251,7 @@ def _connection_problems(system):
 
 
 def _has_values(source, plan, from_table):
-    """Whether values come from a source: inputs of the system may have neither start value nor table nor event."""
+    """True if a source has values; inputs of the system may have no start value, table or event."""
     component, name = source
     if component is not None:
         return True
@@ -261,6 +265,7 @@ def _has_values(source, plan, from_table):
 
 def _lay_out(plan, by_input):
     """Give each value a row: outputs first, since inputs refer to their rows."""
+    # Any variable can be a source, for example a parameter that feeds another component.
     sources = {connection.source for connections in by_input.values() for connection in connections}
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
@@ -268,12 +273,15 @@ def _lay_out(plan, by_input):
             kind = plan.kind(variable)
             if kind is not None and (variable.causality == "output" or end in sources):
                 plan.layouts[kind].outputs.append(end)
+    # Inputs have a row if something feeds or changes them; others keep their start value in the
+    # FMU.
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end = component.name, variable.name
             if end in by_input or (end in plan.modified and variable.causality != "output"):
                 layout = plan.layouts[plan.kind(variable)]
                 layout.inputs.append(end)
+                # The first connection carries the others as terms of a sum.
                 first, *more = [
                     _input_connection(plan, layout, end, c) for c in by_input.get(end, [None])
                 ]
@@ -281,19 +289,23 @@ def _lay_out(plan, by_input):
 
 
 def _input_connection(plan, layout, end, connection):
-    """What feeds an input: a connection, or where there is none an external value of its own."""
+    """The connection of an input; without one, an external value of its own."""
+    # An input that only events change is fed by a constant: its start value.
     own = plan.multiples[end[0]]
     if connection is None:
         start = plan.system.components[end[0]].start_value(end[1])
         return InputConnection(_external_row(layout, end, start or 0), period=own)
+    # Values from outside come at every step of the component.
     how = connection.factor, connection.offset, connection.mapping
     component, name = connection.source
     if component is None:
         start = plan.system.inputs[name].start or 0
         return InputConnection(_external_row(layout, connection.source, start), *how, own)
+    # Two components with different steps exchange where both steps end.
     period = lcm(own, plan.multiples[component])
     kind = plan.kind_of(connection.source)
     row = plan.layouts[kind].outputs.index(connection.source)
+    # A source of another type comes as an external value that is copied from the other exchange.
     if plan.layouts[kind] is layout:
         return InputConnection(row, *how, period)
     external = _external_row(layout, connection.source, 0)
@@ -302,6 +314,6 @@ def _input_connection(plan, layout, end, connection):
 
 
 def _external_row(layout, end, start):
-    """Row of an external value among the sources; made if there is none of this name."""
+    """Row of an external value among the sources; made if it does not exist."""
     layout.external.setdefault(end, start)
     return len(layout.outputs) + list(layout.external).index(end)

@@ -1,4 +1,4 @@
-"""What a run keeps: rows of all outputs and external values, in arrays made before the first step."""
+"""Rows of all outputs and external values, in arrays made before the run."""
 
 from __future__ import annotations
 
@@ -66,10 +66,12 @@ class Recorder:
     ):
         self._exchange = exchange
         self._n_outputs = len(exchange.outputs)
+        # External values lie behind the outputs among the sources.
         self.external = np.array(external, dtype=int) + self._n_outputs
         self.inputs = np.array(inputs, dtype=int)
         self._first_input = self._n_outputs + len(self.external)
         shape = n_rows, self._first_input + len(self.inputs)
+        # Reserve all memory now: a run must not fail at its end.
         try:
             self.rows = np.empty(shape, dtype=exchange.sources.dtype)
         except MemoryError:
@@ -81,6 +83,7 @@ class Recorder:
 
     def record(self, row: int) -> None:
         """Keep the present values as a row."""
+        # Outputs with overrides, then the external values, then inputs that no output determines.
         values = self.rows[row]
         sources = self._exchange.modified_sources
         values[: self._n_outputs] = sources[: self._n_outputs]

@@ -1,4 +1,4 @@
-"""A run in the arrays and instances of another one, where start values alone differ."""
+"""Repeat a run in the same arrays and instances, where only start values differ."""
 
 from dataclasses import replace
 
@@ -10,27 +10,30 @@ Values = list[tuple[Variable, object]]
 
 
 def can_rewind(plan: Plan, components: Components) -> bool:
-    """Whether all components can go back to before their start: those of our shell, with values in arrays alone."""
+    """True if all components can return to before their start: ours, with numeric values only."""
     ours = all(component.slave.python_object is not None for component in components.values())
     return ours and not plan.string_connections and not plan.parameter_connections
 
 
 def changed_values(before: System, system: System) -> dict[str, Values] | None:
-    """Start values to be set by component, where two systems differ in numbers alone; None where they do not.
+    """Start values to set by component if two systems differ only in numbers; else None.
 
     Parameters
     ----------
     before, system : System
         Made from one system by `with_values`.
     """
+    # The same list object means the same wiring: `with_values` keeps it.
     if system.connections is not before.connections or list(system.components) != list(
         before.components
     ):
         return None
+    # An input with a start value has a row; one without has none. This must not change.
     inputs = (
         {name: signal.start is None for name, signal in one.inputs.items()}
         for one in (before, system)
     )
+    # The numbers that differ, by component.
     found = {
         name: _changed(before.components[name], component)
         for name, component in system.components.items()
@@ -41,6 +44,7 @@ def changed_values(before: System, system: System) -> dict[str, Values] | None:
 
 
 def _changed(before: Component, component: Component) -> Values | None:
+    # Another FMU, another step, or a value that is no longer set needs a new start.
     if (
         component.fmu is not before.fmu
         or component.step_size != before.step_size
@@ -48,6 +52,8 @@ def _changed(before: Component, component: Component) -> Values | None:
     ):
         return None
     variables = component.fmu.variables
+    # Compare by identity: equal objects are the same value, others are set again, which does no
+    # harm.
     unknown = object()
     pairs = (
         (name, value, before.start.get(name, unknown)) for name, value in component.start.items()
@@ -56,7 +62,7 @@ def _changed(before: Component, component: Component) -> Values | None:
 
 
 def with_numbers(plan: Plan, system: System) -> Plan:
-    """The plan of a system that differs from that of a plan in numbers alone."""
+    """The plan for a system that differs from the planned one only in numbers."""
 
     def start(end):
         component, name = end
@@ -68,6 +74,7 @@ def with_numbers(plan: Plan, system: System) -> Plan:
 
     layouts = {}
     for kind, layout in plan.layouts.items():
+        # Values copied from another exchange have no start value.
         following = {row for row, _, _ in layout.type_changes}
         external = {
             end: 0 if row in following else start(end) for row, end in enumerate(layout.external)

@@ -1,4 +1,4 @@
-"""Taking a snapshot of a running system, and continuing from one."""
+"""Take a snapshot of a running system, and continue from one."""
 
 from collections.abc import Mapping, Sequence
 
@@ -29,6 +29,7 @@ def check_storable(system: System) -> None:
     problems = []
     for component in system.components.values():
         fmu = component.fmu
+        # The solver of a model-exchange component lies outside the FMU; its state would be lost.
         if interface_type_of(component) == "ModelExchange":
             found = "it runs as model exchange, and the solver's state cannot be stored."
             problems.append(Problem(component.name, found, "Run the system without storing it."))
@@ -45,12 +46,14 @@ def check_storable(system: System) -> None:
 
 
 def check_fit(snapshot: Snapshot, system: System, scenario: Scenario) -> None:
-    """Raise ShipcosimError where a system or a scenario cannot go on from a snapshot."""
+    """Raise ShipcosimError if a system or scenario cannot continue from a snapshot."""
     where = f"snapshot at {snapshot.time:g} s"
     problems = []
+    # The step is counted in steps since the start, so its size must stay.
     if scenario.step_size != snapshot.step_size:
         found = f"it was stored in a run with steps of {snapshot.step_size:g} s, this one has {scenario.step_size:g} s."
         problems.append(Problem(where, found, "The step size cannot change on the way."))
+    # Other components, another FMU or other parameters make the states meaningless.
     if set(snapshot.fmus) != set(system.components):
         found = (
             f"it holds {', '.join(snapshot.fmus)}; the system has {', '.join(system.components)}."
@@ -120,10 +123,12 @@ def take_snapshot(
     outputs = {}
     inputs = {}
     modifiers = modifiers_after(scenario, plan, grid, active)
+    # Outputs, and inputs before overrides: connections with longer periods still hold old values.
     for kind, exchange in exchanges.items():
         layout = plan.layouts[kind]
         outputs |= zip(map(label, layout.outputs), exchange.outputs.tolist(), strict=True)
         inputs |= zip(layout.transferred_names, exchange.transferred.tolist(), strict=True)
+        # Overrides that act at the end must act again after the restart.
         modifiers |= {
             label(layout.outputs[row]): found
             for row, found in exchange.output_modifiers.active.items()
@@ -156,13 +161,14 @@ def restore_snapshot(
     string_connections: Sequence[StringConnection],
     components: Mapping[str, ComponentInstance],
 ) -> None:
-    """Bring the values and the FMUs of a system that has been initialised into the state that they had.
+    """Restore the values and FMUs of an initialised system.
 
     Raises
     ------
     Failure
         If an FMU does not take its state.
     """
+    # FMU states first, then the overrides, then the values in the arrays.
     for name, component in components.items():
         _stored(component, component.restore, snapshot.states[name])
     for name, modifier in snapshot.changes.items():
@@ -172,20 +178,23 @@ def restore_snapshot(
             modifiers.put(row, *modifier)
     for kind, exchange in exchanges.items():
         layout = plan.layouts[kind]
+        # Outputs first; the transfer then computes the inputs. Inputs that held an older value get
+        # it back after it.
         _fill(exchange.outputs, map(label, layout.outputs), snapshot.outputs)
         exchange.transfer(0)
         _fill(exchange.transferred, layout.transferred_names, snapshot.inputs)
+    # Strings are passed on again, since the FMU may have other values.
     for connection in string_connections:
         connection.last = None
 
 
 def _fill(values, names, known):
-    """Set values by name, where they are known."""
+    """Set values by name where they are known; others stay."""
     values[:] = [known.get(name, value) for name, value in zip(names, values, strict=True)]
 
 
 def _stored(component, call, *arguments):
-    """What a call to a component returns; what goes wrong is a failure of this component."""
+    """Call a method of a component; an error is a failure of this component."""
     try:
         return call(*arguments)
     except SlaveError as error:

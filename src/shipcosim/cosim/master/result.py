@@ -1,4 +1,4 @@
-"""The table of a run, and what has to be known to repeat it."""
+"""The table of a run, and the facts needed to repeat it."""
 
 import hashlib
 import json
@@ -25,6 +25,7 @@ def recorded_rows(plan: Plan, kind: str) -> tuple[list[int], list[int]]:
     They are the inputs of the system, and the components' inputs that no output determines.
     """
     layout = plan.layouts[kind]
+    # Connected inputs equal their source and would only repeat it.
     external = [i for i, end in enumerate(layout.external) if end[0] is None]
     inputs = [
         i
@@ -56,6 +57,7 @@ def columns_of(
     for kind, arrays in recorded.items():
         layout = plan.layouts[kind]
         external, inputs = recorded_rows(plan, kind)
+        # The same order as the recorder's: outputs, external values, inputs.
         names = list(layout.external)
         ends = [*layout.outputs, *(names[i] for i in external), *(layout.inputs[i] for i in inputs)]
         values |= zip(
@@ -69,6 +71,7 @@ def _connectors(plan, values):
     for name, signal in plan.system.inputs.items():
         if (None, name) in values:
             yield name, values[None, name], signal.unit or "", signal.description
+    # An output of the system shows its source, through mapping and transformation.
     for connection in plan.system.connections:
         if connection.target[0] is None and (source := values.get(connection.source)) is not None:
             signal = plan.system.outputs.get(connection.target[1])
@@ -92,12 +95,13 @@ def _passed_on(values, connection):
 
 
 def _variables(plan, values, n):
-    """Columns of the components' outputs and external values, in the order of the system and of the FMUs."""
+    """Columns of the components' outputs and external values, in the order of system and FMUs."""
     for component in plan.system.components.values():
         for variable in component.fmu.variables.values():
             end = (component.name, variable.name)
             kind = plan.kind(variable)
             column = values.get(end)
+            # An input that nothing feeds is constant: its start value.
             if (
                 column is None
                 and kind
@@ -111,7 +115,7 @@ def _variables(plan, values, n):
 
 
 def start_values(system: System) -> dict:
-    """Start values of all parameters and of what else the system sets, by signal."""
+    """Start values of all parameters, and of everything else that the system sets, by signal."""
     return {
         label((component.name, variable.name)): component.start_value(variable.name)
         for component in system.components.values()
@@ -121,14 +125,16 @@ def start_values(system: System) -> dict:
 
 
 def hashes(system: System) -> dict[str, str]:
-    """SHA-256 of each component's FMU."""
+    """SHA-256 of each component's FMU file."""
+    # Components may share a file, so each file is read once.
     paths = {component.fmu.path for component in system.components.values()}
     digests = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in paths}
     return {component.name: digests[component.fmu.path] for component in system.components.values()}
 
 
 def attributes_of(system: System, scenario: Scenario) -> dict:
-    """What has to be known to repeat a run, as texts and numbers."""
+    """Facts needed to repeat a run, as texts and numbers."""
+    # NetCDF attributes are texts and numbers, so structures are stored as JSON.
     starts = start_values(system)
     starts |= {
         name: signal.start for name, signal in system.inputs.items() if signal.start is not None
@@ -161,7 +167,7 @@ def attributes_of(system: System, scenario: Scenario) -> dict:
 
 
 def fingerprint(system: System) -> str:
-    """SHA-256 of how a system is wired: components, connections, connectors; start values are not part of it."""
+    """SHA-256 of a system's wiring: components, connections, connectors; without start values."""
     wiring = {
         "components": [
             (c.name, c.step_size, *_interface_asked_for(c)) for c in system.components.values()

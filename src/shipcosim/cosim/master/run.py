@@ -1,4 +1,4 @@
-"""Our own engine: plans a run, instantiates the FMUs, lets the master run them, and makes one table of their values."""
+"""Our own engine: plan a run, instantiate the FMUs, run the master, make one table."""
 
 from __future__ import annotations
 
@@ -66,17 +66,20 @@ class Interrupted(KeyboardInterrupt):
 
 def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Dataset:
     """Run a checked system with our own master. See `shipcosim.cosim.simulate`."""
+    # Check everything that can fail before any FMU is loaded.
     resume = opened(options.resume)
     store = writer(options.store)
     if resume is not None:
         check_fit(resume, system, scenario)
     if store is not None:
         check_storable(system)
+    # A continued run keeps the clock of the first one: steps count from its start.
     start_time, first = (resume.start_time, resume.step) if resume else (options.start_time, 0)
     simulation = Simulation(
         system, scenario, time_grid_of(scenario, start_time, first, options.until), options, resume
     )
     instances = IsolatedInstances(system, options.timeout) if options.isolate else Instances()
+    # Ctrl-C is held back until the master can stop.
     with delayed_interrupt() as check_interrupt, instances:
         simulation.run(instances, check_interrupt, options.progress)
         if store is not None:
@@ -130,6 +133,7 @@ class Simulation:
         self._order = order
         self._inputs = inputs
         self._resume = resume
+        # Values of the table at all steps, computed once before the run.
         self._fed = fed = input_values(inputs, system, grid.run_times) if inputs is not None else {}
         self._active = resume.changes if resume else {}
         self._plan = make_plan(system, scenario, fed, self._active, grid.start_time)
@@ -141,6 +145,7 @@ class Simulation:
         self._together: list[set[str]] = []
         self._remarks: list[str] = []
         self._master: Master | None = None
+        # All rows are reserved before the run.
         self._recorders = Recorders(
             {
                 kind: Recorder(exchange, len(grid.row_times), *recorded_rows(self._plan, kind))
@@ -173,11 +178,13 @@ class Simulation:
         exchanges = self._exchanges
         grid = self._grid
         try:
+            # A repeated run keeps its instances and connections.
             if self._master is None:
                 self._instantiate(slaves, check_interrupt)
             master = self._master
             assert master is not None
             master.initialise(grid.start_time, grid.stop_time)
+            # Continue from a snapshot: initialise as usual, then replace states and values.
             if self._resume is not None:
                 restore_snapshot(
                     self._resume, self._plan, exchanges, self._strings, self._components
@@ -185,6 +192,7 @@ class Simulation:
                 master.resume(grid.first)
             actions = event_actions(self._scenario, self._plan, exchanges, grid)
             master.run(grid, actions, self._external, self._recorders, progress)
+        # Failures keep the rows so far: they show what led to it.
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=False)) from failure
         except KeyboardInterrupt:
@@ -195,6 +203,7 @@ class Simulation:
         plan = self._plan
         exchanges = self._exchanges
         step_size = self._scenario.step_size
+        # A common solver needs all members in this process, stepped at the same time.
         apart = (
             ""
             if isinstance(slaves, Instances)
@@ -207,10 +216,12 @@ class Simulation:
         )
         inner = [] if apart else inner_connections(plan)
         self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
+        # Instances first, since the group's solver takes them over.
         self._components = make_components(
             plan, exchanges, slaves, step_size, check_interrupt, inner
         )
         couple(plan, self._components, stepping_order(plan, self._order), inner)
+        # For a repetition keep the state before the start; it is faster than a new instance.
         if self._repeated and can_rewind(plan, self._components):
             states = {
                 name: one.slave.python_object._get_fmu_state()
@@ -222,7 +233,7 @@ class Simulation:
         self._master = self._new_master(self._strings, check_interrupt)
 
     def rewind(self, system: System, scenario: Scenario) -> bool:
-        """Go back to before the start, for another run in the same arrays; whether that can be.
+        """Return to before the start for another run in the same arrays; true if possible.
 
         Parameters
         ----------
@@ -237,6 +248,7 @@ class Simulation:
         if (changed := changed_values(before, system)) is None:
             return False
         self._plan = with_numbers(self._plan, system)
+        # Arrays keep their places, since prepared calls and compiled code point to them.
         for kind, exchange in self._exchanges.items():
             exchange.reset(
                 np.array(
@@ -252,7 +264,8 @@ class Simulation:
         return True
 
     def snapshot(self) -> Snapshot:
-        """State of the whole system at the end of the time grid. Raises RunError if an FMU does not give its state."""
+        """State of the system at the end of the grid. Raises RunError if an FMU gives none."""
+        # Compiled components have their state in arrays; copy it to the objects first.
         if self._master is not None:
             self._master.give_back()
         try:
@@ -278,15 +291,16 @@ class Simulation:
         return self._grid.row_times[: self._recorders.n_rows]
 
     def columns(self, choose: Callable[[list[str]], Iterable[str]] = tuple) -> list[Column]:
-        """Columns of the table of the rows so far; `choose` says of all names which."""
+        """Columns of the rows so far; `choose` selects names from all names."""
         n = self._recorders.n_rows
         recorded = {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
         columns = columns_of(self._plan, n, recorded)
+        # Copy the chosen columns: the arrays are used again by the next run.
         chosen = frozenset(choose([name for name, *_ in columns]))
         return [(c[0], np.array(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
 
     def attributes(self, complete: bool) -> dict[str, object]:
-        """What is known about the run. `complete` is 1 or 0 among them, since NetCDF knows no truth values."""
+        """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
         known = attributes_of(self._plan.system, self._scenario)
         known |= {"start_time": self._grid.start_time, "engine": self._engine, "order": self._order}
         if self._inputs is not None:
@@ -302,7 +316,7 @@ class Simulation:
         return known | {"complete": int(complete), "remarks": json.dumps(self.remarks())}
 
     def remarks(self) -> list[str]:
-        """What does not stop the run and should be known, each once."""
+        """Remarks that do not stop the run, each once."""
         in_python = self._master.reasons if isinstance(self._master, CompiledMaster) else {}
         remarks = [
             *self._remarks,
@@ -318,7 +332,7 @@ class Simulation:
         return make_table(self.row_times, self.columns(), self.attributes(complete))
 
     def _external_over_time(self):
-        """External values of each exchange that change, and what they are at each step of the time grid."""
+        """Changing external values of each exchange, with their values at each step."""
         changing = []
         for kind, exchange in self._exchanges.items():
             values = external_values(

@@ -1,4 +1,4 @@
-"""Exchange of values of one type from outputs to inputs, as a few array operations for all components together."""
+"""Exchange of values of one type from outputs to inputs, by array operations for all components."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ class InputConnection:
         return (replace(self, added=()), *self.added) if self.added else ()
 
     def transferred(self, values: np.ndarray) -> np.ndarray:
-        """What arrives over time of a source: (n,) arrays with one value for each base step."""
+        """Values of a source as they arrive: (n,) arrays with one value per base step."""
+        # Between two transfers the input holds the last value passed on.
         values = values[np.arange(len(values)) // self.period * self.period]
         passed = (
             values
@@ -54,7 +55,7 @@ class InputConnection:
         return passed.astype(values.dtype)
 
     def input_values(self, columns: Sequence[np.ndarray]) -> np.ndarray:
-        """What arrives over time of all sources together: (n,) array, from one (n,) array for each source."""
+        """Values of all sources together as they arrive, (n,), from one (n,) array per source."""
         arrived = self.transferred(columns[self.source])
         for connection in self.added:
             arrived = arrived + connection.transferred(columns[connection.source])
@@ -104,6 +105,7 @@ class Modifiers:
             values[self._rows] = self._scale * values[self._rows] + self._shift
 
     def _update(self):
+        # The version tells the exchange that its inputs may differ although no source changed.
         self.version += 1
         self._rows = np.array(list(self._by_row), dtype=int)
         self._scale = np.array([scale for scale, _ in self._by_row.values()])
@@ -154,10 +156,13 @@ class Exchange:
         type_changes: Sequence[tuple[int, Exchange, int]] = (),
     ):
         dtype = external.dtype
+        # One array for outputs and external values: a connection needs one index, whatever its
+        # source.
         self.sources = np.concatenate([np.zeros(n_outputs, dtype=dtype), external])
         self.outputs = self.sources[:n_outputs]
         self.external = self.sources[n_outputs:]
         self.modified_sources = self.sources.copy()
+        # Sums have rows for their terms behind the inputs, so every connection brings one value.
         self.numbered = single, self._sums, n = _numbered(connections)
         self.transferred = np.zeros(n, dtype=dtype)
         self.inputs = np.zeros(len(connections), dtype=dtype)
@@ -165,15 +170,19 @@ class Exchange:
         self.output_modifiers = Modifiers()
         self.input_modifiers = Modifiers()
         self.version = 0
+        # Types other than Real are set in the FMU only when the version grows.
         self._counts_versions = dtype.kind != "f"
         self.type_changes = type_changes
+        # Connections with the same period are passed on together.
         periods = sorted({connection.period for _, connection in single})
         self._groups = [_ConnectionGroup(single, period, n) for period in periods]
+        # If nothing changed since the last transfer there is nothing to do; valid if all are due
+        # each step.
         self._may_rest = self._counts_versions and periods in ([], [1])
         self._passed_on = ()
 
     def reset(self, external: np.ndarray) -> None:
-        """Begin again from (m,) other start values of what comes from outside, in the same arrays."""
+        """Start again in the same arrays, from other external start values, (m,)."""
         for array in (self.outputs, self.transferred, self.inputs):
             array[:] = 0
         self.external[:] = external
@@ -188,15 +197,19 @@ class Exchange:
 
         Values of types other than Real change seldom: where none has since the last time, nothing is to be done.
         """
+        # Copies between types happen first: their sources are outputs of another exchange.
         for row, exchange, source in self.type_changes:
             self.external[row] = exchange.modified_sources[source]
         if self._may_rest and self._passed_on == self._state():
             return
+        # Overrides act on a copy: the component's own output stays known for a reset.
         self.modified_sources[:] = self.sources
         self.output_modifiers.apply(self.modified_sources)
+        # Pass on the connections that are due; the others hold their last value.
         for group in self._groups:
             if count % group.period == 0:
                 group.transfer(self.modified_sources, self.transferred)
+        # Sums come last, from the terms that were just passed on.
         for row, terms in self._sums:
             total = 0.0
             for term in self.transferred[terms].tolist():
@@ -207,12 +220,12 @@ class Exchange:
             self._passed_on = self._state()
 
     def _state(self):
-        """All that the inputs follow from, and what they were before overrides and biases."""
+        """Everything that the inputs follow from, to notice that nothing changed."""
         modifiers = self.output_modifiers.version, self.input_modifiers.version
         return self.sources.tobytes(), self.transferred.tobytes(), modifiers
 
     def refresh(self) -> None:
-        """Bring the inputs up to date after a change of overrides and biases."""
+        """Update the inputs after a change of overrides and biases."""
         before = self.inputs.tobytes() if self._counts_versions else b""
         self.inputs[:] = self._unmodified_inputs
         self.input_modifiers.apply(self.inputs)
@@ -221,7 +234,7 @@ class Exchange:
 
 
 def _numbered(connections):
-    """(row, connection) of all that bring one value, (row, slice of terms) of the sums, and the number of rows.
+    """Numbered single connections, sums with their terms' rows, and the number of rows.
 
     The terms of sums have rows of their own, behind those of the inputs.
     """
@@ -243,12 +256,14 @@ class _ConnectionGroup:
     """The connections of one period."""
 
     def __init__(self, single, period, n):
+        # Indices and factors as arrays: a transfer is then a few NumPy operations.
         rows = [row for row, connection in single if connection.period == period]
         due = [connection for _, connection in single if connection.period == period]
         self.period = period
         self.rows = np.array(rows, dtype=int)
         self.is_all = len(rows) == n
         self.sources = np.array([connection.source for connection in due], dtype=int)
+        # Only transformed rows are multiplied: others stay exact to the last bit.
         linear = [
             i
             for i, connection in enumerate(due)
@@ -264,7 +279,9 @@ class _ConnectionGroup:
         ]
 
     def transfer(self, sources, transferred):
+        # If the group covers all rows it writes straight into them.
         values = transferred if self.is_all else np.empty(len(self.rows), dtype=transferred.dtype)
+        # Order of SSP: mapping first, then the linear transformation.
         sources.take(self.sources, out=values, mode="clip")
         for i, mapping in self.mappings:
             value = values[i].item()

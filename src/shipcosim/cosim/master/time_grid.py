@@ -1,4 +1,4 @@
-"""The time grid of a run: its communication points, and which of them are rows of the table.
+"""The time grid of a run: communication points, and the rows of the table among them.
 
 Steps are counted in integers. Time is the quotient of two integers, k p / q for a step size of p / q seconds, so that
 it is the double nearest to the true time at every step, and an FMU is told to step by the difference of two times, so
@@ -23,7 +23,7 @@ class TimeGrid:
     start_time : float
         Of the scenario. [s]
     stop_time : float
-        Of the scenario; FMUs are told it, whether the run goes so far or not. [s]
+        Of the scenario; FMUs get it even if the run ends earlier. [s]
     first, last : int
         Step that is done first, step before which the run ends.
     times : (n + 1,) array
@@ -72,6 +72,7 @@ def time_grid_of(
     ShipcosimError
         If a time does not fall on a step, or nothing is left to do.
     """
+    # Times are compared in whole steps, so that rounding cannot move an end.
     step = scenario.step_size
     end = scenario.stop_time if until is None else until
     n, last = (whole_steps(time - start_time, step) for time in (scenario.stop_time, end))
@@ -81,11 +82,13 @@ def time_grid_of(
     problems = [
         Problem(name, *_off_step(t, start_time, step)) for name, (t, k) in ends.items() if k is None
     ]
+    # The run must end after its first step, and not after the scenario.
     if n is not None and last is not None and not first < last <= n:
         begin = start_time + first * step
         found = f"the run would go from {begin:g} s to {end:g} s."
         remedy = f"Its end must lie after {begin:g} s and not after the stop time, {scenario.stop_time:g} s."
         problems.append(Problem(list(ends)[-1], found, remedy))
+    # An event between two steps could only act late: refuse it.
     for event in scenario.events:
         if whole_steps(event.time - start_time, step) is None:
             problems.append(Problem("event", *_off_step(event.time, start_time, step)))

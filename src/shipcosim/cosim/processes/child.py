@@ -1,4 +1,4 @@
-"""The process of one component: `serve` makes its slave and does what comes through a pipe until the pipe is closed.
+"""The process of one component: `serve` makes its slave and answers requests until the pipe closes.
 
 What the FMU prints must not get into the pipes, and comes out at once, so that it is not lost where the FMU crashes.
 """
@@ -22,6 +22,7 @@ DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does no
 
 
 def send(pipe: BinaryIO, message: object) -> None:
+    # Length and content: a pipe has no boundaries between messages.
     """Write a message into a pipe."""
     data = pickle.dumps(message, protocol=5)
     pipe.write(len(data).to_bytes(8, "little") + data)
@@ -38,13 +39,15 @@ def receive(pipe: BinaryIO) -> Any:
 
 
 def serve() -> None:
-    """Do what comes through stdin, answer through stdout: (whether it went well, what came of it, new log messages).
+    """Serve requests from stdin; answer on stdout (success, result, new log messages).
 
     The first answer, to no request, says that the process is there. What wants no answer and fails is the answer to
     the next request.
     """
+    # Ctrl-C goes to the whole terminal, but only the run may decide to stop.
     source, target, flush = _own_pipes()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # The kernel ends this process if the run dies.
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
     with Instances() as instances:
@@ -56,8 +59,10 @@ def serve() -> None:
                 wants_answer, function, *arguments = receive(source)
             except EOFError:
                 return
+            # After a failure skip all requests until the run has heard of it.
             if failure is None:
                 result, failure = _done(getattr(handler, function), arguments)
+            # Printed text goes out before the answer, so that it appears in order.
             if wants_answer:
                 flush()
                 send(
@@ -72,7 +77,7 @@ def serve() -> None:
 
 
 def _done(method, arguments):
-    """Result of a call, and why there is none."""
+    """Result and error of a call; one of them is None."""
     try:
         return method(*arguments), None
     except SlaveError as error:
@@ -82,7 +87,7 @@ def _done(method, arguments):
 
 
 class RequestHandler:
-    """What can be asked of the process; its methods answer the requests of `remote_slave.RemoteSlave`.
+    """Requests that the process answers; see `remote_slave.RemoteSlave`.
 
     Parameters
     ----------
@@ -107,7 +112,7 @@ class RequestHandler:
     def prepare(
         self, method: str, kind: str, variables: Sequence[Variable], buffer: np.ndarray | None
     ) -> int:
-        """Prepare a call that is made often, without a buffer a step; its number."""
+        """Prepare a frequent call once; return its number."""
         arguments = () if buffer is None else (kind, variables, buffer)
         self._prepared.append((getattr(self._slave, method)(*arguments), buffer))
         return len(self._prepared) - 1
@@ -126,7 +131,8 @@ class RequestHandler:
     def step(
         self, number: int, time: float, step_size: float, getters: Sequence[int]
     ) -> list[tuple[int, bytes]]:
-        """Make a prepared step, then get what will be asked for next: what `get` gives for each."""
+        """Make a prepared step, then get the values that will be asked for next."""
+        # The answer to the step brings the outputs along: one message per step instead of several.
         self._slave.check("DoStep", self._prepared[number][0](time, step_size))
         return [self.get(getter) for getter in getters]
 
@@ -139,7 +145,9 @@ class RequestHandler:
 
 
 def _own_pipes():
-    """The pipes to the run, which nobody else here gets hold of, and a function that brings out what was printed."""
+    """The pipes to the run, closed to all others here, and a function that flushes printed text."""
+    # Keep the pipes under new numbers. Print of the FMU then goes to stderr, not between the
+    # answers.
     source = os.fdopen(os.dup(0), "rb")
     target = os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -149,6 +157,7 @@ def _own_pipes():
         stream.reconfigure(line_buffering=True, errors="replace")
     if os.name != "posix":
         return source, target, sys.stdout.flush
+    # C code has its own buffer for stdout, which Python does not flush.
     library = ctypes.CDLL(None)
     stdout = ctypes.c_void_p.in_dll(library, "stdout" if sys.platform == "linux" else "__stdoutp")
 

@@ -1,4 +1,4 @@
-"""The process of a component, from the side of the run: started, asked, watched and ended."""
+"""The process of a component as the run sees it: start, requests, watchdog, end."""
 
 import os
 import pickle
@@ -48,6 +48,7 @@ class ComponentProcess:
         self._was_late = False
         self._deadline: float | None = None
         self._last: deque[str] = deque(maxlen=LAST_LINES)
+        # TMPDIR: files that the FMU leaves behind are removed with the folder after the run.
         self._process = subprocess.Popen(
             [sys.executable, "-c", START.format(path=sys.path)],
             env=os.environ | {"TMPDIR": folder, "TEMP": folder, "TMP": folder},
@@ -58,15 +59,16 @@ class ComponentProcess:
         )
         self._requests = cast(BinaryIO, self._process.stdin)
         self._answers = cast(BinaryIO, self._process.stdout)
+        # A thread reads the printed text at once; a full pipe would block the component.
         self._reader = Thread(target=self._print_output, daemon=True)
         self._reader.start()
 
     def wait_for_start(self) -> None:
-        """Wait until the process is there. Raises SlaveError if it does not come."""
+        """Wait until the process answers. Raises SlaveError if it does not."""
         self._within("its start", START_TIMEOUT, receive, self._answers)
 
     def request(self, what: str, function: str, *arguments: Any) -> Any:
-        """What the process answers to a request.
+        """Send a request and return the answer.
 
         Parameters
         ----------
@@ -80,13 +82,13 @@ class ComponentProcess:
         Raises
         ------
         SlaveError
-            If the FMU fails in it or in what it was told before, or no answer comes.
+            If the FMU fails in this or an earlier request, or no answer comes.
         """
         self.send_request(what, function, *arguments)
         return self.receive_answer()
 
     def send_request(self, what: str, function: str, *arguments: Any) -> None:
-        """Send a request; `receive_answer` has to be called next, and until then other processes can be asked too."""
+        """Send a request; `receive_answer` must follow. Other processes can work meanwhile."""
         self._requested = what
         self._within(what, self._timeout, send, self._requests, (True, function, *arguments))
 
@@ -101,15 +103,18 @@ class ComponentProcess:
         return result
 
     def notify(self, what: str, function: str, *arguments: Any) -> None:
-        """Have the process do something; whether it went well comes with the next answer."""
+        """Send a request without an answer; an error comes with the next answer."""
         self._within(what, self._timeout, send, self._requests, (False, function, *arguments))
 
     def _within(self, what, limit, action, *arguments: Any):
+        # The watchdog compares this deadline with the clock, and ends the process if it is late.
         self._deadline = monotonic() + limit
         try:
             return action(*arguments)
+        # A broken pipe means that the process has ended: find out why.
         except (OSError, EOFError, pickle.UnpicklingError):
             raise SlaveError(self._cause_of_end(what, limit)) from None
+        # After an interrupt the answer would belong to an old request: end the process.
         except BaseException:
             self._kill()
             raise
@@ -117,7 +122,7 @@ class ComponentProcess:
             self._deadline = None
 
     def kill_if_late(self) -> None:
-        """End the process if it has not answered for too long, and what it has started if it has ended itself."""
+        """End the process if its answer is late, and its children if it has ended."""
         deadline = self._deadline
         if deadline is None:
             return
@@ -133,7 +138,7 @@ class ComponentProcess:
             self._requests.close()
 
     def end(self, limit: float) -> None:
-        """Wait for the end of the process, until a time of the monotonic clock; then end it."""
+        """Wait for the end of the process until a monotonic time; then end it."""
         try:
             self._process.wait(max(0.0, limit - monotonic()))
         except subprocess.TimeoutExpired:
@@ -143,21 +148,24 @@ class ComponentProcess:
         self._answers.close()
 
     def _kill(self):
-        """End the process and all that it has started, which may hold the pipes open."""
+        """End the process and its children, which may hold the pipes open."""
         if os.name != "posix":
             self._process.kill()
             return
+        # The process leads a session of its own, so its group contains all that it started.
         with suppress(OSError):
             os.killpg(self._process.pid, signal.SIGKILL)
 
     def _cause_of_end(self, what, limit):
-        """What became of the process."""
+        """Describe how the process ended."""
+        # It may still be on its way to the end: give it time before the exit code is read.
         try:
             code = self._process.wait(EXIT_TIMEOUT)
         except subprocess.TimeoutExpired:
             self._kill()
             code = self._process.wait()
         self._reader.join(1.0)
+        # The last printed lines often name the cause.
         said = f" It printed last:\n{''.join(self._last).rstrip()}" if self._last else ""
         if self._was_late:
             return f"Its process gave no answer to {what} within {limit:g} s and was ended.{said}"
@@ -166,9 +174,10 @@ class ComponentProcess:
         return f"Its process ended itself in {what}, with exit code {code if code < 256 else hex(code)}.{said}"
 
     def _print_output(self):
-        """Pass on to stderr what the component prints, with its name."""
+        """Pass printed text on to stderr, with the component's name."""
         pipe = cast(BinaryIO, self._process.stderr)
         n = 0
+        # Limit the length of a line and their number: a component may print without end.
         while line := pipe.readline(MOST_BYTES):
             text = line.decode("utf-8", errors="replace").rstrip() + "\n"
             n = n + 1

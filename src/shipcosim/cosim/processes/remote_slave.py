@@ -1,4 +1,4 @@
-"""Components in processes of their own: one that crashes, hangs or prints takes nothing of the run with it.
+"""Components in their own processes: a crash or hang ends the component, not the run.
 
 The process of a component does what a `Slave` does here, on the same bytes, so results are the same to the last digit.
 """
@@ -50,10 +50,11 @@ class RemoteSlave(Slave):
     def setter(
         self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
     ) -> Callable[[], int]:
-        """Prepared call that sets variables of one kind from a buffer; what goes wrong is said by the next call."""
+        """Prepared call that sets variables of one kind; the next call reports errors."""
         what = f"Set{kind}"
         number = self._prepared("setter", kind, variables, buffer)
 
+        # No answer is awaited, so that all components can be sent their inputs at once.
         def set_all():
             self._finish()
             self._process.notify(what, "set", what, number, buffer.tobytes())
@@ -70,6 +71,7 @@ class RemoteSlave(Slave):
         self._getters.append(number)
 
         def get_all():
+            # Reading ends a step that is under way; its answer brought these values along.
             if self._is_stepping:
                 self._finish()
             status, data = self._fetched.pop(number, None) or self._request(what, "get", number)
@@ -79,13 +81,14 @@ class RemoteSlave(Slave):
         return get_all
 
     def stepper(self) -> Callable[[float, float], int]:
-        """Prepared call that advances from a time by a step size; what goes wrong is said by the next call.
+        """Prepared call that advances by a step; the next call reports errors.
 
-        What the getters get then comes with it.
+        The answer also brings the values of the getters.
         """
         number = self._prepared("stepper")
 
         def step(time, step_size):
+            # Only send: the other components step meanwhile in their processes.
             self._finish()
             self._process.send_request("DoStep", "step", number, time, step_size, self._getters)
             self._is_stepping = True
@@ -100,7 +103,7 @@ class RemoteSlave(Slave):
         self._call("call", function, *arguments)
 
     def check(self, function: str, status: int) -> None:
-        """Raise SlaveError if the status, or what was send_request off until now, says that something failed."""
+        """Raise SlaveError if the status or an earlier unanswered request failed."""
         self._call("check", function, status)
 
     def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
@@ -128,7 +131,7 @@ class RemoteSlave(Slave):
         self._call("restore", data)
 
     def terminate(self) -> None:
-        """End the simulation. That an FMU fails to is no matter any more."""
+        """End the simulation. A failure here no longer matters."""
         with suppress(SlaveError):
             self._call("terminate")
 
@@ -136,6 +139,7 @@ class RemoteSlave(Slave):
         return self._request(method, "call", method, *arguments)
 
     def _prepared(self, method, kind=None, variables=(), buffer=None):
+        # The process has a buffer of its own of the same size; values travel as bytes.
         blank = None if buffer is None else np.zeros_like(buffer)
         return self._request("the preparation", "prepare", method, kind, tuple(variables), blank)
 
@@ -144,7 +148,7 @@ class RemoteSlave(Slave):
         return self._process.request(*question)
 
     def _finish(self):
-        """See that a step has been done; what was got with the last one does not hold any longer."""
+        """Finish the step under way; values fetched with an earlier one are no longer valid."""
         self._fetched = {}
         if self._is_stepping:
             self._is_stepping = False
@@ -170,10 +174,12 @@ class IsolatedInstances:
         self._processes: dict[str, ComponentProcess] = {}
         self._over = Event()
         self._stack = ExitStack()
+        # If one process cannot start, the stack ends those already started.
         with self._stack:  # undoes all where a process cannot be started
             folder = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
             folder = self._stack.enter_context(folder)
             self._stack.callback(self._end)
+            # Start all processes first: they load Python in parallel.
             for name in self._names:
                 self._processes[name] = ComponentProcess(name, folder, self._timeout)
             self._watchdog = Thread(target=self._watch, daemon=True)
@@ -185,7 +191,7 @@ class IsolatedInstances:
         self._stack.close()
 
     def instance_of(self, component: Component) -> RemoteSlave:
-        """Instance of a component's FMU in which nothing has been set yet. Raises SlaveError if it cannot be made."""
+        """New instance of a component's FMU, nothing set. Raises SlaveError if it fails."""
         return RemoteSlave(component, self._processes[component.name])
 
     def _watch(self):
@@ -194,6 +200,7 @@ class IsolatedInstances:
                 process.kill_if_late()
 
     def _end(self):
+        # Tell all processes first, then wait: they end in parallel within one limit.
         self._over.set()
         for process in self._processes.values():
             process.close_input()

@@ -1,1 +1,1 @@
-"""Running instances of FMUs, whatever version and interface type of FMI. The only door to FMPy."""
+"""Instances of FMUs of all FMI versions and interface types. Only this package uses FMPy."""

@@ -1,4 +1,4 @@
-"""Components in model exchange that are wired together, integrated as one system of equations.
+"""Model-exchange components that are connected and integrated as one system of equations.
 
 One solver has the states of all of them. Whenever it asks for derivatives, what they put out is carried to the inputs
 that it feeds, so that nothing is held over a step of the master. Inputs from outside the group are held, as any others.
@@ -56,6 +56,7 @@ class CoupledModels:
         All connections between them.
     """
 
+    # The members' states lie in sequence in the solver's vector, a slice for each.
     def __init__(self, members: Mapping[str, ModelExchange], wires: Sequence[Wire]):
         self._members = dict(members)
         self._wires = list(wires)
@@ -64,10 +65,11 @@ class CoupledModels:
         self._ends = [self._prepared(name) for name in self._members]
         self._factor = np.array([wire.factor for wire in self._wires])
         self._offset = np.array([wire.offset for wire in self._wires])
+        # NaN differs from every value, so the first sweep sets all inputs.
         self._put_out, self._fed = np.zeros(len(self._wires)), np.full(len(self._wires), np.nan)
 
     def _prepared(self, name: str) -> tuple[ModelExchange, np.ndarray, tuple, np.ndarray, tuple]:
-        """A member with the rows of the wires from it and into it, and the calls that get and set them."""
+        """A member, its connections out and in, and the calls that get and set their values."""
         slave = self._members[name]
         sources = np.array(
             [i for i, wire in enumerate(self._wires) if wire.source[0] == name], dtype=int
@@ -96,6 +98,7 @@ class CoupledModels:
         def step(time, step_size):
             try:
                 self._integrate(time, time + step_size)
+            # Name all members: the solver cannot tell whose equations failed.
             except SolverError as error:
                 names = ", ".join(self._members)
                 raise SlaveError(f"{names}, integrated together: {error}") from None
@@ -112,10 +115,12 @@ class CoupledModels:
     def _start_solver(self) -> Cvode:
         from shipcosim.cosim.slaves.cvode import Cvode
 
+        # The slices follow the order of the members.
         first = 0
         for name, slave in self._members.items():
             self._slices[name] = slice(first, first + slave.n_states)
             first += slave.n_states
+        # The strictest member decides the tolerance of the common solver.
         tolerance = min(slave.tolerance for slave in self._members.values())
         self._solver = Cvode(first, self._derivatives, 0, lambda *_: 0, min(tolerance, TOLERANCE))
         self._n = first
@@ -124,17 +129,25 @@ class CoupledModels:
     def _integrate(self, time, end):
         """Integrate to a time, through time and step events of the members."""
         solver = self._solver or self._start_solver()
+        # Times closer than rounding are the same time.
         near = CLOSE * max(abs(end), end - time)
         n_events = 0
         now = time
+        # After the start or a changed input, members are in event mode: continue from their new
+        # states.
         if any(slave.mode == EVENT for slave in self._members.values()):
             self._enter_continuous_time(solver, now)
         while now < end - near:
+            # The solver must not step over the next time event of any member.
             stop = min(end, *(slave.next_event for slave in self._members.values()))
             if stop > now + near:
                 reached, _ = solver.step(stop)
+                # Snap to the stop time, so that times do not drift by rounding.
                 now = stop if abs(reached - stop) <= near else reached
+                # The solver's last evaluation may lie elsewhere; bring members to the point that
+                # was reached.
                 self._derivatives(now, solver.states.ctypes.data_as(POINTER(c_double)), None)
+            # Members with a step event or a time event due now.
             due = [
                 slave
                 for slave in self._members.values()
@@ -143,30 +156,37 @@ class CoupledModels:
             if due:
                 for slave in due:
                     slave.handle_event(now)
+                # An event may change states: all members go on together from the new ones.
                 self._enter_continuous_time(solver, now)
                 n_events += 1
+            # Too many events in one step: a model that switches back and forth (chattering).
             if n_events > MOST_EVENTS:
                 raise SlaveError(
                     f"Together they had more than {MOST_EVENTS} events until t = {now:.9g} s."
                 )
 
     def _enter_continuous_time(self, solver: Cvode, time: float) -> None:
-        """Continue in continuous time, from the states that the members now have."""
+        """Continue in continuous time, from the present states of the members."""
         nominals = np.ones(self._n)
         for name, slave in self._members.items():
             part = self._slices[name]
             slave.enter_continuous(time, solver.states[part], nominals[part])
+        # Inputs follow the outputs before the solver starts, or its first derivatives would be
+        # wrong.
         self._settle()
         solver.start(time, nominals)
 
     def _derivatives(self, time, states, derivatives):
-        """Derivatives of all states at a time; only sets time, states and inputs where no derivatives are wanted."""
+        """Derivatives of all states; without `derivatives` only set time, states and inputs."""
+        # Each member gets its slice of the state vector.
         every = np.ctypeslib.as_array(states, (self._n,)) if self._n else np.empty(0)
         for name, slave in self._members.items():
             slave.set_time_and_states(time, np.ascontiguousarray(every[self._slices[name]]))
+        # Then outputs are carried to inputs, so that no value is older than the states.
         self._settle()
         if derivatives is None or not self._n:
             return 0
+        # Collect dx/dt member by member.
         rates = np.ctypeslib.as_array(derivatives, (self._n,))
         for name, slave in self._members.items():
             own = np.zeros(slave.n_states)
@@ -176,13 +196,16 @@ class CoupledModels:
         return 0
 
     def _settle(self):
-        """Carry outputs to inputs until they agree: at once, or after as many sweeps as they follow each other."""
+        """Carry outputs to inputs until they agree."""
+        # Fixed-point iteration. A chain without direct feedthrough settles at once; an algebraic
+        # loop needs more sweeps.
         settled = np.zeros(len(self._wires), dtype=bool)
         for _ in range(MOST_SWEEPS):
             for slave, sources, (get, got), _targets, _set in self._ends:
                 if get is not None:
                     slave.checked("GetReal", get())
                     self._put_out[sources] = got
+            # Relative change below SAME is rounding.
             wanted = self._factor * self._put_out + self._offset
             settled = np.abs(wanted - self._fed) <= SAME * np.maximum(
                 np.abs(wanted), np.abs(self._fed)

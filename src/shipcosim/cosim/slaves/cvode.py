@@ -1,4 +1,4 @@
-"""CVode, the solver of SUNDIALS that FMPy brings, one internal step at a time and never beyond a given time.
+"""CVode, the solver of SUNDIALS that FMPy brings, one internal step at a time up to a given time.
 
 BDF of variable order with Newton's method, a dense Jacobian from finite differences, and roots found in every step.
 """
@@ -32,7 +32,7 @@ _free_matrix = freeing("SUNMatDestroy", SUNMatrix)
 
 
 class SolverError(Exception):
-    """CVode cannot go on; the text is what it says."""
+    """CVode cannot go on; the text is its message."""
 
 
 class Cvode:
@@ -53,7 +53,7 @@ class Cvode:
 
     Notes
     -----
-    What the functions raise ends the step and is raised by it; returning RECOVERABLE makes CVode try a smaller step.
+    An error of the functions ends the step and is raised by it; returning RECOVERABLE makes CVode try a smaller step.
     """
 
     def __init__(
@@ -68,16 +68,21 @@ class Cvode:
         self._memory = None
         self._context = Context(self._keep_message)
         context = self._context.arguments
+        # SUNDIALS has no empty vector: without states there is one constant dummy.
         self._x, self._absolute = (N_VNew_Serial(max(n, 1), *context) for _ in range(2))
+        # NumPy views of the solver's own memory: states are read and set without copies.
         self.states = np.ctypeslib.as_array(NV_DATA_S(self._x), (max(n, 1),))
         self._tolerances = np.ctypeslib.as_array(NV_DATA_S(self._absolute), (max(n, 1),))
         self.states[:], self._tolerances[:] = 0.0, 1.0
         self._matrix = SUNDenseMatrix(max(n, 1), max(n, 1), *context)
         self._solver = SUNLinSol_Dense(self._x, self._matrix, *context)
+        # Keep references to the callbacks: C holds only their addresses.
         self._rhs, self._root_function = (
             lib.CVRhsFn(self._evaluate),
             lib.CVRootFn(self._evaluate_roots),
         )
+        # BDF is implicit, for stiff ship and machinery models; the Jacobian is dense, by finite
+        # differences.
         self._memory = lib.CVodeCreate(BDF, *context)
         self._context.watch(self._memory)
         self._check(lib.CVodeInit(self._memory, self._rhs, 0.0, self._x))
@@ -88,14 +93,17 @@ class Cvode:
             self._check(lib.CVodeRootInit(self._memory, n_roots, self._root_function))
 
     def start(self, time: float, nominals: np.ndarray) -> None:
-        """Begin anew at a time, from the present `states`, with their nominal values, (n,) array."""
+        """Start again at a time from the present `states`; nominal values are an (n,) array."""
         if self._n:
+            # Absolute tolerance = relative tolerance times nominal value, as FMI recommends: states
+            # differ in size by many powers of ten.
             self._tolerances[:] = self._tolerance * np.abs(nominals)
             self._check(lib.CVodeSVtolerances(self._memory, self._tolerance, self._absolute))
+        # A restart also forgets the history of the multistep method, which an event invalidates.
         self._check(lib.CVodeReInit(self._memory, time, self._x))
 
     def step(self, stop: float) -> tuple[float, bool]:
-        """Make one internal step, at most to a time; time reached and whether a root function is zero there."""
+        """Make one internal step, at most to a time; return the time and if a root was found."""
         reached = c_double()
         self._error = None
         self._check(_set_stop_time(self._memory, stop))
@@ -116,6 +124,7 @@ class Cvode:
             self._context.close()
 
     def _evaluate(self, time, x, dx, _):
+        # The dummy state is constant: its derivative is zero.
         if self._n:
             return self._guarded(self._derivatives, time, NV_DATA_S(x), NV_DATA_S(dx))
         NV_DATA_S(dx)[0] = 0.0
@@ -125,6 +134,7 @@ class Cvode:
         return self._guarded(self._roots, time, NV_DATA_S(x), values)
 
     def _guarded(self, function, *arguments):
+        # An exception cannot pass through C: keep it and stop the solver; `_check` raises it.
         try:
             return function(*arguments) or 0
         except Exception as error:  # one that left a callback would be printed and forgotten

@@ -35,8 +35,10 @@ class Slave1(LibrarySlave):
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
+        # FMI 1.0 has Booleans of one byte, unlike our buffers: use a buffer of the FMU's own type.
         own, signs, call = self._prepared("Set", kind, variables)
 
+        # An alias with opposite sign (FMI 1.0) has the negated value of the base variable.
         def set_all():
             own[:] = buffer * signs
             return call()
@@ -82,7 +84,7 @@ class Slave1(LibrarySlave):
         self._is_lost = self._function(self._terminate)(self.component) == FATAL
 
     def _prepared(self, verb, kind, variables):
-        """Buffer of the FMU's own type, sign of each variable, and the call."""
+        """Buffer of the FMU's own type, sign of each variable, and the prepared call."""
         own = np.zeros(
             len(variables),
             dtype={"Real": np.float64, "Integer": np.int32, "Boolean": np.int8}[kind],
@@ -111,6 +113,7 @@ class Slave1(LibrarySlave):
         from fmpy.logging import addLoggerProxy
 
         callbacks = fmi1.fmi1CallbackFunctions()
+        # Keep the callbacks in the structure as long as the instance lives.
         callbacks.logger = fmi1.fmi1CallbackLoggerTYPE(
             lambda env, name, status, kind, text: self._log(status, text)
         )
@@ -160,6 +163,7 @@ class Model1(ModelExchange, Slave1):
     def _update_discrete_states(self):
         info = self._event_info()
         self.call("EventUpdate", FALSE, byref(info))
+        # Without a time event the next one is infinitely far.
         next_event = info.nextEventTime if info.upcomingTimeEvent != FALSE else inf
         return EventUpdate(
             info.iterationConverged == FALSE, info.terminateSimulation != FALSE, next_event

@@ -48,10 +48,12 @@ class Slave3(LibrarySlave):
         self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
     ) -> Callable[[], int]:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
+        # FMI 3.0 has a call for each type, so group the variables by type once.
         groups = list(self._type_groups("Set", variables, buffer.dtype))
 
         def set_all():
             for group in groups:
+                # Check the range before narrowing: a cast would wrap silently.
                 values = buffer[group.rows]
                 status = (
                     self.status_of_range(values, group.values.dtype, group.variables)
@@ -60,6 +62,8 @@ class Slave3(LibrarySlave):
                 )
                 if status is not None:
                     return status
+                # Setting an element sets the whole array: the other elements keep what was set
+                # last.
                 self._load_arrays(group)
                 group.values[group.positions] = values
                 for variable, first in group.arrays:
@@ -105,6 +109,8 @@ class Slave3(LibrarySlave):
         results = byref(event), byref(terminate), byref(early), byref(reached)
 
         def step(time, step_size):
+            # Event mode and early return are not used; if the FMU asks for either, the step is not
+            # done.
             status = do_step(self.component, time, step_size, True, *results)
             return DISCARD if status < FAILED and (terminate.value or early.value) else status
 
@@ -114,6 +120,7 @@ class Slave3(LibrarySlave):
         """Values of String variables, or of Binary ones."""
         layout = ArrayLayout(variables)
         texts = (c_char_p * layout.n)()
+        # Binary values are pointers and sizes; copy them, since the FMU owns the memory.
         if variables[0].kind == "Binary":
             sizes = (c_size_t * layout.n)()
             data = (c_void_p * layout.n)()
@@ -130,6 +137,7 @@ class Slave3(LibrarySlave):
         """Set String variables, or Binary ones."""
         layout = ArrayLayout(variables)
         is_binary = variables[0].kind == "Binary"
+        # All elements of the arrays as set last, with the new ones in place.
         whole: list[Any] = [
             value for variable in layout.variables for value in self._present_texts(variable)
         ]
@@ -138,6 +146,7 @@ class Slave3(LibrarySlave):
         for variable, first in zip(layout.variables, layout.offsets, strict=True):
             self._array_values[variable.value_reference] = whole[first : first + _size(variable)]
         if is_binary:
+            # Keep the buffers alive until the call is made; an empty value still needs an address.
             data = [
                 (c_ubyte * max(len(value), 1)).from_buffer_copy(value or b"\0") for value in whole
             ]
@@ -169,12 +178,14 @@ class Slave3(LibrarySlave):
         return self._array_values.get(variable.value_reference) or _start_values(variable, empty)
 
     def _type_groups(self, verb, variables, kind):
-        """For each of the FMU's types among the variables: their rows and the prepared call."""
+        """For each FMI type among the variables: their rows and the prepared call."""
         for name in dict.fromkeys(variable.type for variable in variables):
             rows = np.array([i for i, variable in enumerate(variables) if variable.type == name])
             of_type = [variables[row] for row in rows]
             function = self._function(f"{verb}{'Int64' if name == 'Enumeration' else name}")
             group = TypeGroup(self.component, function, of_type, rows, TYPES[name])
+            # A cast narrows on the way to the FMU (Set) or to the run (Get). Only then must values
+            # be checked.
             ways = (kind, group.values.dtype) if verb == "Set" else (group.values.dtype, kind)
             group.narrows = name != "Boolean" and not np.can_cast(*ways)
             yield group
@@ -200,7 +211,7 @@ class Slave3(LibrarySlave):
 
 
 class ArrayLayout:
-    """Where the values of variables lie in a call that takes whole arrays.
+    """Places of variables' values in a call that takes whole arrays.
 
     Parameters
     ----------
@@ -220,6 +231,7 @@ class ArrayLayout:
     """
 
     def __init__(self, variables: Sequence[Variable]):
+        # An element stands for its whole array, once for all its elements.
         wholes: dict[int, Any] = {
             variable.value_reference: variable.whole or variable for variable in variables
         }
@@ -227,6 +239,7 @@ class ArrayLayout:
         self.variables = list(wholes.values())
         self.n = sum(sizes)
         self.offsets = [sum(sizes[:i]) for i in range(len(sizes))]
+        # Place of each variable: begin of its array plus its own place in it.
         begin = dict(zip(wholes, self.offsets, strict=True))
         self.positions = [
             begin[variable.value_reference] + variable.place for variable in variables
@@ -293,7 +306,8 @@ def _size(variable):
 
 
 def _start_values(variable, empty):
-    """Start values of all elements of a variable, as the FMU gives them."""
+    """Start values of all elements of a variable, from the description."""
+    # One start value may stand for all elements.
     start = variable.start if isinstance(variable.start, tuple) else (variable.start,)
     start = start if len(start) == _size(variable) else start[:1] * _size(variable)
     return [empty if value is None else value for value in start]

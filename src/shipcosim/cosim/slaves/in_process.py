@@ -19,14 +19,18 @@ from shipcosim.ssp import Variable
 
 
 def python_object_of(folder: Path, name: str) -> Any:
-    """The object behind the instance made last of an unpacked FMU, or None where it has none of our shell's.
+    """The Python object behind the FMU instance made last; None if it is not of our shell.
 
     The module that an FMU of ours enters by has a name unique to its content, so it does not matter from which folder
     the process has loaded it first.
     """
+    # The entry module's name is unique to the content, so this finds the FMU's own copy of the
+    # shell.
     entry = (Path(folder) / "resources" / "slavemodule.txt").read_text(encoding="utf-8").strip()
     shell = sys.modules.get(f"{entry}_code.shipcosim.fmi.shell")
     reference = getattr(getattr(shell, "Fmi2Slave", None), "newest", None)
+    # The shell keeps a weak reference to its newest object. The name makes sure that it is this
+    # instance.
     made = reference() if reference is not None else None
     ours = made is not None and made.instance_name == name and hasattr(made, "advance")
     return made if ours else None
@@ -56,6 +60,7 @@ class DirectCalls:
         method = getattr(self.target, f"set_{kind.lower()}")
         references = _references(variables)
 
+        # The object gets plain Python numbers, as it does from the binary.
         def set_all():
             values = buffer.tolist()
             try:
@@ -72,6 +77,7 @@ class DirectCalls:
         self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
     ) -> Callable[[], int]:
         """See `Slave.getter`."""
+        # The shell binds names to references once; each call then only reads attributes.
         get_values = self.target.prepared_getter(kind, _references(variables))
         pack = _packer(buffer, "d" if kind == "Real" else "i")
 
@@ -105,8 +111,10 @@ class DirectCalls:
         def step(time, step_size):
             try:
                 advance(time, step_size)
+            # BaseException: code of an FMU must not end the run, not even by sys.exit.
             except BaseException as error:
                 return self._failed(target.failure(error))
+            # Messages are collected by the object; pass them on as the binary would.
             if target.messages:
                 for message in self.target.messages:
                     self._log(message.status, message.msg.replace("%%", "%"))

@@ -1,4 +1,4 @@
-"""The FMUs of a system, loaded once and used for any number of runs."""
+"""FMUs of a system, loaded once and used for many runs."""
 
 from contextlib import ExitStack
 from typing import Self
@@ -36,7 +36,7 @@ class Instances:
         self._stack.close()
 
     def instance_of(self, component: Component) -> LibrarySlave:
-        """Instance of a component's FMU in which nothing has been set yet.
+        """An instance of a component's FMU, with nothing set.
 
         From the second time on it is the same one, reset; an FMU that cannot be reset is instantiated anew.
 
@@ -47,6 +47,7 @@ class Instances:
         """
         name = component.name
         fmu = component.fmu
+        # A reset is faster than a new instance. If the FMU cannot reset, make a new one.
         if name in self._slaves:
             try:
                 self._slaves[name].reset()

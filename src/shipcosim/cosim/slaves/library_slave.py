@@ -1,4 +1,4 @@
-"""FMUs whose library this process loads through FMPy: what all versions of FMI share."""
+"""FMUs whose library this process loads through FMPy: the parts common to all FMI versions."""
 
 import os
 import re
@@ -48,8 +48,10 @@ class LibrarySlave(Slave):
         self._identifier = identifier
         self._messages: list[tuple[int, str]] = []
         self._is_lost = False
+        # Marks of the two kinds of FMU that need special care with messages and calls.
         self._is_python = (Path(folder) / "resources" / "slavemodule.txt").is_file()
         self._is_container = (Path(folder) / "resources" / "container.json").is_file()
+        # Loading may change the working directory; it is restored in any case.
         here = os.getcwd()
         try:
             self._fmu = self._load(
@@ -61,6 +63,8 @@ class LibrarySlave(Slave):
             )
             self._instantiate()
         except Exception as error:
+            # The FMU's own messages tell more than the error; a missing binary is the usual other
+            # cause.
             raise SlaveError(
                 self.last_messages() or f"{error} {_platform_hint(folder)}".strip()
             ) from error
@@ -82,6 +86,7 @@ class LibrarySlave(Slave):
     def check(self, function: str, status: int) -> None:
         """Raise SlaveError if the status says that the function failed."""
         if status >= FAILED:
+            # After a fatal error FMI allows no further call, not even to free the instance.
             self._is_lost = status == FATAL
             label = STATUS[status] if status < len(STATUS) else str(status)
             raise SlaveError(
@@ -89,7 +94,7 @@ class LibrarySlave(Slave):
             )
 
     def last_messages(self) -> str:
-        """What the FMU logged as errors, or else what it logged last."""
+        """The FMU's last errors, or its last messages if there are none."""
         errors = [text for status, text in self.messages if status >= ERROR]
         words = "\n".join(errors[-3:] or [text for _, text in self.messages[-3:]])
         return re.sub(
@@ -107,19 +112,20 @@ class LibrarySlave(Slave):
             self._fmu.freeInstance()
 
     def reset(self) -> None:
-        """Bring the instance back to where it was when it was made, also after the end of a run."""
+        """Return the instance to its state after instantiation, also after the end of a run."""
         self.call("Reset")
         self._messages.clear()
         self._find_python_object()
 
     def rewind(self, state: Any) -> None:
-        """Bring the instance, one of our own shell, into a state of its object from before the start.
+        """Return an instance of our shell to a state of its object from before the start.
 
         Unlike after `reset` the object is the same, so prepared calls stay. It keeps its dataclasses of parameters, and
         makes those anew at the start whose values have changed.
         """
         target = self.python_object
         values = vars(target)
+        # Parameter dataclasses are kept: the shell replaces only those whose values change.
         groups = {group.name: values[group.name] for group in target.groups if group.name in values}
         target._set_fmu_state(state)
         values.update(groups)
@@ -127,10 +133,11 @@ class LibrarySlave(Slave):
         self._messages.clear()
 
     def state(self) -> bytes:
-        """The whole state, which `restore` of any instance of this FMU takes, in another process too."""
+        """The FMU's whole state as bytes; `restore` of any instance takes it."""
         names = self._state_calls
         state = c_void_p()
         size = c_size_t()
+        # FMI: get a handle, ask for the size, serialise, free the handle.
         self.call(names["get"], byref(state))
         try:
             self.call(names["size"], state, byref(size))
@@ -161,7 +168,7 @@ class LibrarySlave(Slave):
         self.call("ExitInitializationMode")
 
     def terminate(self) -> None:
-        """End the simulation. That an FMU fails to is no matter any more."""
+        """End the simulation. A failure here no longer matters."""
         self._is_lost = self._function("Terminate")(self.component) == FATAL
 
     def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
@@ -176,10 +183,11 @@ class LibrarySlave(Slave):
         self.call("SetString", references(variables), len(variables), texts)
 
     def _long_setter(self, variables, buffer):
-        """Setter from a buffer of 64 bits for an FMU with Integers of 32."""
+        """Setter from a 64-bit buffer for an FMU with 32-bit integers."""
         own = np.zeros(len(variables), dtype=np.int32)
         set_all = self.setter("Integer", variables, own)
 
+        # Refuse values that do not fit: a cast would wrap silently.
         def set_narrowed():
             if (status := self.status_of_range(buffer, own.dtype, variables)) is not None:
                 return status
@@ -189,7 +197,7 @@ class LibrarySlave(Slave):
         return set_narrowed
 
     def _long_getter(self, variables, buffer):
-        """Getter into a buffer of 64 bits."""
+        """Getter into a 64-bit buffer."""
         own = np.zeros(len(variables), dtype=np.int32)
         get_all = self.getter("Integer", variables, own)
 
@@ -204,11 +212,12 @@ class LibrarySlave(Slave):
     def status_of_range(
         self, values: np.ndarray, kind: np.dtype, variables: Sequence[Variable]
     ) -> int | None:
-        """Status, logged with its reason, where a type cannot hold some values; None where it can hold all."""
+        """Status, logged with its reason, if a type cannot hold a value; None if it holds all."""
         limits = np.finfo(kind) if kind.kind == "f" else np.iinfo(kind)
         low = int(limits.min)
         high = int(limits.max)
         for variable, value in zip(variables, values.tolist(), strict=True):
+            # Infinity and NaN pass: a float type can hold them.
             if abs(value) != float("inf") and value == value and not low <= value <= high:
                 self._note(
                     ERROR,
@@ -218,7 +227,7 @@ class LibrarySlave(Slave):
         return None
 
     def _find_python_object(self):
-        """Prepare direct calls where the instance is a Python object of our own shell."""
+        """Prepare direct calls if the instance is a Python object of our own shell."""
         target = python_object_of(self._folder, self.name) if self._is_python else None
         self._direct = None if target is None else DirectCalls(target, self._note)
         self.python_object = target
@@ -227,7 +236,7 @@ class LibrarySlave(Slave):
         return cast(buffer, self._function(function).argtypes[position])
 
     def _function(self, name):
-        """Function of the FMU's library, by its name without prefix. FMPy has given it its types."""
+        """Function of the FMU's library by its name without prefix; FMPy has set its types."""
         try:
             return getattr(self._fmu.dll, self._symbol(name))
         except AttributeError:

@@ -1,7 +1,7 @@
-"""FMUs for model exchange behind the calls of a co-simulation slave: CVode integrates them, events are found in time.
+"""FMUs for model exchange behind the calls of a co-simulation slave; CVode integrates them.
 
 A step of the master is integrated in steps that CVode chooses. State events end such a step where an event indicator
-is zero, time events where the FMU has said; after every step the FMU may ask for an event of its own. Inputs are held
+is zero, time events where the FMU announced them; after every step the FMU may ask for an event of its own. Inputs are held
 over a step of the master. One that has changed is handed over in event mode, since it jumps.
 
 Reference: FMI 2.0.4 and FMI 3.0.1, section 3 of each.
@@ -41,7 +41,7 @@ CONTINUOUS = "continuous-time mode"
 
 
 class EventUpdate(NamedTuple):
-    """What an FMU says after an update of its discrete states.
+    """The FMU's answer to an update of its discrete states.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class EventUpdate(NamedTuple):
 
 
 class ModelExchange(LibrarySlave):
-    """What slaves of all versions of FMI share; comes before the version's own slave among the bases.
+    """Parts that model-exchange slaves of all FMI versions share; the first of their bases.
 
     Parameters
     ----------
@@ -95,18 +95,21 @@ class ModelExchange(LibrarySlave):
     def setter(
         self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
     ) -> Callable[[], int]:
-        """Prepared call that sets variables of one kind from a buffer where they have changed; returns the status."""
+        """Prepared call that sets variables of one kind where they changed; returns the status."""
         set_all = super().setter(kind, variables, buffer)
         last = None
         last_held = None
+        # Inputs that a common solver carries change continuously; only held inputs jump.
         held = np.array([(kind, variable.name) not in self.followed for variable in variables])
 
         def set_changed():
             nonlocal last, last_held
             values = buffer.tobytes()
             held_values = values if held.all() else buffer[held].tobytes()
+            # Unchanged inputs need no call. Changes of followed inputs alone need no event either.
             if values == last or (self._mode == CONTINUOUS and held_values == last_held):
                 return OK
+            # A jump of an input is an event: FMI allows discontinuities only in event mode.
             if self._mode == CONTINUOUS:
                 self._enter_event_mode()
             self._is_event_done = False
@@ -135,18 +138,21 @@ class ModelExchange(LibrarySlave):
         """Leave the initialisation mode and settle the discrete states."""
         from shipcosim.cosim.slaves.cvode import Cvode
 
+        # Number of states and indicators may depend on parameters, so ask now.
         self._leave_initialisation()
         self._n, self._n_indicators = self._sizes()
         if self._n > MOST_STATES:
             raise SlaveError(
                 f"It has {self._n} continuous states; at most {MOST_STATES} are integrated."
             )
+        # The FMU's default experiment may ask for its own tolerance.
         tolerance = self._description.experiment.get("tolerance", TOLERANCE)
         self._close_solver()
         self._solver = solver = Cvode(
             self._n, self._derivatives, self._n_indicators, self._indicators, tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
+        # Discrete states must settle before continuous time begins (FMI, event iteration).
         self._iterate_event()
 
     def reset(self) -> None:
@@ -204,7 +210,7 @@ class ModelExchange(LibrarySlave):
         self._set_time_and_states(time, states.ctypes.data_as(POINTER(c_double)))
 
     def derivatives_into(self, derivatives: np.ndarray) -> int:
-        """Get the derivatives into an (n_states,) array; status for the solver."""
+        """Get the derivatives into an (n_states,) array; return the solver's status."""
         if not self._n:
             return 0
         return self._status_for_solver(
@@ -212,22 +218,24 @@ class ModelExchange(LibrarySlave):
         )
 
     def completed_step(self) -> bool:
-        """Tell the FMU that a step of the solver is done; whether it asks for an event."""
+        """Tell the FMU that a solver step is done; true if it asks for an event."""
         return self._completed_step()
 
     def handle_event(self, time: float) -> None:
-        """Make the event that is due, and stay in event mode."""
+        """Handle the event that is due, and stay in event mode."""
         self._time = time
         self._enter_event_mode()
         self._iterate_event()
 
     def enter_continuous(self, time: float, states: np.ndarray, nominals: np.ndarray) -> None:
-        """Be in continuous time from a time on; states and nominal values are filled, (n_states,) arrays."""
+        """Enter continuous time at a time; fill states and nominal values, (n_states,) arrays."""
         self._time = time
+        # After a changed input the event iteration is still due.
         if self._mode == EVENT:
             if not self._is_event_done:
                 self._iterate_event()
             self._leave_event_mode()
+        # An event may have changed the states: read them back.
         if self._n:
             self.call("GetContinuousStates", states.ctypes.data_as(POINTER(c_double)), self._n)
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
@@ -242,12 +250,15 @@ class ModelExchange(LibrarySlave):
 
     def _integrate_to(self, time, end):
         """Integrate to a time, through all events on the way."""
+        # Times closer than rounding are the same time.
         near = CLOSE * max(abs(end), end - time)
         n_events = 0
+        # Inputs set since the last step have put the FMU into event mode.
         if self._mode == EVENT:
             self._time = time
             self._enter_continuous_time()
         while True:
+            # A time event may be due at once, also at the end of the step.
             if self._next_event > self._time + near:
                 if self._time >= end - near:
                     return
@@ -255,15 +266,20 @@ class ModelExchange(LibrarySlave):
                 stop = min(end, self._next_event)
                 assert self._solver is not None
                 reached, has_root = self._solver.step(stop)
+                # Snap to the stop time, so that the master's time and the FMU's are equal.
                 self._time = stop if abs(reached - stop) <= near else reached
+                # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
                 self._set_time_and_states(self._time, self._states)
+                # State event: an indicator crossed zero. Step event: the FMU asks for one.
                 solver_step = self._completed_step() or has_root
                 if not solver_step:
                     continue
+            # An event: iterate the discrete states, then restart the solver from the new states.
             self._enter_event_mode()
             self._iterate_event()
             self._enter_continuous_time()
             n_events += 1
+            # Too many events in one step: the model switches back and forth (chattering).
             if n_events > MOST_EVENTS:
                 raise SlaveError(
                     f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s."
@@ -283,7 +299,7 @@ class ModelExchange(LibrarySlave):
         )
 
     def _enter_continuous_time(self):
-        """Continue in continuous time, from the states and nominal values that the FMU now has."""
+        """Continue in continuous time, from the FMU's present states and nominal values."""
         if not self._is_event_done:
             self._iterate_event()
         self._leave_event_mode()
@@ -311,7 +327,7 @@ class ModelExchange(LibrarySlave):
         raise NotImplementedError
 
     def _completed_step(self) -> bool:
-        """Tell the FMU that a solver step is done; whether it asks for an event."""
+        """Tell the FMU that a solver step is done; true if it asks for an event."""
         raise NotImplementedError
 
     def _update_discrete_states(self) -> EventUpdate:
@@ -331,7 +347,7 @@ class ModelExchange(LibrarySlave):
             self.call("SetContinuousStates", states, self._n)
 
     def _status_for_solver(self, function, values, n):
-        """Status for the solver: where an FMU discards, a smaller step is tried."""
+        """Status for the solver: if the FMU discards, the solver tries a smaller step."""
         from shipcosim.cosim.slaves.cvode import RECOVERABLE
 
         status = self._function(function)(self.component, values, n)

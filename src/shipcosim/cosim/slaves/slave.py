@@ -1,4 +1,4 @@
-"""What the master needs of an FMU's instance, whatever its version of FMI and wherever it runs.
+"""The master's interface to an FMU instance of any FMI version, in any process.
 
 Exchanging values is prepared once: `setter` and `getter` bind value references and a NumPy buffer to the function of
 the FMU's library, and what they return is called in every step. Buffers hold Real as float64, Integer (and
@@ -23,7 +23,7 @@ FAILED = DISCARD
 
 
 class SlaveError(Exception):
-    """A call to an FMU failed. The text is what the FMU said about it."""
+    """A call to an FMU failed. The text is the FMU's message."""
 
 
 class Slave:
@@ -46,7 +46,7 @@ class Slave:
         raise NotImplementedError
 
     def remarks(self) -> list[str]:
-        """Warnings that the FMU logged, with its name before them."""
+        """Warnings that the FMU logged, with its name in front."""
         texts = [text for status, text in self.messages if status == WARNING]
         return [text if text.startswith(self.name) else f"{self.name}: {text}" for text in texts]
 
@@ -103,5 +103,5 @@ class Slave:
         raise NotImplementedError
 
     def terminate(self) -> None:
-        """End the simulation. That an FMU fails to is no matter any more."""
+        """End the simulation. A failure here no longer matters."""
         raise NotImplementedError

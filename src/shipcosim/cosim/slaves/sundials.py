@@ -1,4 +1,4 @@
-"""SUNDIALS as FMPy brings it: version 5 up to FMPy 0.3.28, then version 7, which wants a context in each call."""
+"""SUNDIALS as FMPy brings it: version 5 up to FMPy 0.3.28, then version 7 with contexts."""
 
 from collections.abc import Callable
 from ctypes import byref, c_int, c_void_p
@@ -13,7 +13,7 @@ except ImportError:
 
 
 class Context:
-    """What objects of one solver share, and where its messages go.
+    """The shared context of one solver's objects, and the receiver of its messages.
 
     Parameters
     ----------
@@ -29,10 +29,13 @@ class Context:
     def __init__(self, note: Callable[[bytes], None]):
         self.arguments: tuple[Any, ...] = ()
         types: Any = sundials_types
+        # Version 5 has no context; messages go to a handler of each CVode memory, see `watch`.
         if sundials_context is None:
             handler: Any = vars(cvode)["CVErrHandlerFn"]
             self._handler = handler(lambda code, module, function, message, data: note(message))
             return
+        # Version 7: all objects belong to a context, and errors go to its handlers. Only ours shall
+        # be there.
         context = types.SUNContext()
         sundials_context.SUNContext_Create(types.SUN_COMM_NULL, byref(context))
         self._handler = types.SUNErrHandlerFn(
@@ -43,12 +46,12 @@ class Context:
         self.arguments = (context,)
 
     def watch(self, memory: Any) -> None:
-        """Have the messages of a CVode memory noted."""
+        """Send the messages of a CVode memory to our handler."""
         if sundials_context is None:
             vars(cvode)["CVodeSetErrHandlerFn"](memory, self._handler, None)
 
     def close(self) -> None:
-        """Free the context, after all that was made in it."""
+        """Free the context, after everything that was made in it."""
         for context in self.arguments:
             core_library().SUNContext_Free(byref(context))
         self.arguments = ()

@@ -1,4 +1,4 @@
-"""FMUs unpacked for a run, and the imports that Python FMUs leave behind in this process.
+"""FMUs unpacked for a run, and the modules that Python FMUs import into this process.
 
 PythonFMU puts each FMU's resources on the one `sys.path` and imports from there. Without care a second FMU with a
 module of the same name runs the first one's code. FMUs of our own shell have names unique to their content and write
@@ -25,7 +25,7 @@ UNUSED = 30 * 86400.0
 
 
 class UnpackedFmus:
-    """Folders of FMUs. What is not in the cache leaves at the end of a ``with`` statement, and so do its modules."""
+    """Folders of unpacked FMUs. At the end, temporary ones and their modules are removed."""
 
     def __enter__(self) -> Self:
         self._temporary = tempfile.TemporaryDirectory(
@@ -36,13 +36,14 @@ class UnpackedFmus:
         return self
 
     def __exit__(self, *_):
+        # Another run may unpack to the same path: it must not find the modules of this one.
         for name in self._imported(self._root):
             del sys.modules[name]
         sys.path[:] = [entry for entry in sys.path if not entry.startswith(f"{self._root}{os.sep}")]
         self._temporary.cleanup()
 
     def folder(self, fmu: Path) -> Path:
-        """Folder of an FMU, unpacked at the first call, its modules ready to be imported before all others."""
+        """Folder of an FMU, unpacked at the first call; its modules come before all others."""
         if fmu not in self._folders:
             self._folders[fmu] = _in_cache(fmu) or self._unpacked(fmu)
         if self._root in self._folders[fmu].parents:
@@ -70,7 +71,7 @@ class UnpackedFmus:
 
 
 def _in_cache(fmu: Path) -> Path | None:
-    """Folder in the cache of an FMU of our shell; None for others', and where the cache cannot be written."""
+    """Cache folder of an FMU of our shell; None for others, or if the cache cannot be written."""
     try:
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()[:32]
         folder = (cache() / "unpacked" / digest).resolve()
@@ -95,6 +96,7 @@ def _in_cache(fmu: Path) -> Path | None:
             if not has_a_name_of_its_own:
                 return None
             _unpack_into_cache(fmu, folder)
+        # A fresh time stamp keeps the folder in the cache; unused ones are removed.
         os.utime(folder)
     except (OSError, ShipcosimError):
         return None
@@ -102,8 +104,9 @@ def _in_cache(fmu: Path) -> Path | None:
 
 
 def _unpack_into_cache(fmu: Path, folder: Path) -> None:
-    """Unpack beside the folder and rename: it is there whole or not at all, whoever unpacks at the same time."""
+    """Unpack to a temporary folder and rename: the cache never holds half an FMU."""
     folder.parent.mkdir(parents=True, exist_ok=True)
+    # Clean up here, where a new FMU comes in: the cache cannot grow without limit.
     for other in folder.parent.iterdir():
         if time.time() - other.stat().st_mtime > UNUSED:
             shutil.rmtree(other, ignore_errors=True)

@@ -1,6 +1,6 @@
-"""Which of two compasses is believed, and the heading that they give together.
+"""Vote on two compasses: which one is believed, and their common heading.
 
-Two compasses that disagree are told apart by the rate gyro: the one that turned otherwise than the gyro over the last
+If two compasses disagree, the rate gyro decides: the one that turned otherwise than the gyro over the last
 minute is at fault. Where no compass is believed the heading is the observer's, carried by the gyro.
 
 References
@@ -68,15 +68,15 @@ class CompassVote(NamedTuple):
     Parameters
     ----------
     headings : tuple of two Heading
-        Latest telegrams.
+        Latest messages.
     unchanged : tuple of two
         How long each has not changed. [s]
     memory : tuple of two
-        How much farther each turned than the gyro says, forgotten slowly. [rad]
+        Turn of each beyond the gyro's, forgotten slowly. [rad]
     apart : float or (...) array or tensor
         Low-pass filtered difference of the two. [rad]
     believed : tuple of two
-        1 unless it was found to be at fault, 0 from then on until it is believed again. [1]
+        0 from a fault until it is believed again, else 1. [1]
     agreed : tuple of two
         How long each has agreed with what is used. [s]
     used : tuple of two
@@ -99,12 +99,12 @@ class CompassVote(NamedTuple):
 
 
 def start(headings: tuple[Heading, Heading]) -> CompassVote:
-    """Vote at the start: the mean of what is valid.
+    """State of the vote at the start: the mean of the valid compasses.
 
     Parameters
     ----------
     headings : tuple of two Heading
-        First telegrams.
+        First messages.
 
     Returns
     -------
@@ -130,22 +130,22 @@ def step(
     *,
     parameters: CompassVotingParameters,
 ) -> CompassVote:
-    """Vote on new telegrams.
+    """Vote on new messages.
 
     Parameters
     ----------
     state : CompassVote
-        State after the telegrams before.
+        State after the messages before.
     headings : tuple of two Heading
-        Telegrams.
+        Messages.
     r : float or (...) array or tensor
         Yaw rate of the gyro. [rad/s]
     predicted : like r
-        Heading as the observer has it for the time of the telegrams, motion in waves included. [rad]
+        Heading as the observer has it for the time of the messages, motion in waves included. [rad]
     quiet : like r
         How long no other sensor has changed. [s]
     dt : float
-        Time since the last telegrams. [s]
+        Time since the last messages. [s]
     parameters : CompassVotingParameters
         Limits.
 
@@ -153,6 +153,15 @@ def step(
     -------
     CompassVote
         State of the vote; `psi` is the heading to use, the predicted one where no compass is believed.
+
+    Notes
+    -----
+    Each compass is compared with the gyro: what it turned more, summed with forgetting over
+    `compass_memory`. The difference of both is low-pass filtered, so that single wrong samples do
+    not count. A frozen compass gives exactly the same value. Without a trusted heading the
+    prediction gets worse by the gyro's drift, and its limit grows. A rejected compass is believed
+    again after it has agreed for some time, with the other one if that is used, else with the
+    prediction; while it is silent its state stays.
     """
     p = parameters
     (first, second) = headings
@@ -163,6 +172,7 @@ def step(
     off_two = wrap(second.psi - predicted)
     moved_one = wrap(first.psi - one.psi)
     moved_two = wrap(second.psi - two.psi)
+    # Compass turn minus gyro turn, with forgetting; a new one starts at its deviation.
     memory = (
         where(one.valid > 0.5, keep * state.memory[0] + moved_one - dt * r, off_one),
         where(two.valid > 0.5, keep * state.memory[1] + moved_two - dt * r, off_two),
@@ -202,14 +212,16 @@ def step(
 
 
 def _usable(heading, unchanged, others, limit):
-    """1 of a compass that is valid, and not frozen: unchanged while others change."""
+    """1 for a valid compass that is not frozen (unchanged while other sensors change)."""
     return where((unchanged >= limit) & (others < limit), 0.0, heading.valid)
 
 
 def _passed(state, usable, memory, disagree, p):
-    """1 of each compass that is believed still: of two that disagree, the one that turned with the gyro."""
+    """1 for each believed compass; of two that disagree, the one that turned with the gyro."""
     first = usable[0] * state.believed[0]
     second = usable[1] * state.believed[1]
+    # With two compasses a majority cannot decide. The gyro is the third opinion: the compass
+    # farther from it is out.
     apart = disagree & (first * second > 0.5)
     one = abs(memory[0])
     two = abs(memory[1])
@@ -220,14 +232,15 @@ def _passed(state, usable, memory, disagree, p):
 
 
 def _agreed(time, usable, other, between, alone):
-    """How long a compass has agreed with the other where that is used, else with the prediction."""
+    """How long a compass has agreed with the other, if that is used, else with the prediction."""
     return where(where(other > 0.5, between, alone) <= 0.0, usable * time, 0.0 * time)
 
 
 def _mean(headings, weights, otherwise):
-    """Mean of the headings with weight, or another heading where none has."""
+    """Mean of the headings with weight; another heading if none has weight."""
     (first, second) = headings
     (a, b) = weights
+    # The mean of two angles: half way along the shorter arc.
     half = 0.5 * wrap(second.psi - first.psi)
     only = where(a > 0.5, first.psi, where(b > 0.5, second.psi, otherwise))
     return where(a * b > 0.5, wrap(first.psi + half), only)

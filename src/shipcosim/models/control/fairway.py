@@ -1,4 +1,4 @@
-"""The way into a harbour: legs from the sea to a place off the berth, and how far along it a ship is."""
+"""The fairway into a harbour: legs from the sea to the berth, and a ship's progress along it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -63,7 +63,7 @@ class Progress(NamedTuple):
 def progress(
     x: float, y: float, u: float, leg: int, *, fairway: FairwayParameters, yaw_rate: float
 ) -> Progress:
-    """Where a ship is on the way; she goes over to the next leg as early as her turn needs.
+    """Progress of a ship on the fairway; she changes to the next leg as early as her turn needs.
 
     Parameters
     ----------
@@ -95,14 +95,18 @@ def progress(
     Progress(leg=0, to_go=100.0, beside=5.0, course=0.0)
     """
     points = fairway.points
+    # Follow the legs. The along-track distance left to the waypoint decides when the next one
+    # begins.
     while True:
         (x_0, y_0) = points[leg]
         (x_1, y_1) = points[leg + 1]
         course = atan2(y_1 - y_0, x_1 - x_0)
         left = (x_1 - x) * cos(course) + (y_1 - y) * sin(course)
+        # On the last leg there is no turn; else the leg ends where the turn must begin.
         if leg + 2 == len(points) or left > _early(points, leg, course, u, yaw_rate):
             break
         leg += 1
+    # Cross-track error in the axes of the leg, positive to starboard.
     beside = (y - y_0) * cos(course) - (x - x_0) * sin(course)
     # Length of the legs after this one. [m]
     rest = points[leg + 1 :]
@@ -114,5 +118,7 @@ def _early(points: Sequence, leg: int, course: float, u: float, yaw_rate: float)
     """Distance from the waypoint at which the turn begins. [m]"""
     (x_1, y_1) = points[leg + 1]
     (x_2, y_2) = points[leg + 2]
+    # A sharp turn is limited: tan(turn / 2) grows without bound towards 180 degrees.
     turn = min(abs(wrap(atan2(y_2 - y_1, x_2 - x_1) - course)), 0.6 * pi)
+    # Circle of radius R = u / r between the legs: it begins R tan(turn / 2) before the waypoint.
     return abs(u) * (tan(0.5 * turn) / yaw_rate + 8.0)  # 8 s until she turns

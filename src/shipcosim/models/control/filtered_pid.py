@@ -62,7 +62,7 @@ class FilteredPidState(NamedTuple):
 
 
 def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> FilteredPidState:
-    """State at the start: the filter at what is measured, nothing requested.
+    """State at the start: the filter at the measured position, nothing requested.
 
     Parameters
     ----------
@@ -149,16 +149,21 @@ def step(
     """
     p = parameters
     frequency = parameters.filter_frequency
+    # Filter the deviation from the new measurement, which is constant over the step: the solution
+    # is exact.
     x, x_dot = _filtered(state.x - measured[0], state.x_dot, frequency, h)
     y, y_dot = _filtered(state.y - measured[1], state.y_dot, frequency, h)
     psi, psi_dot = _filtered(wrap(state.psi - measured[2]), state.psi_dot, frequency, h)
+    # The heading is not wrapped: add the turn along the shorter arc.
     heading = state.psi - wrap(state.psi - measured[2]) + psi
     held = state._replace(
         x=measured[0] + x, y=measured[1] + y, psi=heading, x_dot=x_dot, y_dot=y_dot, psi_dot=psi_dot
     )
     surge, sway, yaw = errors(held, desired)
+    # Rate of the error, desired minus filtered, with the ship's axes held.
     u, v = to_body(heading, desired.x_dot - x_dot, desired.y_dot - y_dot)
     r = desired.r - psi_dot
+    # Rectangular rule; the step is short against the integral times.
     sums = state.surge + h * surge, state.sway + h * sway, state.yaw + h * yaw
     return held._replace(
         surge=sums[0],
@@ -172,7 +177,8 @@ def step(
 
 
 def _filtered(ahead, rate, frequency, h):
-    """Deviation of a filter from its constant input, and its rate, a step later."""
+    """Deviation of the filter from its constant input, and its rate, one step later."""
+    # Two equal poles: e(t) = (e0 + (e0' + ω e0) t) exp(-ω t).
     slope = rate + frequency * ahead
     left = exp(0.0 * ahead - frequency * h)
     return (ahead + slope * h) * left, (rate - frequency * slope * h) * left

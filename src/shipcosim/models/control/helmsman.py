@@ -1,4 +1,4 @@
-"""A helmsman who brings a ship with two azimuths at the stern and a tunnel at the bow to her berth, by hand.
+"""A helmsman who berths a ship by hand, with two azimuths at the stern and a tunnel at the bow.
 
 He follows the fairway, slows, stops off the berth, turns parallel to the quay and lets her go sideways to it. He looks
 every few seconds, thinks of the velocity that he wants and of the force that it takes, and moves the levers some time
@@ -30,7 +30,7 @@ _MANNER = "assumed, of one helmsman; drawn for each docking"
 
 @dataclass(frozen=True, kw_only=True)
 class ShipInHand:
-    """The ship as he has learned to handle her."""
+    """His model of the ship."""
 
     mass_surge: float = required("kg", "mass with added mass in surge", minimum=1.0)
     mass_sway: float = required("kg", "mass with added mass in sway", minimum=1.0)
@@ -49,7 +49,7 @@ class ShipInHand:
 
 @dataclass(frozen=True, kw_only=True)
 class MannerParameters:
-    """How he does it."""
+    """His manner of steering."""
 
     transit_speed: float = quantity(5.0, "m/s", "speed under way", _MANNER, minimum=0.5)
     closing_speed: float = quantity(1.2, "m/s", "speed off the berth", _MANNER, minimum=0.1)
@@ -123,7 +123,7 @@ NEUTRAL = Levers(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Mind(NamedTuple):
-    """What he has in mind.
+    """State of the helmsman.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ class Helmsman:
     fairway : FairwayParameters
         The way.
     manner : MannerParameters
-        How he does it.
+        His manner of steering.
     """
 
     ship: ShipInHand
@@ -190,7 +190,7 @@ class Helmsman:
 
 
 def begin(t: float) -> Mind:
-    """His mind at the start: under way, levers in the middle.
+    """State at the start: under way, levers neutral.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def begin(t: float) -> Mind:
 
 
 def follow(t: float, mind: Mind, seen: Seen, *, helmsman: Helmsman) -> Mind:
-    """His mind at time t: moves the levers where he meant to, and looks where it is time.
+    """State at time t: moves the levers when due, and looks when it is time.
 
     Parameters
     ----------
@@ -216,29 +216,34 @@ def follow(t: float, mind: Mind, seen: Seen, *, helmsman: Helmsman) -> Mind:
     mind : Mind
         Before.
     seen : Seen
-        What he sees now.
+        Measured motion and wind now.
     helmsman : Helmsman
-        Who he is.
+        His ship, fairway and manner.
 
     Returns
     -------
     Mind
         After.
     """
+    # The levers follow a reaction time after the look (intermittent control).
     if t >= mind.acts_at:
         mind = mind._replace(levers=mind.meant)
     return _look(t, mind, seen, helmsman) if t >= mind.looks_at - 1e-6 else mind
 
 
 def _look(t, mind, seen, who):
-    """Look, think, and mean to move the levers."""
+    """Look at the ship, decide on a velocity and a force, and plan the lever movement."""
     manner = who.manner
     ship = seen.ship
     way = progress(
         ship.x, ship.y, ship.u, mind.way.leg, fairway=who.fairway, yaw_rate=manner.yaw_rate
     )
     mind = mind._replace(way=way, stage=_stage(mind.stage, way, ship, who))
+    # Time since the last look, from which the trim is integrated. The first look integrates
+    # nothing.
     since = t - mind.looks_at + manner.look_interval if mind.looks else 0.0
+    # Random pauses between looks, and a slow random variation of the wanted speed. Both follow from
+    # the seed.
     mood = normals("helmsman", manner.seed, mind.looks, 1)[0]
     pause = manner.look_interval
     mood_of_now = normals("mood of the helmsman", manner.seed, int(t / manner.lurch_time), 1)[0]
@@ -252,7 +257,8 @@ def _look(t, mind, seen, who):
 
 
 def _off_berth(ship, fairway):
-    """Distance along the quay ahead of the berth, distance off the quay, heading less that at the berth. [m, m, rad]"""
+    """Distance ahead of berth and off quay, heading relative to the berth. [m, m, rad]"""
+    # Positions rotated into the axes of the berth, which is the origin.
     c = cos(fairway.berth_heading)
     s = sin(fairway.berth_heading)
     ahead = ship.x * c + ship.y * s
@@ -261,8 +267,10 @@ def _off_berth(ship, fairway):
 
 
 def _stage(stage, way, ship, who):
-    """The stage that she is in now."""
+    """The present stage of the docking."""
     ahead, off, turned = _off_berth(ship, who.fairway)
+    # Stages only go forward. Off the berth she must lie close, parallel and near the stand-off
+    # before she goes sideways.
     if stage == UNDER_WAY and way.to_go < who.manner.closing_distance:
         return CLOSING
     if (
@@ -272,80 +280,95 @@ def _stage(stage, way, ship, who):
         and abs(turned) < 0.14
     ):
         return SIDEWAYS
+    # Moored: at the berth, parallel, and almost at rest.
     lies = hypot(ahead, off) < 2.0 and abs(turned) < 0.08 and hypot(ship.u, ship.v) < 0.08
     return MOORED if stage == SIDEWAYS and lies else stage
 
 
 def _wanted(mind, ship, mood, who):
-    """Velocity forward and to starboard, and yaw rate, that he wants. [m/s, m/s, rad/s]"""
+    """Wanted velocity forward and to starboard, and wanted yaw rate. [m/s, m/s, rad/s]"""
     manner = who.manner
     if mind.stage == UNDER_WAY:
         u, v, heading = _under_way(mind.way, ship, mood, manner)
     else:
         u, v, heading = _near(mind.stage, ship, mood, who)
+    # The heading error is to vanish in `heading_time`, with at most the yaw rate of a normal turn.
     r = clip(wrap(heading - ship.psi) / manner.heading_time, -manner.yaw_rate, manner.yaw_rate)
     return u, v, r
 
 
 def _under_way(way, ship, mood, manner):
-    """Speed by the way left, heading so that she makes good the way; sway is let go. [m/s, m/s, rad]"""
+    """Speed by distance left, heading that keeps her on the leg; sway free. [m/s, m/s, rad]"""
+    # Constant deceleration: u² is linear in the distance, from transit speed to closing speed.
     left = clip((way.to_go - manner.closing_distance) / manner.slowing_distance, 0.0, 1.0)
     slow = manner.closing_speed
     fast = manner.transit_speed
     u = sqrt(slow * slow + left * (fast * fast - slow * slow))
+    # Line-of-sight steering: aim at a point ahead on the leg; the distance grows with speed. The
+    # drift angle is compensated.
     course = way.course - atan2(way.beside, 60.0 + 12.0 * ship.u)
     drift = atan2(ship.v, max(ship.u, 0.5))
     return u * (1.0 + (mood - 1.0) * (1.0 - left)), ship.v, course - clip(drift, -0.5, 0.5)
 
 
 def _near(stage, ship, mood, who):
-    """Velocity towards the place off the berth, then the berth itself, and the heading there. [m/s, m/s, rad]"""
+    """Velocity towards the place off the berth, then the berth; heading. [m/s, m/s, rad]"""
     manner = who.manner
     fairway = who.fairway
     ahead, off, turned = _off_berth(ship, fairway)
+    # First to the place at the stand-off distance, then sideways to the quay, more slowly.
     if stage == CLOSING:
         off = off - manner.stand_off
         most = manner.closing_speed
     else:
         most = manner.sideways_speed
     distance = hypot(ahead, off)
+    # Speed proportional to the distance near the place, limited far from it.
     speed = min(most * mood, distance / manner.place_time) / max(distance, 1e-3)
     along = -speed * ahead
     beside = speed * off * fairway.berth_side
+    # From the axes of the berth into those of the ship.
     c = cos(turned)
     s = sin(turned)
     return c * along + s * beside, c * beside - s * along, fairway.berth_heading
 
 
 def _force(mind, seen, wanted, since, who):
-    """Force that he thinks it takes, less what wind and current take; and the levers for it."""
+    """Force that he thinks is needed, with his trim for wind and current, and the levers for it."""
     hand = who.ship
     manner = who.manner
     ship = seen.ship
+    # Force for the wanted acceleration: F = m (wanted - present) / time, axis by axis.
     lacking = wanted[0] - ship.u, wanted[1] - ship.v, wanted[2] - ship.r
     times = manner.speed_time, manner.speed_time, manner.yaw_time
     masses = hand.mass_surge, hand.mass_sway, hand.mass_yaw
     push = [mass * lack / time for mass, lack, time in zip(masses, lacking, times, strict=True)]
+    # Trim: an integral of this force, limited, learns the mean load of wind and current.
     most = 0.3 * hand.ahead_max, 0.6 * hand.tunnel_max, 0.4 * hand.tunnel_max * hand.bow_x
     trim = tuple(
         clip(one + more * since / manner.trim_time, -limit, limit)
         for one, more, limit in zip(mind.trim, push, most, strict=True)
     )
+    # Resistance at the wanted speed, quadratic.
     X = push[0] + trim[0] + hand.resistance * wanted[0] * abs(wanted[0])
     if mind.stage == UNDER_WAY:
+        # Hysteresis: a short lack of thrust does not turn the azimuths' thrust astern.
         astern = X < (0.0 if mind.astern else -0.1 * hand.ahead_max)
         meant = _together(X, push[2] + trim[2], ship.u, astern, hand)
     else:
         astern = False
+        # Near the quay he meets part of the wind's side force before it moves the ship.
         side = manner.wind_feel * hand.side_wind * seen.wind_speed**2 * sin(seen.wind_from)
         meant = _apart(X, push[1] + trim[1] + side, push[2] + trim[2], who.fairway.berth_side, hand)
     return mind._replace(trim=trim, astern=astern, meant=_moved(mind.meant, meant, who))
 
 
 def _together(X, N, u, astern, hand):
-    """Both azimuths as one rudder; slow, the tunnel helps."""
+    """Both azimuths act as one rudder; at low speed the tunnel helps."""
+    # The tunnel helps at low speed, when the rudder effect is weak.
     helps = clip(2.2 - u, 0.0, 1.0)
     tunnel = clip(0.6 * helps * N / hand.bow_x, -hand.tunnel_max, hand.tunnel_max)
+    # Side force at the stern for the rest of the moment: N = x Y, with x negative at the stern.
     Y = (N - tunnel * hand.bow_x) / hand.stern_x
     limit = 0.6 + 0.6 * helps
     if astern:
@@ -359,20 +382,22 @@ def _together(X, N, u, astern, hand):
 
 
 def _apart(X, Y, N, side, hand):
-    """The azimuth at the quay pushes ahead or astern, the other one towards the quay or off it, as the tunnel does."""
+    """The azimuth at the quay pushes along, the other one across, together with the tunnel."""
     X = clip(X, -hand.astern_max, hand.ahead_max)
     N = N + side * hand.stern_y * X  # of the azimuth at the quay
+    # Two transverse forces, tunnel and azimuth, give Y and N: Y = T + A, N = x_b T + x_s A.
     tunnel = clip(
         (N - hand.stern_x * Y) / (hand.bow_x - hand.stern_x), -hand.tunnel_max, hand.tunnel_max
     )
     across = clip(side * (Y - tunnel), -hand.astern_max, hand.ahead_max)
+    # Which azimuth is at the quay depends on the side.
     if side > 0.0:
         return Levers(across, X, tunnel, 0.5 * pi, 0.0)
     return Levers(X, across, tunnel, 0.0, -0.5 * pi)
 
 
 def _moved(before, wanted, who):
-    """Levers moved in steps, those that are off by more than most of a step."""
+    """Levers moved in notches, only if they are off by most of a notch."""
     hand = who.ship
     step = who.manner.lever_step
     turn = who.manner.angle_step
@@ -386,7 +411,7 @@ def _moved(before, wanted, who):
 
 
 def _notch(before, wanted, scale, step):
-    """Thrust of a lever, whose place goes with the root of thrust as shaft speed does. [N]"""
+    """Thrust of a lever in notches; its position goes with the root of thrust. [N]"""
     then, now = (copysign(sqrt(abs(one) / scale), one) for one in (before, wanted))
     if abs(now - then) < 0.8 * step:
         return before
@@ -395,5 +420,5 @@ def _notch(before, wanted, scale, step):
 
 
 def _angle(before, wanted, step):
-    """Direction of a unit. [rad]"""
+    """Direction of a thruster in steps; small changes are not made. [rad]"""
     return before if abs(wrap(wanted - before)) < 0.8 * step else step * round(wanted / step)

@@ -30,7 +30,7 @@ _SMALL = 1e-5
 
 @dataclass(frozen=True, kw_only=True)
 class Delays:
-    """What delays the loop beside observer and law, all of it in whole samples of the controller but the lag."""
+    """Delays of the loop outside observer and law, in whole samples except the lag."""
 
     position: float = quantity(
         0.4, "s", "age of a position when the controller gets it", "docs/dp-loop.md", minimum=0.1
@@ -71,7 +71,7 @@ class Margins(NamedTuple):
 
 
 class OpenLoop(NamedTuple):
-    """The open loop as a periodic linear system, x[k+1] = A[k] x[k] + B d, load on the ship y = C x.
+    """The open loop as a periodic linear system, x[k+1] = A[k] x[k] + B d, thruster load y = C x.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def linear_loop(
     law : ControlParameters
         Of the control law.
     delays : Delays
-        What else delays the loop.
+        Further delays of the loop.
     wave_frequency : float
         Frequency that the wave filter has adapted to. [rad/s]
 
@@ -125,12 +125,15 @@ def linear_loop(
     OpenLoop
         The open loop.
     """
+    # Positions come every `period` samples; ages are whole samples, so delays are shift registers.
     h = parameters.sample_period
     period = round(parameters.position_period / parameters.sample_period)
     late = round(delays.heading / h)
     later = round(delays.position / h)
     queue = max(1, round(delays.command / h))
     plant, push = _ship(ship, h)
+    # State vector: ship (6), queue of past motions, observer and law, queue of commands, thruster
+    # lag (3).
     sizes = [6, 6 * later, _ESTIMATE + _CONTROL, 3 * queue, 3]
     ends = np.cumsum([0, *sizes])
     body, past, controller, commands, thrust = (
@@ -139,20 +142,28 @@ def linear_loop(
     n = ends[-1]
     keep = np.exp(-h / delays.thruster)
     transitions = []
+    # One transition per sample of the period; only the first one has a new position.
     for sample in range(period):
         own, measured = _controller(ship, parameters, law, wave_frequency, float(sample == 0))
+        # The ship and her past: the newest motion enters the queue, the others move on.
         a = np.zeros((n, n))
         a[body, body] = plant
         a[past, body] = np.eye(6 * later, 6)
         a[past, past] = np.eye(6 * later, k=-6)
+        # Observer and law get motions of the age at which messages arrive: positions and headings
+        # differ.
         a[controller, controller] = own
         for i, age in enumerate((later, later, late) * 2):
             a[controller, past.start + 6 * (age - 1) + i] = measured[:, i]
+        # Requested loads wait in the queue of commands, then pass the thrusters' lag of first
+        # order.
         a[commands, controller.stop - 3 : controller.stop] = np.eye(3 * queue, 3)
         a[commands, commands] = np.eye(3 * queue, k=-3)
         a[thrust, thrust] = keep * np.eye(3)
         a[thrust, commands.stop - 3 : commands.stop] = (1.0 - keep) * np.eye(3)
         transitions.append(a)
+    # Load on the ship enters at the ship; measured wave motion enters at the newest place of the
+    # queue.
     b = np.zeros((n, 3))
     w = np.zeros((n, 6))
     rows = np.eye(n)
@@ -178,9 +189,11 @@ def open_loop(loop: OpenLoop, axis: int, frequencies: np.ndarray) -> np.ndarray:
     (n,) complex array
         Load of the thrusters for a load on the ship, with opposite sign. [1]
     """
+    # Close the other two axes: the thrusters' load acts on the ship there.
     others = [i for i in range(3) if i != axis]
     closed = [a + loop.push[:, others] @ loop.thrust[others] for a in loop.transitions]
     push = loop.push[:, [axis]]
+    # L with the sign of negative feedback: the loop is stable far from L = -1.
     return -_responses(closed, push, loop.thrust[[axis]], frequencies, loop.sample)[:, 0, 0]
 
 
@@ -199,16 +212,20 @@ def margins(loop: OpenLoop, axis: int) -> Margins:
     Margins
         The margins; from frequencies that lie 2 % apart, those between them by interpolation.
     """
+    # Fine enough in the range of DP: 2 % from one frequency to the next.
     w = np.geomspace(3e-3, 2.0, 300)
     gain = open_loop(loop, axis, w)
     size = np.log(np.abs(gain))
     angle = np.unwrap(np.angle(gain))
+    # Crossover: log |L| changes sign. The frequency between is interpolated in the logarithm.
     crossed = np.flatnonzero(size[:-1] * size[1:] < 0.0)
     share = size[crossed] / (size[crossed] - size[crossed + 1])
     at = w[crossed] * (w[crossed + 1] / w[crossed]) ** share
+    # Phase margin: distance of the phase from -180 degrees at the crossovers.
     lag = np.mod(
         angle[crossed] + share * (angle[crossed + 1] - angle[crossed]) + np.pi, 2.0 * np.pi
     )
+    # Gain margin: real negative L above the last crossover, where the phase passes -180 degrees.
     turned = np.flatnonzero(
         (np.diff(np.sign(np.imag(gain))) != 0) & (np.real(gain)[:-1] < 0.0) & (w[:-1] > at[-1])
     )
@@ -218,6 +235,7 @@ def margins(loop: OpenLoop, axis: int) -> Margins:
         float(at[-1]),
         float(phase.min()),
         float(limit),
+        # Ms = max 1 / |1 + L|. The delay margin is phase margin over frequency.
         float(1.0 / np.abs(1.0 + gain).min()),
         float((lag / at).min()),
     )
@@ -244,11 +262,14 @@ def wave_suppression(
     (n,) array
         Ratio of the two responses; below 1 the waves are suppressed. [1]
     """
+    # Here all three axes are closed: the waves disturb the controlled ship.
     closed = [a + loop.push @ loop.thrust for a in loop.transitions]
     w0 = (law.surge_frequency, law.sway_frequency, law.yaw_frequency)[axis]
     w = np.asarray(frequencies)
+    # A sinusoidal motion has position and rate: x and j ω x.
     motion = loop.waves[:, [axis]] + 1j * w[:, None, None] * loop.waves[:, [axis + 3]]
     asked = _responses(closed, motion, loop.request, w, loop.sample)[:, :, 0]
+    # The same law without observer: |ω0² + 2 j ζ ω0 ω| is its gain from motion to acceleration.
     plain = np.abs(w0 * w0 + 2j * law.damping_ratio * w0 * w)
     return np.abs(loop.per_mass[axis] @ asked.T) / plain
 
@@ -266,6 +287,7 @@ def is_stable(loop: OpenLoop) -> bool:
     bool
         Whether all eigenvalues of the closed loop over one period lie within the unit circle. [1]
     """
+    # The product over one period (monodromy matrix): its eigenvalues are the Floquet multipliers.
     over = np.eye(len(loop.push))
     for a in loop.transitions:
         over = (a + loop.push @ loop.thrust) @ over
@@ -280,25 +302,30 @@ def _mass(ship):
 
 
 def _ship(ship, h):
-    """Transition of (x, y, psi, u, v, r) at heading 0 over a sample, and effect of a load that is held over it."""
+    """Transition of (x, y, psi, u, v, r) over a sample, heading 0, and effect of a held load."""
+    # M ν̇ + D ν = τ, with τ as a third, constant state: one matrix exponential gives both parts.
     mass = _mass(ship)
     drag = np.linalg.solve(mass, np.diag([ship.damping_surge, ship.damping_sway, ship.damping_yaw]))
     eye = np.eye(3)
     zero = np.zeros((3, 3))
     a = np.block([[zero, eye, zero], [zero, -drag, np.linalg.inv(mass)], [zero, zero, zero]]) * h
+    # Series of the exponential to third order; h is short against the ship's time constants.
     held = np.eye(9) + a + a @ a / 2.0 + a @ a @ a / 6.0
     return held[:6, :6], held[:6, 6:]
 
 
 def _controller(ship, parameters, law, wave_frequency, new):
-    """One sample of observer and law, linearised at rest: effect of their own state, and of the measurement."""
+    """One sample of observer and law, linearised at rest, by state and measurement."""
     design = observer.design(ship, parameters)
+    # Central differences: each variable up and down by a small amount, all at once as columns. The
+    # functions are those of the controller, so no second derivation can differ.
     scale = np.concatenate([np.full(_ESTIMATE, _SMALL), np.full(_CONTROL, 1.0), np.full(6, _SMALL)])
     scale[6:9] = 1.0
     x = np.concatenate([np.diag(scale), -np.diag(scale)], axis=1)
     own = _ESTIMATE + _CONTROL
     measured = x[_ESTIMATE + _CONTROL :]
     zero = np.zeros(x.shape[1])
+    # The frequency of the wave filter is held: it follows the sea slowly.
     pace = np.minimum(1.0, (zero + wave_frequency) / parameters.full_frequency)
     estimate = StateEstimate(*x[:_ESTIMATE])._replace(
         wave_frequency=zero + wave_frequency, wave_power=zero, pace=pace
@@ -318,22 +345,28 @@ def _controller(ship, parameters, law, wave_frequency, new):
     h = parameters.sample_period
     state = pid.step(state, estimate, desired, calm, h, ship=ship, parameters=law)
     found = np.array([*estimate[:_ESTIMATE], *state])
+    # Slope = (f(x + d) - f(x - d)) / 2 d.
     slopes = (found[:, : len(scale)] - found[:, len(scale) :]) / (2.0 * scale)
     return slopes[:, :own], slopes[:, own:]
 
 
 def _responses(transitions, push, shown, frequencies, h):
-    """Part with a frequency of what a periodic system shows when it is pushed with it; (frequencies, shown, pushed)."""
+    """Response of a periodic system at its excitation frequency; (frequencies, shown, pushed)."""
     n, m = push.shape[-2:]
     count = len(transitions)
+    # Excitation exp(j ω h k). In the periodic steady state x[k + period] = exp(j ω h period) x[k].
     step = np.exp(1j * h * np.asarray(frequencies))
     turns = step[:, None, None] ** np.arange(count + 1)[:, None, None, None]
     over = np.eye(n)
     forced = np.zeros((len(step), n, m), complex)
+    # Pass through one period: transition and forced response.
     for a, turn in zip(transitions, turns, strict=False):
         over = a @ over
         forced = a @ forced + push * turn
+    # Solve for the state at the start of the period.
     x = np.linalg.solve(turns[-1] * np.eye(n) - over, forced)
+    # Mean over the period of the output, demodulated: the component with the excitation's
+    # frequency.
     total = np.zeros((len(step), len(shown), m), complex)
     for a, turn in zip(transitions, turns, strict=False):
         total += shown @ x / turn

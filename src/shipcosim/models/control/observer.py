@@ -108,7 +108,7 @@ class ObserverParameters:
 
 
 class Measurement(NamedTuple):
-    """What the observer is given at a sample: the measured motion, and which parts of it are new and trusted.
+    """Input of the observer at a sample: measured motion, and which parts are new and trusted.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ class StateEstimate(NamedTuple):
 
 
 class ObserverConstants(NamedTuple):
-    """What the observer computes once from its parameters.
+    """Constants that the observer computes once from its parameters.
 
     Parameters
     ----------
@@ -209,9 +209,12 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
     of the disturbances go with its third and fifth power, as their units do. The expected motion in waves grows with
     the square of their period, as that of waves of one steepness.
     """
+    # Tables over the wave frequency, because the filter follows the sea.
     p = parameters
     frequencies = np.linspace(p.wave_frequency_min, p.wave_frequency_max, FREQUENCIES)
     pace = np.minimum(1.0, frequencies / p.full_frequency)
+    # Scaling with the pace p: motion with p⁻², disturbance with p³, bias drift with p⁵, as their
+    # units.
     horizontal = AxisNoise(
         p.position_period,
         p.position_delay,
@@ -230,6 +233,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
         p.rate_disturbance * pace**3,
         p.bias_drift_yaw * pace**5,
     )
+    # Inverse of the coupled sway-yaw block [M22 M26; M26 M66] in closed form.
     determinant = ship.mass_sway * ship.mass_yaw - ship.mass_sway_yaw * ship.mass_sway_yaw
     inverse = (
         1.0 / ship.mass_surge,
@@ -243,7 +247,7 @@ def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
 
 
 def at_rest(measured: Motion, *, parameters: ObserverParameters) -> StateEstimate:
-    """Estimate at the start: the ship as measured, standing still, no bias, no waves.
+    """Estimate at the start: measured position, no velocity, no bias, no waves.
 
     Parameters
     ----------
@@ -295,6 +299,7 @@ def step(
     StateEstimate
         Estimate at the end.
     """
+    # Kalman filter: gains at the present wave frequency, prediction over the sample, correction.
     filters = filter_at(estimate.wave_frequency, design.filters)
     acceleration = _acceleration(estimate, load, ship=ship, inverse_mass=design.inverse_mass)
     predicted = _predict(estimate, acceleration, dt=parameters.sample_period, wave=filters.wave)
@@ -307,6 +312,8 @@ def step(
         keep * corrected.sway_swing + parameters.sample_period * corrected.v_wave,
         keep * corrected.yaw_swing + parameters.sample_period * corrected.r_wave,
     )
+    # The frequency follows the corrected wave motion; the pace of observer and law follows the
+    # frequency.
     frequency, power, pace = _paced(*_wave_frequency(corrected, swings, parameters), parameters)
     surge, sway, yaw = swings
     return corrected._replace(
@@ -320,7 +327,7 @@ def step(
 
 
 def pace(wave_frequency: Arithmetic, full_frequency: float) -> Arithmetic:
-    """How quick observer and law are: in long waves they slow down with the sea.
+    """Pace of observer and law: below 1 in long waves, where they slow down with the sea.
 
     Parameters
     ----------
@@ -345,20 +352,24 @@ def _acceleration(e, load, *, ship, inverse_mass):
     """Acceleration of the low-frequency ship in body axes."""
     c = cos(e.psi)
     s = sin(e.psi)
+    # ν̇ = M⁻¹ (τ - D ν + Rᵀ b). The bias b is kept in north-east, since current and waves are.
     X = load[0] - ship.damping_surge * e.u + c * e.bias_north + s * e.bias_east
     Y = load[1] - ship.damping_sway * e.v - s * e.bias_north + c * e.bias_east
     N = load[2] - ship.damping_yaw * e.r + e.bias_N
     i11, i22, i26, i66 = inverse_mass
+    # r × velocity: the body axes turn, while position and bias stay north-east.
     return i11 * X + e.r * e.v, i22 * Y + i26 * N - e.r * e.u, i26 * Y + i66 * N
 
 
 def _predict(e, acceleration, *, dt, wave):
-    """Estimate after a sample without measurement: acceleration held, wave model integrated exactly."""
+    """Estimate after a sample without measurement: acceleration held, exact wave model."""
     c = cos(e.psi)
     s = sin(e.psi)
     u_dot, v_dot, r_dot = acceleration
+    # Displacement u t + a t² / 2 in body axes, turned into north-east.
     surge = dt * (e.u + 0.5 * dt * u_dot)
     sway = dt * (e.v + 0.5 * dt * v_dot)
+    # Wave model p'' + 2 ζ ω p' + ω² p = 0, the same for each axis.
     w11, w12, w21, w22 = wave
     return e._replace(
         x=e.x + c * surge - s * sway,
@@ -377,23 +388,27 @@ def _predict(e, acceleration, *, dt, wave):
 
 
 def _innovations(e, acceleration, measurement, parameters, filters):
-    """Measurement less the estimate of its time, which is the estimate now run backwards; 0 where nothing is new."""
+    """Measurement minus the estimate at its time, run backwards; 0 where nothing is new."""
     measured, position, heading = measurement
     u_dot, v_dot, r_dot = acceleration
     c = cos(e.psi)
     s = sin(e.psi)
+    # The measurement is old: run the estimate back by its age, s(t - d) = s - u d + a d² / 2.
     age = parameters.position_delay
     (b11, b12, b21, b22) = filters.horizontal_age
     dx = measured.x - e.x
     dy = measured.y - e.y
+    # The wave motion goes back with its own model, by the transition over -d.
     surge_wave = b11 * e.surge_wave + b12 * e.u_wave
     u_wave = b21 * e.surge_wave + b22 * e.u_wave
     sway_wave = b11 * e.sway_wave + b12 * e.v_wave
     v_wave = b21 * e.sway_wave + b22 * e.v_wave
+    # Innovations of position and velocity in body axes, where the gains apply at any heading.
     surge = c * dx + s * dy + age * (e.u - 0.5 * age * u_dot) - surge_wave
     sway = c * dy - s * dx + age * (e.v - 0.5 * age * v_dot) - sway_wave
     u = measured.u - e.u + age * u_dot - u_wave
     v = measured.v - e.v + age * v_dot - v_wave
+    # Heading and yaw rate have their own age.
     age = parameters.heading_delay
     (b11, b12, b21, b22) = filters.yaw_age
     yaw_wave = b11 * e.yaw_wave + b12 * e.r_wave
@@ -410,11 +425,15 @@ def _correct(e, innovations, *, ship, filters):
     s = sin(e.psi)
     g = filters.horizontal
     k = filters.yaw
+    # Each innovation corrects all five states of its axis: wave, wave rate, position, velocity,
+    # bias.
     move_surge = g.position_position * surge + g.position_velocity * du
     move_sway = g.position_position * sway + g.position_velocity * dv
     bias_u = g.bias_position * surge + g.bias_velocity * du
     bias_v = g.bias_position * sway + g.bias_velocity * dv
     bias_r = k.bias_position * yaw + k.bias_velocity * dr
+    # The gains give a bias acceleration; times the mass matrix it is a load, turned into
+    # north-east.
     X = ship.mass_surge * bias_u
     Y = ship.mass_sway * bias_v + ship.mass_sway_yaw * bias_r
     return e._replace(
@@ -437,7 +456,7 @@ def _correct(e, innovations, *, ship, filters):
 
 
 def _wave_frequency(e, swings, parameters):
-    """Wave frequency and power a sample later: towards the peak of the estimated wave motion's spectrum.
+    """Wave frequency and power one sample later: towards the peak of the estimated wave spectrum.
 
     The frequency is the root of the mean square of the swings' rates over that of the swings, somewhat above the peak.
     In calm water it returns to its default. Each axis counts by its motion over the assumed one; what is far above the
@@ -446,24 +465,29 @@ def _wave_frequency(e, swings, parameters):
     p = parameters
     w = e.wave_frequency
     surge, sway, turn = swings
+    # Rate of the swing: its integrator forgets, so d(swing)/dt = wave rate - forgetting × swing.
     du = e.u_wave - FORGETTING * surge
     dv = e.v_wave - FORGETTING * sway
     dr = e.r_wave - FORGETTING * turn
+    # Weight each axis by its assumed motion, so that metres and radians can be added.
     horizontal = 1.0 / p.wave_motion**2
     yaw = 1.0 / p.wave_yaw**2
     rate = horizontal * (du * du + dv * dv) + yaw * dr * dr
+    # For a sinusoid rate² = ω² motion². The difference of both drives ω up or down.
     expected = (w / p.wave_peak_ratio) ** 2 * (
         horizontal * (surge * surge + sway * sway) + yaw * turn * turn
     )
     share = p.sample_period / p.wave_time
     size = 0.5 * (rate + expected)
+    # Weight of an outlier: motion far above the mean of the last minutes hardly counts.
     level = e.wave_power + CALM
     excess = size / (OUTLIER * level)
     rise = 0.5 * w * (rate - expected) / (1.0 + excess**4) + (p.wave_frequency - w) * CALM
+    # In calm water the second term of `rise` dominates and returns ω to its default.
     frequency = clip(w + share * rise / level, p.wave_frequency_min, p.wave_frequency_max)
     return frequency, e.wave_power + share * (minimum(size, OUTLIER * level) - e.wave_power)
 
 
 def _paced(frequency, power, parameters):
-    """Wave frequency, power, and the pace of observer and law."""
+    """Wave frequency and power, with the pace of observer and law."""
     return frequency, power, pace(frequency, parameters.full_frequency)

@@ -109,7 +109,7 @@ def at_rest(wind_load: Load) -> ControlState:
 
 
 def known_load(state: ControlState, allocated: Load) -> Load:
-    """Load that the observer uses as known: allocated thrust and filtered wind load.
+    """Load known to the observer: allocated thrust and filtered wind load.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def step(
     ship: DpShip,
     parameters: ControlParameters,
 ) -> ControlState:
-    """State of the controller one sample later, with the load that it requests.
+    """State of the controller one sample later, with its requested load.
 
     Parameters
     ----------
@@ -180,16 +180,21 @@ def step(
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 15.3.
     """
     psi = estimate.psi
+    # Everything in body axes: desired velocity, and the loop's frequencies slowed with the sea.
     nu_d = (*to_body(psi, desired.x_dot, desired.y_dot), desired.r)
     p = parameters
     pace = estimate.pace
     frequencies = (pace * p.surge_frequency, pace * p.sway_frequency, pace * p.yaw_frequency)
+    # Feedback as an acceleration, independent of the ship's size.
     correction = _correction(estimate, desired, nu_d, frequencies, parameters=parameters)
     wind = _filtered(state, wind_load, h, parameters=parameters)
     u_dot, v_dot = to_body(psi, desired.x_ddot, desired.y_ddot)
+    # Feedforward of the desired acceleration; together times the mass matrix.
     X, Y, N = _load(
         u_dot + correction[0], v_dot + correction[1], desired.r_dot + correction[2], ship=ship
     )
+    # The estimated bias acts as integral action, and the measured wind is met before it moves the
+    # ship.
     b_X, b_Y = to_body(psi, estimate.bias_north, estimate.bias_east)
     share = parameters.wind_share
     wanted = (
@@ -225,13 +230,16 @@ def errors(
 
 
 def _correction(estimate, desired, nu_d, frequencies, *, parameters):
-    """Acceleration by proportional and derivative action, with limited errors of position and heading."""
+    """Proportional and derivative action as an acceleration, with limited errors."""
     p = parameters
     damping = 2.0 * parameters.damping_ratio
     in_surge, in_sway, in_yaw = frequencies
+    # Far from the setpoint the restoring force stays constant: it is limited in size, not in
+    # direction.
     surge, sway = to_body(estimate.psi, desired.x - estimate.x, desired.y - estimate.y)
     scale = p.position_error_max / maximum(hypot(surge, sway), p.position_error_max)
     yaw = clip(wrap(desired.psi - estimate.psi), -p.heading_error_max, p.heading_error_max)
+    # a = 2 ζ ω (ν_d - ν) + ω² e: a damped oscillator of frequency ω.
     return (
         in_surge * (damping * (nu_d[0] - estimate.u) + in_surge * scale * surge),
         in_sway * (damping * (nu_d[1] - estimate.v) + in_sway * scale * sway),
@@ -240,7 +248,7 @@ def _correction(estimate, desired, nu_d, frequencies, *, parameters):
 
 
 def _filtered(state, wind_load, h, *, parameters):
-    """Wind load behind its low-pass filter a sample later."""
+    """Filtered wind load one sample later."""
     keep = exp(-h / parameters.wind_filter_time)
     X, Y, N = wind_load
     return (
@@ -251,7 +259,7 @@ def _filtered(state, wind_load, h, *, parameters):
 
 
 def _smoothed(state, wanted, h, *, parameters):
-    """Requested load behind its low-pass filter a sample later."""
+    """Requested load after its low-pass filter, one sample later."""
     force = exp(-h / parameters.force_filter_time)
     moment = exp(-h / parameters.moment_filter_time)
     X, Y, N = wanted
@@ -263,7 +271,7 @@ def _smoothed(state, wanted, h, *, parameters):
 
 
 def _load(u_dot, v_dot, r_dot, *, ship):
-    """Load that gives the ship an acceleration."""
+    """Load for an acceleration, M ν̇."""
     return (
         ship.mass_surge * u_dot,
         ship.mass_sway * v_dot + ship.mass_sway_yaw * r_dot,

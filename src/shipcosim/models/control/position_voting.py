@@ -1,6 +1,6 @@
-"""Which of three position references are believed, and the position that they give together.
+"""Vote on three position references: which are believed, and their common position.
 
-At each telegram: a reference that does not change while others do is frozen. One far from the observer's prediction is
+At each message: a reference that does not change while others do is frozen. One far from the observer's prediction is
 out while another, which does not agree with it, is near. Pairs that are apart are noticed, and the one at fault is the
 one that is apart from most, of equals the one that moved otherwise than the measured velocity says. What the rest
 agrees on must lie near the prediction; the longer there was no trusted position, the farther from it. So a jump that
@@ -95,15 +95,15 @@ class PositionVote(NamedTuple):
     Parameters
     ----------
     fixes : tuple of three Fix
-        Latest telegrams.
+        Latest messages.
     unchanged : tuple of three
         How long each has not changed. [s]
     memory : tuple of six
-        North and east: how much farther each moved than measured velocity says, forgotten slowly. [m]
+        North and east: movement of each beyond the measured velocity, forgotten slowly. [m]
     apart : tuple of six
         North and east: low-pass filtered differences of the `PAIRS`. [m]
     believed : tuple of three
-        1 unless it was found to be at fault, 0 from then on until it is believed again. [1]
+        0 from a fault until it is believed again, else 1. [1]
     agreed : tuple of three
         How long each has agreed with what is used. [s]
     used : tuple of three
@@ -134,14 +134,14 @@ class PositionVote(NamedTuple):
 
 
 def start(t: float, fixes: tuple[Fix, Fix, Fix]) -> PositionVote:
-    """Vote at the start: the mean of what is valid.
+    """State of the vote at the start: the mean of the valid references.
 
     Parameters
     ----------
     t : float
         Time. [s]
     fixes : tuple of three Fix
-        First telegrams.
+        First messages.
 
     Returns
     -------
@@ -169,22 +169,22 @@ def step(
     *,
     parameters: PositionVotingParameters,
 ) -> PositionVote:
-    """Vote on new telegrams.
+    """Vote on new messages.
 
     Parameters
     ----------
     t : float
         Time. [s]
     state : PositionVote
-        State after the telegrams before, faded by `faded`.
+        State after the messages before, faded by `faded`.
     fixes : tuple of three Fix
-        Telegrams.
+        Messages.
     predicted : Motion
-        As the observer has it for the time of the telegrams, motion in waves included.
+        As the observer has it for the time of the messages, motion in waves included.
     quiet : float or (...) array or tensor
         How long no other sensor has changed. [s]
     dt : float
-        Time since the last telegrams. [s]
+        Time since the last messages. [s]
     parameters : PositionVotingParameters
         Limits.
 
@@ -195,19 +195,26 @@ def step(
     """
     p = parameters
     age = t - state.trusted_at
+    # Which references may be used at all: valid, not frozen, and believed so far.
     unchanged, usable = _usable(state, fixes, quiet, dt, p)
     candidates = tuple([a * b for a, b in zip(usable, state.believed, strict=True)])
     rates = _rates(fixes, candidates, predicted)
+    # Compare each reference with the observer, its movement with the velocity, and the pairs.
     innovations = [_innovation(state, fix, predicted) for fix in fixes]
     memory = _memory(state, fixes, innovations, rates, dt, p)
     off = [hypot(*both) for both in innovations]
     apart, disagree = _pairs(state, fixes, usable, dt, p)
+    # Without a trusted position the prediction error grows: d = a t² / 2 for an unmodelled
+    # acceleration a.
     limit = p.position_innovation_max + 0.5 * p.position_model_error * age * age
+    # Order: keep those near the prediction, then remove the worst of those that disagree.
     candidates = _near_if_any(candidates, disagree, [distance <= limit for distance in off])
     candidates = _without_worst(candidates, disagree, memory)
     mean = _mean(fixes, candidates)
+    # The common position must lie near the prediction too, or it is not trusted.
     off_north, off_east = _innovation(state, mean, predicted)
     near = where(hypot(off_north, off_east) <= limit, mean.valid, 0.0)
+    # After dead reckoning the position returns with a shift that fades: the estimate does not jump.
     back = near * where(age > p.position_timeout, 1.0, 0.0)
     north = state.north_shift - back * off_north
     east = state.east_shift - back * off_east
@@ -248,6 +255,7 @@ def faded(
     tuple of PositionVote and two like state.north_shift
         State, and what is to be added to the estimated position. [m, m]
     """
+    # First-order decay; the change of the shift moves the estimate.
     keep = exp(-dt / parameters.realignment_time)
     north = keep * state.north_shift
     east = keep * state.east_shift
@@ -256,13 +264,14 @@ def faded(
 
 
 def _usable(state, fixes, quiet, dt, p):
-    """How long each reference has not changed; 1 of those that are valid and not frozen."""
+    """Time without change of each reference; 1 for those that are valid and not frozen."""
     unchanged = tuple(
         [
             where((new.x == old.x) & (new.y == old.y), time + dt, 0.0 * time)
             for new, old, time in zip(fixes, state.fixes, state.unchanged, strict=True)
         ]
     )
+    # Frozen: no change, while some other sensor changes. If all rest, the ship may be at rest.
     usable = []
     for i, fix in enumerate(fixes):
         others = minimum(quiet, minimum(unchanged[i - 1], unchanged[i - 2]))
@@ -272,10 +281,11 @@ def _usable(state, fixes, quiet, dt, p):
 
 
 def _mean(fixes, weights):
-    """Weighted mean of telegrams; valid 1 where there is any weight."""
+    """Weighted mean of messages; valid 1 if there is any weight."""
     (first, second, third) = fixes
     (a, b, c) = weights
     total = a + b + c
+    # No weight at all gives zero, and valid 0, instead of a division by zero.
     share = 1.0 / maximum(total, 1.0)
     return Fix(
         (a * first.x + b * second.x + c * third.x) * share,
@@ -287,7 +297,7 @@ def _mean(fixes, weights):
 
 
 def _rates(fixes, candidates, predicted):
-    """Measured velocity over ground north and east; where nothing measures it, the predicted one."""
+    """Measured velocity over ground, north and east; the predicted one if nothing measures it."""
     mean = _mean(fixes, candidates)
     u = where(mean.valid > 0.5, mean.u, predicted.u)
     v = where(mean.valid > 0.5, mean.v, predicted.v)
@@ -295,16 +305,18 @@ def _rates(fixes, candidates, predicted):
 
 
 def _innovation(state, fix, predicted):
-    """A position less the predicted one, north and east, in the frame of the estimate."""
+    """A position minus the predicted one, north and east, in the frame of the estimate."""
     return fix.x + state.north_shift - predicted.x, fix.y + state.east_shift - predicted.y
 
 
 def _memory(state, fixes, innovations, rates, dt, p):
-    """How much farther each reference moved than measured velocity says; of one that comes new, its innovation."""
+    """Movement of each reference beyond the velocity; for a new one its innovation."""
     keep = exp(-dt / p.position_memory)
     found = []
+    # Displacement by the trapezoidal rule from the measured velocity.
     north = 0.5 * dt * (state.north_rate + rates[0])
     east = 0.5 * dt * (state.east_rate + rates[1])
+    # Movement of the reference minus that displacement, summed with forgetting.
     for i, (new, old, fresh) in enumerate(zip(fixes, state.fixes, innovations, strict=True)):
         known = old.valid > 0.5
         found.append(where(known, keep * state.memory[2 * i] + new.x - old.x - north, fresh[0]))
@@ -313,11 +325,13 @@ def _memory(state, fixes, innovations, rates, dt, p):
 
 
 def _pairs(state, fixes, usable, dt, p):
-    """Filtered differences of all pairs, limited so that a jump that ends is forgotten; 1 of those that are apart."""
+    """Filtered, limited differences of all pairs; 1 for those that are apart."""
     most = p.position_apart_max
     gain = 1.0 - exp(-dt / p.position_drift_filter)
     apart = []
     disagree = []
+    # Two tests per pair: the distance now (jumps), and the filtered distance (slow drift), with a
+    # smaller limit.
     for k, (i, j) in enumerate(PAIRS):
         both = usable[i] * usable[j]
         x = fixes[i].x - fixes[j].x
@@ -332,7 +346,7 @@ def _pairs(state, fixes, usable, dt, p):
 
 
 def _near_if_any(candidates, disagree, near):
-    """Candidates near the prediction, or that agree with one that is; all where none is.
+    """Candidates near the prediction, or in agreement with one that is; all if none is near.
 
     So two that jump together do not outvote a third.
     """
@@ -341,6 +355,8 @@ def _near_if_any(candidates, disagree, near):
     ]
     found = sum(near) > 0.5
     kept = []
+    # A candidate stays if it is near, or agrees with one that is near. If none is near, the
+    # prediction may be wrong: keep all.
     for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
         beside = maximum(near[one] * (1.0 - disagree[k]), near[two] * (1.0 - disagree[n]))
         kept.append(where(found, candidates[i] * maximum(near[i], beside), candidates[i]))
@@ -348,11 +364,14 @@ def _near_if_any(candidates, disagree, near):
 
 
 def _without_worst(candidates, disagree, memory):
-    """Candidates without the one that is apart from most others, of equals the one that moved on its own most."""
+    """Candidates without the one apart from most others; of equals, the one that moved most."""
     a, b, c = candidates
+    # Pairs of candidates that disagree.
     first = a * b * disagree[0]
     second = a * c * disagree[1]
     third = b * c * disagree[2]
+    # A reference apart from both others is the worst. For a single pair the movement against the
+    # velocity decides.
     counts = first + second, first + third, second + third
     scores = [n * (_COUNTS_MORE + hypot(*memory[2 * i : 2 * i + 2])) for i, n in enumerate(counts)]
     worst = maximum(scores[0], maximum(scores[1], scores[2]))
@@ -364,10 +383,11 @@ def _without_worst(candidates, disagree, memory):
 
 
 def _agreed(state, usable, used, disagree, too_far, dt):
-    """How long each reference has agreed with all that are used, or where none is with the prediction."""
+    """How long each reference has agreed with the used ones, else with the prediction."""
     found = []
     alone = sum(used) < 0.5
     for i, ((k, one), (n, two)) in enumerate(_PAIRS_OF):
+        # Against any used reference means no agreement; the time then starts anew.
         against = disagree[k] * used[one] + disagree[n] * used[two]
         off = where(alone, too_far[i], against - 0.5)
         found.append(where(off <= 0.0, usable[i], 0.0) * (state.agreed[i] + dt))
@@ -375,8 +395,9 @@ def _agreed(state, usable, used, disagree, too_far, dt):
 
 
 def _believed(state, fixes, candidates, agreed, p):
-    """Who is believed: of those that speak who passed, or has agreed for long enough."""
+    """Belief in each reference: it passed the tests, or has agreed for long enough."""
     found = []
+    # A silent reference keeps its state until it speaks again.
     for fix, was, passed, time in zip(fixes, state.believed, candidates, agreed, strict=True):
         found.append(
             maximum(

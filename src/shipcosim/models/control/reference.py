@@ -64,7 +64,7 @@ class ReferenceState(NamedTuple):
 
 
 def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> ReferenceState:
-    """Reference that stands still at a position and heading.
+    """Reference at rest at a position and heading.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> ReferenceState:
 
 
 def resumed(motion: Sequence[Arithmetic], *, parameters: ReferenceParameters) -> ReferenceState:
-    """State of a reference of which only the motion is known, as it is passed on to a controller.
+    """State of a reference of which only the motion is known, as a controller passes it on.
 
     Parameters
     ----------
@@ -152,14 +152,17 @@ def step(
     ----------
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, section 12.1.
     """
+    # Move the setpoint at no more than the speed limit; headings go the shorter way.
     x_set, y_set, psi_set = setpoint
     dx = x_set - state.x_in
     dy = y_set - state.y_in
     dpsi = wrap(psi_set - state.psi_in)
+    # North and east are limited together, so that the path to the setpoint is straight.
     part = _share(hypot(dx, dy), h * parameters.speed_max)
     x_in = state.x_in + part * dx
     y_in = state.y_in + part * dy
     psi_in = state.psi_in + _share(maximum(dpsi, -dpsi), h * parameters.yaw_rate_max) * dpsi
+    # The filter works on the deviation from the limited setpoint, exactly over the step.
     w = parameters.position_frequency
     x, x_dot, x_ddot = critically_damped(h, state.x - x_in, state.x_dot, state.x_ddot, frequency=w)
     y, y_dot, y_ddot = critically_damped(h, state.y - y_in, state.y_dot, state.y_ddot, frequency=w)
@@ -198,6 +201,7 @@ def critically_damped(
     Definition; solved in closed form here.
     """
     w = frequency
+    # exp(A h) = exp(-w h) (I + h N + h² N² / 2), with N = A + w I: N³ = 0 for a triple pole.
     decay = exp(-w * h)
     q = 0.5 * h * h * (w * w * e + 2.0 * w * v + a)
     return (
@@ -208,5 +212,5 @@ def critically_damped(
 
 
 def _share(distance, reach):
-    """Share of a distance that is covered when at most `reach` is; all of it where reach is 0, which is no limit."""
+    """Share of a distance covered if at most `reach` is; all of it if reach is 0 (no limit)."""
     return where(reach > 0.0, minimum(1.0, reach / maximum(distance, 1e-12)), 1.0)

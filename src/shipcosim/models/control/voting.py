@@ -47,7 +47,7 @@ class WindVote(NamedTuple):
     Parameters
     ----------
     wind : Wind
-        Latest telegram; valid 1 where it is believed.
+        Latest message; valid 1 where it is believed.
     unchanged : float or (...) array or tensor
         How long it has not changed. [s]
     share : like unchanged
@@ -95,14 +95,14 @@ class VotingState(NamedTuple):
 def start(
     t: float, telegrams: Telegrams, *, mast: MastParameters, wind: WindParameters
 ) -> VotingState:
-    """Voting at the start, on what is valid.
+    """State of the voting at the start, from the valid messages.
 
     Parameters
     ----------
     t : float
         Time. [s]
     telegrams : Telegrams
-        First telegrams.
+        First messages.
     mast : MastParameters
         Where the anemometer stands.
     wind : WindParameters
@@ -137,7 +137,7 @@ def step(
     mast: MastParameters,
     wind: WindParameters,
 ) -> tuple[VotingState, StateEstimate]:
-    """Voting a sample later, on the telegrams that came; what came when is the same for all variations.
+    """State of the voting one sample later, from the messages that arrived.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def step(
     state : VotingState
         State at the last sample.
     telegrams : Telegrams
-        What the sensors give out.
+        Messages of the sensors.
     estimate : StateEstimate
         Of the observer at t.
     parameters : VotingParameters
@@ -164,13 +164,16 @@ def step(
     positions = state.positions
     compasses = state.compasses
     air = state.wind
+    # A message is new if its time differs from the last one's.
     heading_since = telegrams.heading_time - state.heading_time
     position_since = telegrams.position_time - state.position_time
     wind_since = telegrams.wind_time - state.wind_time
+    # Compasses first: the heading is needed for the velocity of the positions.
     if heading_since > 0.0:
         quiet = minimum(
             minimum(positions.unchanged[0], positions.unchanged[1]), positions.unchanged[2]
         )
+        # The observer's heading at the time of the message, wave motion included.
         psi = (
             estimate.psi
             + estimate.yaw_wave
@@ -186,6 +189,7 @@ def step(
             parameters=parameters,
         )
     quiet = minimum(*compasses.unchanged)
+    # Positions: fade the shift of an earlier realignment first, and move the estimate with it.
     if position_since > 0.0:
         positions, north, east = position_voting.faded(
             positions, position_since, parameters=parameters
@@ -196,6 +200,7 @@ def step(
         positions = position_voting.step(
             t, positions, fixes, at, quiet, position_since, parameters=parameters
         )
+    # The anemometer counts as stuck only if other sensors change.
     if wind_since > 0.0:
         quiet = minimum(quiet, positions.unchanged[0])
         air = _wind(air, telegrams.wind, quiet, wind_since, parameters, estimate, mast, wind)
@@ -204,7 +209,7 @@ def step(
 
 
 def measurement(state: VotingState) -> Measurement:
-    """What the observer is given.
+    """The measurement for the observer.
 
     Parameters
     ----------
@@ -216,6 +221,7 @@ def measurement(state: VotingState) -> Measurement:
     Measurement
         Voted motion, and what of it is new and trusted.
     """
+    # The measurement counts only where it is new and trusted.
     fix = state.positions.fix
     motion = Motion(fix.x, fix.y, state.compasses.psi, fix.u, fix.v, state.r)
     return Measurement(motion, state.position_new * fix.valid, state.heading_new)
@@ -245,7 +251,7 @@ def dead_reckoning_time(
 
 
 def _at(e, delay):
-    """Motion some time before the estimate, motion in waves included."""
+    """Motion at a time before the estimate, wave motion included."""
     north, east = to_ned(
         e.psi, e.surge_wave - delay * (e.u + e.u_wave), e.sway_wave - delay * (e.v + e.v_wave)
     )
@@ -255,18 +261,20 @@ def _at(e, delay):
 
 
 def _wind(state, given, quiet, dt, p, estimate, mast, wind):
-    """Test of the anemometer on a new telegram: it sticks where it does not change while others do."""
+    """Test of the anemometer on a new message: stuck if it does not change while others do."""
     same = (given.speed == state.wind.speed) & (given.wind_from == state.wind.wind_from)
     unchanged = where(same, state.unchanged + dt, 0.0 * state.unchanged)
     stuck = (unchanged >= p.wind_freeze_time) & (quiet < p.wind_freeze_time)
     valid = where(stuck, 0.0, given.valid)
+    # Fade the feedforward in and out: a step of the wind load would be a step of thrust.
     share = state.share + (1.0 - exp(-dt / p.wind_fade_time)) * (valid - state.share)
     load = _wind_load(given, share, (estimate.u, estimate.v, estimate.r), mast, wind)
     return WindVote(given._replace(valid=valid), unchanged, share, load)
 
 
 def _wind_load(given, share, velocity, mast, wind):
-    """Load of the measured wind on a ship with a velocity, as far as it is believed."""
+    """Load of the measured wind on a moving ship, as far as the wind is believed."""
+    # The anemometer stands off the origin: remove the velocity of its place by yaw.
     at_ship = wind_from_mast(given.speed, given.wind_from, *velocity, mast=mast)
     X, Y, N = wind_loads(*at_ship, wind=wind)
     return share * X, share * Y, share * N

@@ -66,6 +66,7 @@ def wave_transition(
     tuple of four, like dt
         Elements 11, 12, 21, 22 of the transition of (p, p'). [1, s, 1/s, 1]
     """
+    # Damped oscillator: free frequency ω √(1 - ζ²), decay exp(-ζ ω t).
     decay = np.exp(-damping * frequency * dt)
     free = frequency * np.sqrt(1.0 - damping * damping)
     c = decay * np.cos(free * dt)
@@ -104,6 +105,8 @@ def kalman_gain(
     ----------
     Anderson and Moore, Optimal Filtering, Prentice-Hall, 1979, section 6.7.
     """
+    # Doubling algorithm for the discrete Riccati equation: after k rounds it covers 2ᵏ samples. 20
+    # rounds are a million samples, so the covariance is steady.
     a = np.swapaxes(transition, -1, -2)
     h = noise
     transposed = np.swapaxes(output, -1, -2)
@@ -112,16 +115,18 @@ def kalman_gain(
 
     def doubled(state):
         g, h, a = state
+        # (I + G H)⁻¹ is common to all three updates.
         inverse = np.linalg.inv(eye + g @ h)
         at = np.swapaxes(a, -1, -2)
         return g + a @ inverse @ g @ at, h + at @ h @ inverse @ a, a @ inverse @ a
 
     g, h, a = times(20, doubled, (g, h, a))
+    # Kalman gain K = P Cᵀ (C P Cᵀ + R)⁻¹, with the predicted covariance P.
     return h @ transposed @ np.linalg.inv(output @ h @ transposed + output_noise)
 
 
 class AxisNoise(NamedTuple):
-    """What the filter of one axis assumes. For yaw, m is rad.
+    """Assumptions of the filter of one axis. For yaw, m is rad.
 
     Parameters
     ----------
@@ -147,7 +152,7 @@ class AxisNoise(NamedTuple):
 
 
 def axis_gains(frequency: Arithmetic, damping: float, noise: AxisNoise) -> AxisGains:
-    """Steady Kalman gains of one axis; the noise of the wave model is scaled so that its motion has a given deviation.
+    """Steady Kalman gains of one axis; the wave model's noise gives its motion a set deviation.
 
     Parameters
     ----------
@@ -169,15 +174,20 @@ def axis_gains(frequency: Arithmetic, damping: float, noise: AxisNoise) -> AxisG
     model: the transition over d times the usual gain.
     """
     transition = _transition(noise.period, frequency, damping)
+    # Measured: position = ship + wave motion, velocity = ship + wave rate.
     output = np.array([[1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 1.0, 0.0]])
     one = frequency / frequency
     size = noise.wave * noise.wave * one
+    # Stationary covariance S of the wave model: variance σ² of the motion, σ² ω² of its rate. The
+    # noise that keeps it is S - Φ S Φᵀ.
     stationary = _diagonal(size, size * frequency * frequency, 0.0, 0.0, 0.0)
     added = stationary - transition @ stationary @ np.swapaxes(transition, -1, -2)
+    # White disturbances of velocity and bias add their intensity times the period.
     added = added + _diagonal(
         0.0, 0.0, 0.0, noise.disturbance * noise.period, noise.bias_drift * noise.period
     )
     then = kalman_gain(transition, added, output, np.diag([noise.position**2, noise.velocity**2]))
+    # An old measurement corrects the old state; the model carries the correction to now.
     gain = _transition(noise.delay, frequency, damping) @ then
     return AxisGains(
         *_floats(*(gain[..., state, measured] for measured in (0, 1) for state in range(5)))
@@ -222,13 +232,14 @@ def filter_table(
     sample_period : float
         Period of the observer. [s]
     horizontal, yaw : AxisNoise
-        What the filters assume of surge and sway, and of yaw.
+        Assumptions of the filters of surge and sway, and of yaw.
 
     Returns
     -------
     EvenTable
         The table.
     """
+    # The model over one sample, and backwards over the ages of the measurements.
     spans = sample_period, -horizontal.delay, -yaw.delay
     columns = [column for span in spans for column in wave_transition(span, frequencies, damping)]
     columns += [
@@ -238,7 +249,7 @@ def filter_table(
 
 
 def _gains(frequencies, damping, noise):
-    """Gains of one axis over the frequencies; one after the other where it is recorded what is computed."""
+    """Gains of one axis over the frequencies; one by one while the computation is recorded."""
     if not hasattr(library_of(frequencies), "kept"):
         return axis_gains(frequencies, damping, noise)
     per_frequency = zip(frequencies, noise.wave, noise.disturbance, noise.bias_drift, strict=True)
@@ -272,6 +283,7 @@ def filter_at(frequency: Arithmetic, table: EvenTable) -> WaveFilter:
 
 def _transition(dt, frequency, damping):
     """(..., 5, 5) transition of wave motion, its rate, position, velocity and bias acceleration."""
+    # Wave model and ship are decoupled; the ship is a triple integrator of the bias.
     w11, w12, w21, w22 = wave_transition(dt, frequency, damping)
     return _matrix(
         [
@@ -296,5 +308,5 @@ def _diagonal(*values):
 
 
 def _floats(*values):
-    """Python floats where the values are scalars, so that an FMU stays with the arithmetic of floats."""
+    """Python floats for scalars, so that an FMU computes with floats."""
     return tuple(float(value) if np.ndim(value) == 0 else value for value in values)

@@ -1,4 +1,4 @@
-"""Explicit one-step integration of ordinary differential equations: Euler, midpoint and classical Runge-Kutta.
+"""Explicit one-step integration of ordinary differential equations: Euler, midpoint, Runge-Kutta.
 
 `euler` and `rk4` take any state. `rk4_pair`, `rk4_motion` and `midpoint_motion` are the same rules written out for the
 states that every FMU step integrates, without loops over the state: about twice as fast in floats.
@@ -37,6 +37,7 @@ def substeps(h: float, longest: float) -> int:
     >>> substeps(0.05, 0.05), substeps(0.1, 0.03)
     (1, 4)
     """
+    # Recorded numbers have their own functions; the rounding margin is the same.
     own = getattr(h, "maths", None)
     if own is not None:
         return own.maximum(own.whole(ceil(h / longest - _EXACT)), 1)
@@ -86,7 +87,7 @@ def rk4(
     h : float
         Step. [s]
     inputs : sequence of three tuples
-        What the rates depend on besides: at the start, the middle and the end of the step. [any unit]
+        Further arguments of the rates: at the start, the middle and the end of the step. [any unit]
 
     Returns
     -------
@@ -107,6 +108,7 @@ def rk4(
     >>> round(y[0], 6)
     0.36788
     """
+    # k1 at the start, k2 and k3 in the middle, k4 at the end, weighted 1 : 2 : 2 : 1.
     start, middle, end = inputs
     half = 0.5 * h
     sixth = h / 6.0
@@ -132,7 +134,7 @@ def rk4_pair(
     h : float
         Step. [s]
     start, middle, end : tuples
-        What the rates depend on besides, at these times of the step. [any unit]
+        Further arguments of the rates, at these times of the step. [any unit]
 
     Returns
     -------
@@ -143,6 +145,7 @@ def rk4_pair(
     ----------
     As `rk4`.
     """
+    # The scheme of `rk4`, with the slopes of x (a, b, c, d) and y (p, q, r, s) as variables.
     half = 0.5 * h
     sixth = h / 6.0
     a, p = rates(x, y, *start)
@@ -185,6 +188,7 @@ def rk4_motion(
     As `rk4`. η̇ = R(ψ) ν: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
     ch. 2.
     """
+    # Velocities first: their rates do not depend on position and heading.
     half = 0.5 * h
     sixth = h / 6.0
     u1, v1, r1 = accelerations(u, v, r)
@@ -200,6 +204,7 @@ def rk4_motion(
     vd = v + h * v3
     rd = r + h * r3
     u4, v4, r4 = accelerations(ud, vd, rd)
+    # Then the rates of position at the four stages, with the heading of each stage.
     x1, y1 = to_ned(psi, u, v)
     x2, y2 = to_ned(psi + half * r, ub, vb)
     x3, y3 = to_ned(psi + half * rb, uc, vc)
@@ -250,12 +255,14 @@ def midpoint_motion(
     ----------
     Definition of the explicit midpoint rule.
     """
+    # Half a step with the slope at the start, then a whole step with the slope in the middle.
     half = 0.5 * h
     u_dot, v_dot, r_dot = accelerations(u, v, r)
     u_mid = u + half * u_dot
     v_mid = v + half * v_dot
     r_mid = r + half * r_dot
     u_dot, v_dot, r_dot = accelerations(u_mid, v_mid, r_mid)
+    # The heading of the middle turns the velocity through the water; the current is added.
     north, east = to_ned(psi + half * r, u_mid, v_mid)
     return (
         x + h * (north + current_north),

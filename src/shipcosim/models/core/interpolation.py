@@ -38,6 +38,7 @@ def interp(x: Arithmetic, xs: Sequence[float], ys: Sequence[float]) -> Arithmeti
             return ys[-1]
         i = bisect_right(xs, x) - 1
         return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])
+    # Recorded numbers bring their own interpolation, arrays use NumPy's, tensors the one below.
     library = library_of(x)
     if hasattr(library, "interp"):
         return library.interp(x, xs, ys)
@@ -67,6 +68,7 @@ def interp_columns(x: Arithmetic, xs: Sequence[float], *columns: Sequence[float]
         return [ys[0] for ys in columns]
     if x >= xs[-1]:
         return [ys[-1] for ys in columns]
+    # One search serves all columns.
     i = bisect_right(xs, x)
     share = (x - xs[i - 1]) / (xs[i] - xs[i - 1])
     return [ys[i - 1] + (ys[i] - ys[i - 1]) * share for ys in columns]
@@ -108,6 +110,7 @@ def even_table(xs: np.ndarray, *columns: np.ndarray) -> EvenTable:
     EvenTable
         The columns with their changes per abscissa. [the units of xs and columns]
     """
+    # Store differences with the values: the interpolation then needs one product per column.
     values = np.stack(columns, axis=-1)
     changes = np.diff(values, axis=0, append=values[-1:])
     rows = (
@@ -134,6 +137,7 @@ def interp_even(x: Arithmetic, table: EvenTable) -> list:
     list, one value like x per column
         Ordinates. [the units of the table's columns]
     """
+    # Even spacing: the index follows from a division, without a search.
     position = (x - table.first) * table.per_unit
     if isinstance(x, float):
         below = int(position)
@@ -141,6 +145,7 @@ def interp_even(x: Arithmetic, table: EvenTable) -> list:
         return [value + share * change for value, change in table.rows[below]]
     below = floor(position)
     library = library_of(x)
+    # Look the rows up in the arithmetic of x; recorded numbers have their own look-up.
     share = position - below
     if hasattr(library, "row_of"):
         rows = library.row_of(table.array, below)
@@ -155,6 +160,7 @@ def interp_even(x: Arithmetic, table: EvenTable) -> list:
 def _interp_tensor(torch, x, xs, ys):
     """`interp` of a tensor, with gradients."""
     xs, ys = (torch.as_tensor(s, dtype=x.dtype, device=x.device) for s in (xs, ys))
+    # The index has no gradient; the value has one by x and by the table.
     x = x.clamp(xs[0], xs[-1])
     i = (torch.searchsorted(xs, x.detach().contiguous(), right=True) - 1).clamp(0, len(xs) - 2)
     return ys[i] + (ys[i + 1] - ys[i]) * (x - xs[i]) / (xs[i + 1] - xs[i])

@@ -1,4 +1,4 @@
-"""Kinematics in the horizontal plane: north-east-down and body frame (x forward, y to starboard), rigid-body motion.
+"""Kinematics in the horizontal plane: north-east-down and body frame (x forward, y starboard).
 
 References
 ----------

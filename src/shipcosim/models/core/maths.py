@@ -1,4 +1,4 @@
-"""Elementary functions of the models: each works on Python floats, NumPy arrays and torch tensors alike.
+"""Elementary functions of the models, for Python floats, NumPy arrays and torch tensors.
 
 Python floats take the first branch, so that a model in an FMU costs what `math` costs. torch is never imported here;
 it is needed only where somebody has passed a tensor.
@@ -26,7 +26,7 @@ _FEW = 256  # elements, below which a call of NumPy costs more than what it comp
 
 
 def library_of(*values: Arithmetic) -> ModuleType:
-    """The library that computes with some values: torch where one of them is a tensor, NumPy elsewhere.
+    """The library for some values: torch if one of them is a tensor, else NumPy.
 
     Parameters
     ----------
@@ -38,11 +38,13 @@ def library_of(*values: Arithmetic) -> ModuleType:
     module
         numpy or torch; of values that bring functions of their own, as `maths`, those.
     """
+    # Recorded symbols bring their own functions.
     for value in values:
         if isinstance(value, np.ndarray) and value.dtype == object and value.size:
             value = value.flat[0]
         if (own := getattr(value, "maths", None)) is not None:
             return own
+    # Only if torch is imported already can a value be a tensor.
     torch = sys.modules.get("torch")
     if torch is not None and any(isinstance(value, torch.Tensor) for value in values):
         return torch
@@ -86,7 +88,7 @@ def cos(x: Arithmetic) -> Arithmetic:
 
 
 def sincos(x: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
-    """Sine and cosine together, cheaper than each alone.
+    """Sine and cosine together, cheaper than separately.
 
     Of many angles they are t u and u - 1 with t = tan(x/2) and u = 2/(1 + t²), half-angle formulas, because NumPy's
     tangent is vectorised and its sine and cosine of doubles are not. These differ from sin x and cos x by some 1e-16.
@@ -108,6 +110,8 @@ def sincos(x: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
         return library.sin(x), library.cos(x)
     if x.size < _FEW:
         return np.sin(x), np.cos(x)
+    # Half-angle formulas: with t = tan(x/2), sin = 2t/(1+t²) and cos = 2/(1+t²) - 1. In place,
+    # since the arrays are large.
     t = np.tan(0.5 * x)
     u = t * t
     u += 1.0
@@ -150,7 +154,7 @@ def sqrt(x: Arithmetic) -> Arithmetic:
 
 
 def floor(x: Arithmetic) -> Arithmetic:
-    """Largest whole number that is not above x, as float.
+    """Largest whole number not above x, as a float.
 
     Parameters
     ----------
@@ -201,6 +205,7 @@ def hypot(x: Arithmetic, y: Arithmetic) -> Arithmetic:
     """
     if isinstance(y, float) and isinstance(x, float):
         return math.sqrt(x * x + y * y)
+    # A tiny number keeps the derivative finite at 0, for training with gradients.
     square = x * x + y * y
     library = library_of(x, y)
     return (square + _TINY).sqrt() if _is_torch(library) else library.sqrt(square)
@@ -221,6 +226,7 @@ def where(condition: Any, a: Arithmetic, b: Arithmetic) -> Arithmetic:
     like a and b
         [the unit of a]
     """
+    # Plain truth values choose without evaluating any library.
     if condition is True:
         return a
     if condition is False:
@@ -290,7 +296,7 @@ def clip(x: Arithmetic, low: Arithmetic, high: Arithmetic) -> Arithmetic:
 
 
 def number(x: Arithmetic) -> Arithmetic:
-    """A truth value or a whole number as a float.
+    """A truth value or whole number as a float.
 
     Parameters
     ----------
@@ -309,7 +315,7 @@ def number(x: Arithmetic) -> Arithmetic:
 
 
 def is_single(x: Any) -> bool:
-    """Whether a value is one number, and no array or tensor of them.
+    """True for a single number, false for an array or tensor.
 
     Parameters
     ----------
@@ -325,7 +331,7 @@ def is_single(x: Any) -> bool:
 
 
 def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) -> Any:
-    """The state after as many turns as a condition on it holds for.
+    """Repeat a function while a condition on its state holds; return the last state.
 
     Parameters
     ----------
@@ -346,6 +352,7 @@ def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) 
     >>> repeat(lambda n: n < 10, lambda n: 2 * n, 3)
     12
     """
+    # A recorded condition must become a loop in the compiled code.
     condition = going(state)
     if (own := getattr(condition, "maths", None)) is not None:
         return own.repeat(going, turn, state)
@@ -356,7 +363,7 @@ def repeat(going: Callable[[Any], Any], turn: Callable[[Any], Any], state: Any) 
 
 
 def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
-    """The state after a number of turns.
+    """Apply a function to a state a number of times.
 
     Parameters
     ----------
@@ -377,11 +384,13 @@ def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
     >>> times(3, lambda n: 2 * n, 5)
     40
     """
+    # Recorded numbers may be anywhere in the state: look at the first number of each part.
     own = getattr(count, "maths", None)
     for part in state if isinstance(state, tuple) else (state,):
         while isinstance(part, tuple):
             part = part[0]
         own = own or getattr(part, "maths", None)
+    # The count is carried along in the state of a recorded loop.
     if own is not None:
         return own.repeat(
             lambda now: now[0] < count, lambda now: (now[0] + 1.0, turn(now[1])), (0.0, state)
@@ -392,7 +401,7 @@ def times(count: int, turn: Callable[[Any], Any], state: Any) -> Any:
 
 
 def row_of(table: Any, index: Any) -> Any:
-    """Row of a table, or element of a sequence, by its number.
+    """Row of a table, or element of a sequence, by number.
 
     Parameters
     ----------
@@ -411,7 +420,7 @@ def row_of(table: Any, index: Any) -> Any:
 
 
 def _many(x):
-    """Whether x is an array of so many elements that computing them costs more than a few calls of NumPy."""
+    """True for an array so large that computing its elements costs more than some NumPy calls."""
     return isinstance(x, np.ndarray) and x.size >= _FEW
 
 
@@ -420,7 +429,7 @@ def _is_torch(library):
 
 
 def _tensors(torch: Any, *values: Any) -> list[Any] | tuple[Any, ...]:
-    """All values as tensors of the kind of the first tensor among them, of double precision where there is none."""
+    """All values as tensors like the first tensor, or of double precision if there is none."""
     if not _is_torch(torch):
         return values
     like = next(

@@ -1,4 +1,4 @@
-"""Results that are kept by their arguments, in any arithmetic.
+"""Memoised functions: results cached by their arguments, in any arithmetic.
 
 References
 ----------
@@ -11,7 +11,7 @@ from typing import Any
 
 
 def kept(most: int) -> Callable[[Callable], Callable]:
-    """Decorator of a function without side effects whose results are to be kept.
+    """Decorate a function without side effects, so that its results are cached.
 
     Parameters
     ----------
@@ -40,9 +40,12 @@ def kept(most: int) -> Callable[[Callable], Callable]:
 
         @wraps(function)
         def call(*arguments: Any) -> Any:
+            # While a computation is recorded, the recording caches: compiled code must call again
+            # when arguments change.
             for argument in arguments:
                 if (maths := getattr(argument, "maths", None)) is not None:
                     return maths.kept(function, arguments)
+            # Arrays have no hash; these calls are computed each time.
             try:
                 hash(arguments)
             except TypeError:

@@ -58,7 +58,7 @@ class Network(NamedTuple):
 
 
 def read_arrays(path: Path) -> dict[str, np.ndarray]:
-    """Arrays of an .npz file.
+    """Read the arrays of an .npz file.
 
     Parameters
     ----------
@@ -100,6 +100,7 @@ def network_of(arrays: Mapping[str, np.ndarray], name: str) -> Network:
     KeyError
         An array is missing.
     """
+    # The number of layers follows from the names of the arrays.
     layers = sum(key.startswith(f"{name}.lstm.") and key.endswith(".bias") for key in arrays)
     names = [*(f"lstm.{number}" for number in range(1, layers + 1)), "dense"]
     *lstm, last = (
@@ -167,7 +168,9 @@ def lstm_step(x: np.ndarray, memory: Memory, layer: Layer) -> Memory:
     The gates are 1/(1 + e^-z) = (1 + tanh(z/2))/2, so that one hyperbolic tangent serves all.
     """
     n = memory.cell.shape[-1]
+    # One matrix product gives all four gates.
     z = dense(np.concatenate((x, memory.output), axis=-1), layer)
+    # sigmoid(z) = (1 + tanh(z/2)) / 2: halve all but the cell input, then take one tanh.
     z[..., : 2 * n] *= 0.5
     z[..., 3 * n :] *= 0.5
     z = np.tanh(z, out=z)
@@ -175,6 +178,7 @@ def lstm_step(x: np.ndarray, memory: Memory, layer: Layer) -> Memory:
     keep = z[..., n : 2 * n]
     new = z[..., 2 * n : 3 * n]
     out = z[..., 3 * n :]
+    # c = f c + i g, with sigmoid gates written by tanh; output = o tanh(c).
     cell = 0.5 * ((1.0 + keep) * memory.cell + (1.0 + into) * new)
     return Memory(0.5 * (1.0 + out) * np.tanh(cell), cell)
 
@@ -198,6 +202,7 @@ def evaluate(
     tuple of (..., outputs) array and tuple of Memory
         Outputs, memory after this sample. [1, 1]
     """
+    # Each layer feeds the next one.
     kept = []
     for layer, before in zip(network.lstm, memory, strict=True):
         kept.append(lstm_step(x, before, layer))

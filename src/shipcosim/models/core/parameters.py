@@ -102,7 +102,7 @@ def required_table(columns: tuple[str, ...], description: str) -> Any:
 
 
 def _about(unit: str, description: str, kind: type, **more: Any) -> dict[str, Any]:
-    """What a field knows of its number beside the default."""
+    """Metadata of a field beside its default."""
     rest = {
         "origin": "",
         "tolerance": 0.0,
@@ -115,7 +115,7 @@ def _about(unit: str, description: str, kind: type, **more: Any) -> dict[str, An
 
 
 def left_out(value: Any) -> bool:
-    """Whether a value is the one that stands for none: a parameter that its ship does not give.
+    """True if a value stands for a parameter that its ship does not give.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def left_out(value: Any) -> bool:
 
 
 def acts(value: Any, neutral: float = 0.0) -> bool:
-    """Whether a parameter changes anything: it is not the neutral number, or it is more than one number.
+    """True if a parameter changes anything: not the neutral number, or more than one number.
 
     What does not act can be left out; arrays are not looked into.
 
@@ -161,6 +161,7 @@ def acts(value: Any, neutral: float = 0.0) -> bool:
     >>> acts(0.0), acts(0.1), acts(1.0, neutral=1.0)
     (False, True, False)
     """
+    # Compiled code may get other values: there the recording decides.
     if (own := getattr(value, "maths", None)) is not None:
         return own.acts(value, neutral)
     return not isinstance(value, (int, float)) or value != neutral

@@ -1,4 +1,4 @@
-"""Sampling and random numbers of components: they depend on time and seed, never on the step size.
+"""Sampling and random numbers of components: by time and seed, never by step size.
 
 References
 ----------
@@ -39,6 +39,7 @@ def samples_due(t: float, period: float) -> int:
     >>> [samples_due(t, 0.1) for t in (0.0, 0.05, 0.3, 3 * 0.1)]
     [1, 1, 4, 4]
     """
+    # The tolerance absorbs rounding of a master that adds up its steps.
     return floor(t / period + _TOLERANCE) + 1
 
 
@@ -64,7 +65,7 @@ def tidy_time(t: float) -> float:
 
 
 def generator(purpose: str, seed: int, block: int = 0) -> np.random.Generator:
-    """Random generator that depends on purpose, seed and block alone.
+    """Random generator that depends only on purpose, seed and block.
 
     Parameters
     ----------
@@ -85,6 +86,7 @@ def generator(purpose: str, seed: int, block: int = 0) -> np.random.Generator:
     ValueError
         The seed is negative; the message names the purpose.
     """
+    # A checksum of the purpose keeps the streams of components with one seed apart.
     if seed < 0:
         raise ValueError(f"seed of the {purpose} is {seed}; it must be 0 or above")
     return np.random.default_rng((crc32(purpose.encode()), int(seed), int(block)))
@@ -114,6 +116,7 @@ def normals(purpose: str, seed: int | np.ndarray, k: int, width: int) -> Sequenc
     ValueError
         A seed is negative.
     """
+    # Numbers are drawn in blocks, because making a generator costs more than drawing.
     if is_single(seed):
         return row_of(_block(purpose, seed, k // _BLOCK, width), k % _BLOCK).tolist()
     return _blocks(purpose, tuple(np.ravel(seed).tolist()), k // _BLOCK, width)[k % _BLOCK]
@@ -121,7 +124,7 @@ def normals(purpose: str, seed: int | np.ndarray, k: int, width: int) -> Sequenc
 
 @kept(64)
 def _block(purpose, seed, block, width):
-    """256 rows of `width` numbers: one block of one seed."""
+    """256 rows of `width` numbers: one block of a seed."""
     return generator(purpose, seed, block).standard_normal((_BLOCK, width))
 
 

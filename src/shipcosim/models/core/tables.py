@@ -34,6 +34,7 @@ def parse(text: str) -> tuple[tuple[float, ...], ...]:
     >>> parse("0 -0.53; 10 -0.59")
     ((0.0, -0.53), (10.0, -0.59))
     """
+    # Blank space and a final semicolon are no row.
     rows = tuple(_row(number, row) for number, row in enumerate(text.strip(" ;\n").split(";"), 1))
     for number, row in enumerate(rows, 1):
         if len(row) != len(rows[0]):
@@ -70,6 +71,7 @@ def columns(text: str, width: int) -> tuple[tuple[float, ...], ...]:
     >>> columns("0 -0.53; 10 -0.59", 2)
     ((0.0, 10.0), (-0.53, -0.59))
     """
+    # A look-up needs increasing abscissae and at least two rows.
     rows: Any = parse(text)
     if len(rows[0]) != width or len(rows) < 2:
         raise ValueError(

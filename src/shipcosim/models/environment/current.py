@@ -1,4 +1,4 @@
-"""A current that turns or changes its speed during a run."""
+"""A current that changes speed and direction during a run."""
 
 from dataclasses import dataclass
 
@@ -73,10 +73,12 @@ def varying_current(
     >>> round(speed, 6), round(degrees(to), 6)
     (0.4, 45.0)
     """
+    # Share of the change that is done: 0 before the start, 1 after the end.
     share = clip((t - time_start) / (time_end - time_start), 0.0, 1.0)
     start = hypot(north_start, east_start)
     end = hypot(north_end, east_end)
     from_ = atan2(east_start, north_start)
     to = atan2(east_end, north_end)
+    # Still water has no direction; take that of the other current, so it does not turn needlessly.
     from_, to = where(start < _STILL, to, from_), where(end < _STILL, from_, to)
     return start + share * (end - start), wrap(from_ + share * wrap(to - from_))

@@ -1,4 +1,4 @@
-"""Loads that keep their direction over the earth while the ship turns: a line, and the mean drift of waves."""
+"""Loads of constant direction over the earth: a line's pull, and the mean drift of waves."""
 
 from dataclasses import dataclass
 
@@ -60,7 +60,7 @@ class DriftForceParameters:
 
 
 def onset(t: Arithmetic, *, onset_time: Arithmetic, ramp_time: Arithmetic) -> Arithmetic:
-    """Share of an effect that acts at a time: 0 before its onset, growing linearly to 1 over the ramp.
+    """Share of an effect at a time: 0 before its onset, then linear to 1 over the ramp.
 
     Parameters
     ----------
@@ -172,7 +172,9 @@ def drift_force(
     >>> [round(load) for load in drift_force(0.0, 3000.0, 0.0, yaw_arm=-1.5)]
     [1000, 0, 0]
     """
+    # Components of A in body axes: A cos γ forward, A sin γ to starboard.
     forward, starboard = to_body(psi, north, east)
     A = hypot(north, east) + _TINY
+    # Y = A sin γ |sin γ|^(p-1). N = d A sin 2γ = 2 d Y_A X_A / A.
     sway = starboard * (abs(starboard) / A) ** (sway_power - 1.0)
     return surge_share * forward, sway, 2.0 * yaw_arm * starboard * forward / A

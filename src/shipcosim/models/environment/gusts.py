@@ -71,6 +71,8 @@ def gust(t: Arithmetic, mean_speed: Arithmetic, seed: int | np.ndarray) -> Arith
     ----------
     Spectrum as `norsok`; the band and the gust along the mean wind are assumed.
     """
+    # Frequencies and phases depend on the seed only, so the phases go on while the mean wind
+    # changes.
     omega, phase = per_seed(_frequencies_and_phases, seed)
     (wave,) = tensors_if_any((cos(omega * column(t) + phase),), mean_speed)
     return total(_amplitudes(mean_speed), wave)
@@ -101,11 +103,12 @@ def gust_std(mean_speed: Arithmetic) -> Arithmetic:
     8.7
     """
     amplitudes = _amplitudes(mean_speed)
+    # A sinusoid of amplitude a has the variance a² / 2.
     return sqrt(0.5 * total(amplitudes, amplitudes))
 
 
 def _amplitudes(mean_speed):
-    """Amplitudes of the components; of floats and arrays computed once while the mean does not change."""
+    """Amplitudes of the components, cached for floats and arrays while the mean stays."""
     if is_single(mean_speed):
         return _float_amplitudes(mean_speed)
     if isinstance(mean_speed, np.ndarray):
@@ -114,7 +117,7 @@ def _amplitudes(mean_speed):
 
 
 def _any_amplitudes(mean_speed):
-    """Amplitudes of the components: roots of twice the variance of each bin."""
+    """Amplitudes of the components, a = √(2 S(f) Δf) of each bin."""
     middles, widths = tensors_if_any((_MIDDLES, _EDGES[1:] - _EDGES[:-1]), mean_speed)
     speed = column(mean_speed)
     return speed / 10.0 * sqrt(2.0 * _shape(middles, speed) * widths)
@@ -132,13 +135,15 @@ def _array_amplitudes(content, shape):
 def _shape(frequency, mean_speed):
     """The spectrum over (U/10)^2; in calm air that of `_ALMOST_CALM`."""
     n = 0.468
+    # F = 172 f (U/10)^(-3/4), the reduced frequency of the NORSOK spectrum.
     ratio = 172.0 * frequency * (maximum(mean_speed, _ALMOST_CALM) / 10.0) ** -0.75
     return 320.0 / (1.0 + ratio**n) ** (5.0 / (3.0 * n))
 
 
 @kept(64)
 def _frequencies_and_phases(seed):
-    """Circular frequencies and phases of one seed, (n,) each."""
+    """Circular frequencies and phases of a seed, (n,) each."""
+    # A random frequency within each bin: an even spacing would repeat the record after a while.
     random = generator("gusts", seed)
     frequency = _EDGES[:-1] * (_EDGES[1:] / _EDGES[:-1]) ** random.random(COMPONENTS)
     return 2.0 * pi * frequency, random.uniform(0.0, 2.0 * pi, COMPONENTS)

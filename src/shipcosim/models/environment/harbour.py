@@ -1,4 +1,4 @@
-"""Wind and current in a harbour: what land leaves of those of the open sea, and a river that flows out."""
+"""Wind and current in a harbour: shelter by land, and a river's outflow."""
 
 from dataclasses import dataclass
 
@@ -71,7 +71,7 @@ class HarbourParameters:
 def local_wind(
     x: Arithmetic, y: Arithmetic, north: Arithmetic, east: Arithmetic, *, harbour: HarbourParameters
 ) -> tuple[Arithmetic, Arithmetic]:
-    """Wind at a place: land takes a share of what blows off it, the more the nearer to the berth.
+    """Wind at a place: land shelters from the wind that blows off it, more so near the berth.
 
     Parameters
     ----------
@@ -99,8 +99,10 @@ def local_wind(
     >>> [round(local_wind(0.0, 0.0, north, 0.0, harbour=berth)[0], 3) for north in (-10.0, 10.0)]
     [-5.0, 10.0]
     """
+    # Component of the wind that comes from land, as the cosine of the angle between them.
     off_land = -(north * cos(harbour.land_towards) + east * sin(harbour.land_towards))
     share = maximum(off_land / (hypot(north, east) + _SLOW), 0.0)
+    # Factor 1 - s exp(-d²/R²) max(0, cos γ).
     left = 1.0 - harbour.wind_shelter * _near(x, y, harbour.wind_reach) * share
     return left * north, left * east
 
@@ -137,20 +139,25 @@ def local_current(
     >>> [round(local_current(0.0, y, 0.0, 0.0, harbour=berth)[0], 3) for y in (0.0, 60.0)]
     [0.5, 0.184]
     """
+    # Near the berth only the part of the tide along the channel remains, reduced by the shelter.
     near = _near(x, y, harbour.tide_reach)
     c = cos(harbour.channel)
     s = sin(harbour.channel)
     along = (1.0 - harbour.tide_shelter) * (north * c + east * s)
+    # Position relative to the mouth, along and across the river.
     c_river = cos(harbour.river_to)
     s_river = sin(harbour.river_to)
     x_mouth = x - harbour.river_x
     y_mouth = y - harbour.river_y
     ahead = x_mouth * c_river + y_mouth * s_river
     beside = y_mouth * c_river - x_mouth * s_river
+    # Plane jet: the half-width grows linearly, and the speed on the axis falls with its root
+    # (momentum is constant).
     width = 1.0 + harbour.river_spread * maximum(ahead, 0.0) / harbour.river_width
     river = (
         harbour.river_speed / sqrt(width) * exp(-((beside / (width * harbour.river_width)) ** 2))
     )
+    # Between open sea and channel the tide changes with the distance; the river is added.
     return (
         north + near * (along * c - north) + river * c_river,
         east + near * (along * s - east) + river * s_river,
@@ -158,5 +165,5 @@ def local_current(
 
 
 def _near(x, y, reach):
-    """1 at the berth, 1/e at a distance of `reach`. [1]"""
+    """1 at the berth, 1/e at the distance `reach`. [1]"""
     return exp(-(x * x + y * y) / (reach * reach))

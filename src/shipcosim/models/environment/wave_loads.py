@@ -75,9 +75,11 @@ def drift_table(text: str) -> DriftTable:
     ----------
     Nominal model, waves: sense of the headings, symmetry, omitted frequencies.
     """
+    # Frequencies beyond the converged range are left out.
     rows = [row for row in parse(text) if row[0] <= OMEGA_DRIFT_MAX]
     loads = {row[:2]: row[2:] for row in rows if len(row) == 5}
     omegas, headings = (tuple(sorted({key[i] for key in loads})) for i in (0, 1))
+    # Interpolation needs a complete grid.
     if not rows or not len(rows) == len(loads) == len(omegas) * len(headings):
         raise ValueError(
             "drift table: rows 'omega heading X Y N' must hold every heading at every frequency once"
@@ -86,11 +88,14 @@ def drift_table(text: str) -> DriftTable:
         raise ValueError(
             f"drift table: headings from {headings[0]} to {headings[-1]}; must go from 0 to 180 deg"
         )
+    # Measured headings are on the starboard side; those to port follow by symmetry: X equal, Y and
+    # N with the other sign.
     starboard = [
         tuple(zip(*(loads[omega, heading] for omega in omegas), strict=True))
         for heading in headings
     ]
     port = [(X, tuple(-Yi for Yi in Y), tuple(-Ni for Ni in N)) for X, Y, N in starboard[:0:-1]]
+    # Headings from -180 to 180 degrees; 0 and 180 exist once.
     circle = [-heading for heading in headings[:0:-1]] + list(headings)
     return DriftTable(
         omegas, tuple(heading * pi / 180.0 for heading in circle), tuple(port + starboard)
@@ -130,9 +135,11 @@ def drift(
     Newman, Second order, slowly varying forces on vessels in irregular waves, 1974; Faltinsen, Sea Loads on Ships and
     Offshore Structures, Cambridge, 1990, ch. 5.
     """
+    # In calm water zero in the arithmetic of x.
     if waves.calm:
         return (x - x,) * 3
     waves = waves_like(waves, x, y, psi)
+    # Cosine and sine of the phase angles serve both loads and motions.
     s, c = sincos(phase_angle(t, x, y, waves))
     return drift_at(c, s, psi, waves, table)
 
@@ -162,12 +169,13 @@ def drift_at(
     ----------
     As `drift`.
     """
+    # Newman's double sum as single sums: cos θ_i C + sin θ_i S, see `drift`.
     beating = c * column(total(waves.amplitude, c)) + s * column(total(waves.amplitude, s))
     return _weighted_drift(beating, psi, waves, table)
 
 
 def mean_drift(psi: Arithmetic, waves: Waves, table: DriftTable) -> Load:
-    """Mean over time of `drift` on a ship at rest: 2 int S D d(omega), which is sum a_i^2 D_i.
+    """Time mean of `drift` on a ship at rest: 2 ∫ S D dω = Σ a_i² D_i.
 
     Parameters
     ----------
@@ -187,20 +195,25 @@ def mean_drift(psi: Arithmetic, waves: Waves, table: DriftTable) -> Load:
     ----------
     Faltinsen, Sea Loads on Ships and Offshore Structures, Cambridge, 1990, ch. 5.
     """
+    # The mean keeps only i = j of the double sum: the weight is the amplitude itself.
     waves = waves_like(waves, psi)
     return _weighted_drift(waves.amplitude, psi, waves, table)
 
 
 def _weighted_drift(weights, psi, waves, table):
-    """X, Y, N = sum a_i D_i weights_i at this heading of the ship."""
+    """X, Y, N = Σ a_i D_i w_i at this heading of the ship."""
+    # a_i D_i at all headings depends on sea and table only, so it is cached.
     grid = _kept_grid(waves, table) if isinstance(waves.omega, np.ndarray) else _grid(waves, table)
+    # Position between the table's headings, at the relative wave direction.
     position = interp(wrap(waves.direction - psi), table.heading, _counted(len(table.heading)))
     below = minimum(floor(position), len(table.heading) - 2.0)
     row = _whole(below)
     share = position - below
+    # One ship in floats: two rows and a product, without overhead.
     if isinstance(row, int) and weights.ndim == 1:
         pair = (grid[row : row + 2] @ weights).tolist()
         return tuple([lower + share * (upper - lower) for lower, upper in zip(*pair, strict=True)])
+    # Many variations: interpolate between the rows of each.
     lower, upper = (_summed(_row(grid, number), weights) for number in (row, row + 1))
     loads = lower + column(share) * (upper - lower)
     return loads[..., 0], loads[..., 1], loads[..., 2]
@@ -216,6 +229,7 @@ def _summed(rows, weights):
 def _grid(waves, table):
     """a_i D_i at each heading of the table, (headings, ..., 3, n)."""
     stack = library_of(waves.omega).stack
+    # Components above the converged range give no drift.
     amplitude = where(waves.omega > OMEGA_DRIFT_MAX, 0.0, waves.amplitude)
     return stack(
         [
@@ -236,7 +250,7 @@ def _counted(number):
 
 
 def _row(grid, row):
-    """Row of a grid, which may differ from variation to variation."""
+    """Row of a grid, which may differ between variations."""
     if grid.ndim == 3 or isinstance(row, int):
         return row_of(grid, row)
     return grid[row, np.arange(grid.shape[1])]

@@ -1,4 +1,4 @@
-"""First-order wave motion of a ship, superposed on the low-frequency motion."""
+"""First-order wave motion of a ship, added to her low-frequency motion."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def first_order_motion(
     u: Arithmetic = 0.0,
     v: Arithmetic = 0.0,
 ) -> Motion:
-    """First-order wave motion of a ship: the water's horizontal motion averaged over waterplane and half the draught.
+    """First-order wave motion: water's motion averaged over waterplane and half the draught.
 
     With q = k L cos(beta)/2, p = k B sin(beta)/2, A = a exp(-k T/2) sin(q)/q sin(p)/p the ship is displaced along
     the direction of the waves by sum A sin(theta), and turned by
@@ -79,7 +79,7 @@ def wave_response(
     breadth: Arithmetic,
     draught: Arithmetic,
 ) -> tuple[Load, Motion]:
-    """Drift load and first-order motion together, from one computation of the phase angles.
+    """Drift load and first-order motion together, from the same phase angles.
 
     Parameters
     ----------
@@ -118,22 +118,30 @@ def wave_response(
 
 
 def _motion(c, s, psi, u, v, waves, length, breadth, draught):
-    """`first_order_motion` at known phase angles, of which c and s are cosine and sine."""
+    """`first_order_motion` from the cosine c and sine s of the phase angles."""
+    # Sine and cosine of the relative wave direction β, kept off zero for the divisions below.
     across, ahead = sincos(waves.direction - psi)
     some_across = _not_zero(across)
     some_ahead = _not_zero(ahead)
     half_length, half_breadth, spread, turned = _hull_in(waves, length, breadth, draught)
+    # q = k L cos β / 2 and p = k B sin β / 2: waves short against the hull average out, as sin(q)/q
+    # sin(p)/p.
     q = half_length * column(some_ahead)
     sin_q, cos_q = sincos(q)
     shift = spread * sin_q * sin(half_breadth * column(some_across))
+    # (sin q - q cos q) / q²: the best straight line through the sideways displacement.
     turn = turned * (sin_q - q * cos_q)
+    # Frequency of encounter: ω_e = ω - k (velocity in the direction of the waves).
     encounter = waves.omega - waves.wavenumber * column(u * ahead + v * across)
+    # The divisions by cos β and sin β are common to all components.
     per_shift = 1.0 / (some_ahead * some_across)
     per_turn = 6.0 / length * across / (some_ahead * some_ahead)
+    # Displacement with sin θ, its rate with ω_e cos θ; the turn a quarter period apart.
     along = per_shift * total(shift, s)
     along_dot = per_shift * total(shift, encounter * c)
     psi_wave = -per_turn * total(turn, c)
     r_wave = per_turn * total(turn, encounter * s)
+    # Displacement along the waves' direction, its rate in body axes.
     east, north = sincos(waves.direction)
     return Motion(
         along * north, along * east, psi_wave, along_dot * ahead, along_dot * across, r_wave
@@ -141,7 +149,7 @@ def _motion(c, s, psi, u, v, waves, length, breadth, draught):
 
 
 def _hull_in(waves, length, breadth, draught):
-    """Per component k L/2, k B/2, and a exp(-k T/2) over their product and over the square of k L/2.
+    """Per component: k L/2, k B/2, and a exp(-k T/2) over their product and over (k L/2)².
 
     They depend on hull and sea alone, so they are computed once for both.
     """
@@ -155,6 +163,7 @@ def _hull(waves, length, breadth, draught):
     k = waves.wavenumber
     half_length = k * column(0.5 * length)
     half_breadth = k * column(0.5 * breadth)
+    # Mean depth: the motion decays with exp(-k z), taken at half the draught.
     amplitude = waves.amplitude * exp(k * column(-0.5 * draught))
     return (
         half_length,
@@ -168,5 +177,5 @@ _kept_hull = kept(8)(_hull)
 
 
 def _not_zero(x):
-    """x kept away from 0, where sin(x)/x and its like have limits; small enough for them, large enough to divide by."""
+    """x kept off 0, where sin(x)/x has a limit; small enough for it, large enough to divide by."""
     return where(abs(x) < _ALMOST_ZERO, _ALMOST_ZERO, x)

@@ -83,9 +83,11 @@ def jonswap(omega: Arithmetic, height: float, period: float, peak_enhancement: f
     ----------
     DNV-RP-C205, Environmental conditions and environmental loads, sec. 3.5.5; alpha written with Hs.
     """
+    # JONSWAP: Pierson-Moskowitz times γ^exp(-(ω/ω_p - 1)² / 2σ²), narrower below the peak.
     peak = 2.0 * pi / period
     width = np.where(omega <= peak, 0.07, 0.09)
     enhancement = peak_enhancement ** np.exp(-0.5 * ((omega / peak - 1.0) / width) ** 2)
+    # Normalised by 1 - 0.287 ln γ, so that Hs stays the same for any γ.
     scale = 5.0 / 16.0 * height**2 * peak**4 * (1.0 - 0.287 * np.log(peak_enhancement))
     return scale * omega**-5.0 * np.exp(-1.25 * (peak / omega) ** 4) * enhancement
 
@@ -136,6 +138,7 @@ def components(
     >>> round(float(4.0 * np.sqrt(np.sum(sea.amplitude**2 / 2.0))), 12)
     0.5
     """
+    # Scalar seas are cached; the same arguments give the identical object.
     arguments: Any = (height, period, wave_from, peak_enhancement, seed)
     if all(map(is_single, arguments)):
         return _scalar_components(*arguments)
@@ -163,6 +166,7 @@ def elevation(t: Arithmetic, x: Arithmetic, y: Arithmetic, waves: Waves) -> Arit
     ----------
     Definition of the sum of components, see the module.
     """
+    # In calm water zero in the arithmetic of x.
     if waves.calm:
         return x - x
     waves = waves_like(waves, x, y)
@@ -190,13 +194,14 @@ def phase_angle(t: Arithmetic, x: Arithmetic, y: Arithmetic, waves: Waves) -> Ar
     ----------
     Deep water dispersion: DNV-RP-C205, Environmental conditions and environmental loads.
     """
+    # θ = ω t - k (distance travelled along the direction) + phase.
     east, north = sincos(waves.direction)
     travelled = x * north + y * east
     return waves.phase + waves.omega * column(t) - waves.wavenumber * column(travelled)
 
 
 def waves_like(waves: Waves, *values: Arithmetic) -> Waves:
-    """The sea in the arithmetic of some values: as tensors where one of the values is a tensor.
+    """The sea in the arithmetic of some values: as tensors if one of them is a tensor.
 
     Parameters
     ----------
@@ -228,6 +233,7 @@ def waves_like(waves: Waves, *values: Arithmetic) -> Waves:
 
 def _components(height, period, wave_from, peak_enhancement, seed):
     _refuse_impossible(height, period, peak_enhancement)
+    # One draw per variation; equal pairs of γ and seed are drawn once.
     peak_enhancement, seed = np.broadcast_arrays(
         np.asarray(peak_enhancement, float), np.asarray(seed)
     )
@@ -239,8 +245,11 @@ def _components(height, period, wave_from, peak_enhancement, seed):
         np.array(part).reshape(*seed.shape, COMPONENTS) for part in zip(*pairs, strict=True)
     )
     ratio, phase = tensors_if_any((ratio, phase), height, period, wave_from)
+    # Frequencies scale with the peak, so the draw holds for any period.
     omega = column(2.0 * pi / period) * ratio
+    # Equal energy per component: n a² / 2 = Hs² / 16, hence a = Hs √(2/n) / 4.
     amplitude = column(height) * ((2.0 / COMPONENTS) ** 0.5 / 4.0) + 0.0 * ratio
+    # Deep water: k = ω² / g. The sea travels opposite to where it comes from.
     return Waves(amplitude, omega, omega**2 / GRAVITY, phase, wave_from + pi)
 
 
@@ -270,6 +279,7 @@ def _refuse_impossible(height, period, peak_enhancement):
 def _ratio_and_phase(peak_enhancement, seed):
     """Frequencies over the peak frequency, and phases: (n,) each."""
     random = generator("waves", seed)
+    # A random place within each bin of equal energy, then the inverse of the cumulative spectrum.
     share = (np.arange(COMPONENTS) + random.random(COMPONENTS)) / COMPONENTS
     return np.interp(share, _cumulative_energy(peak_enhancement), _RATIO), random.uniform(
         0.0, 2.0 * pi, COMPONENTS
@@ -279,6 +289,7 @@ def _ratio_and_phase(peak_enhancement, seed):
 @lru_cache(maxsize=32)
 def _cumulative_energy(peak_enhancement):
     """Share of the energy below each of `_RATIO`, from 0 to 1."""
+    # Trapezoidal rule; the constant width of the intervals cancels.
     density = jonswap(_RATIO, 1.0, 2.0 * pi, peak_enhancement)
     energy = np.concatenate(([0.0], np.cumsum(density[1:] + density[:-1])))
     return energy / energy[-1]

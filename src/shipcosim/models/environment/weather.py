@@ -1,4 +1,4 @@
-"""Weather: mean wind and current that follow their setpoints at limited rates, with gusts added."""
+"""Weather: mean wind and current that follow setpoints at limited rates, with gusts."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -85,7 +85,7 @@ def step(
     *,
     parameters: EnvironmentParameters,
 ) -> EnvironmentState:
-    """Means after a step: each goes to its setpoint no faster than its rate limit, directions the shorter way.
+    """Means after a step: each moves to its setpoint within its rate limit.
 
     Parameters
     ----------
@@ -159,6 +159,8 @@ def air_velocity(
     >>> [round(component, 9) for component in air_velocity(0.0, westerly, gust_scale=0.0, seed=1)]
     [-0.0, 10.0]
     """
+    # Gusts add to the mean speed. The wind is given by where it comes from, its velocity by where
+    # it goes.
     speed = state.wind_speed + gust_scale * gust(t, state.wind_speed, seed)
     return -speed * cos(state.wind_from), -speed * sin(state.wind_from)
 

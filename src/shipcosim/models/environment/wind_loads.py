@@ -1,4 +1,4 @@
-"""Wind on a ship: the apparent wind, and its loads by a table of measured coefficients."""
+"""Wind on a ship: apparent wind, and loads from a table of coefficients."""
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -72,6 +72,7 @@ def apparent_wind(
     >>> apparent_wind(0.0, 5.0, 0.0, 0.0, 0.0)
     (5.0, 0.0)
     """
+    # Ship velocity minus air velocity points to where the apparent wind comes from.
     wind_u, wind_v = to_body(psi, wind_north, wind_east)
     u_r = u - wind_u
     v_r = v - wind_v
@@ -79,7 +80,7 @@ def apparent_wind(
 
 
 def wind_loads(speed: Arithmetic, wind_from: Arithmetic, *, wind: WindParameters) -> Load:
-    """Loads of the apparent wind, by linear interpolation in the angle; wind from port mirrors wind from starboard.
+    """Loads of the apparent wind by linear interpolation; port mirrors starboard.
 
     Parameters
     ----------
@@ -104,10 +105,13 @@ def wind_loads(speed: Arithmetic, wind_from: Arithmetic, *, wind: WindParameters
     ----------
     Blendermann, Parameter identification of wind loads on ships, J. Wind Eng. Ind. Aerodyn. 51, 1994.
     """
+    # The offset corrects a wrongly logged direction: the load follows the real one.
     if wind.turned:
         wind_from = wrap(wind_from - wind.apparent_wind_offset)
+    # The table has the starboard side only: X is even, Y and N are odd in the angle.
     angles, *loads = _table(wind.wind_table)
     X, Y, N = interp_columns(abs(wind_from), angles, *loads)
+    # Loads grow with the square of the apparent speed.
     square = wind.wind_load_scale * speed * speed
     side = where(wind_from < 0.0, -square, square)
     return square * X, side * Y, side * N

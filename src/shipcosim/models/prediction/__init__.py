@@ -1,1 +1,1 @@
-"""Prediction of the motion to come."""
+"""Prediction of future ship motion."""

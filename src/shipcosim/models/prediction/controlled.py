@@ -1,6 +1,6 @@
-"""Motion to come while DP acts: dead reckoning with reference model, control law and limits of thrust in the loop.
+"""Predict motion under DP: dead reckoning with reference, control law and thrust limits.
 
-Dead reckoning holds the thrust of this moment. A controller holds the ship instead, or brings her to where she is told
+Dead reckoning holds the thrust of this moment. A controller holds the ship instead, or brings her to where she is ordered
 to go: so it is run along the horizon, by the functions that it runs on itself.
 """
 
@@ -32,7 +32,7 @@ NOTHING = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class ObserverAhead:
-    """What is left of the observer along the horizon."""
+    """Parameters of the observer along the horizon."""
 
     full_frequency: float = required(
         "rad/s", "wave frequency below which the control law slows down", minimum=0.1
@@ -62,7 +62,7 @@ class ControlLoop(NamedTuple):
     design : Design
         Made of the same units by `pseudo_inverse.design`.
     observer : ObserverAhead
-        What is left of it.
+        Its parameters along the horizon.
     """
 
     reference: ReferenceParameters
@@ -74,7 +74,7 @@ class ControlLoop(NamedTuple):
 
 
 class _Now(NamedTuple):
-    """The loop at one time: `motion` as `advance` has it, `bias` north, east and N, `before` the load a step ago."""
+    """The loop at one time: `motion` as `advance`, `bias` north, east, N, `before` last load."""
 
     motion: tuple
     desired: ReferenceState
@@ -94,7 +94,7 @@ def predict(
     wind: WindParameters,
     loop: ControlLoop,
 ) -> tuple[Motion, ...]:
-    """Motion of the ship ahead in time, with her controller.
+    """Predict the motion of the ship together with her controller.
 
     Parameters
     ----------
@@ -126,11 +126,14 @@ def predict(
     Equations of motion as `dead_reckoning.predict`; reference, control law and allocation as the functions of those
     modules. Running the controller ahead: Skulstad, Data-based modelling of ships, NTNU 2021, research question 5.
     """
+    # Start with all parts of the loop at the present state.
     now = _start(known, surroundings, wind, loop)
     before = 0.0
     predictions = []
+    # A thruster without thrust now is taken as missing for the whole horizon.
     available = tuple(abs(thrust) > NOTHING for thrust in now.allocated.thrusts)
     for horizon in horizons:
+        # Equal steps up to each horizon, none longer than allowed.
         steps = int(ceil((horizon - before) / longest_step))
         h = (horizon - before) / steps
         now = times(
@@ -144,13 +147,15 @@ def predict(
 
 
 def _start(known, around, wind, loop):
-    """The loop now. The load of the thrusters says their thrusts, and what was requested last."""
+    """The loop now. The thrusters' load gives their thrusts and the last request."""
     ship = known.ship
     units = loop.units
+    # Feedforward of the wind, as far as the controller believes its anemometer.
     fed = [
         known.wind_believed * one
         for one in wind_loads(known.wind_speed, known.wind_from, wind=wind)
     ]
+    # A long step lets the allocation reach the present load, whatever its rate limits.
     rest = pseudo_inverse.at_rest(known.thrusters, parameters=units)
     all_of_them = {"available": (True, True, True), "parameters": units, "design": loop.design}
     return _Now(
@@ -167,8 +172,9 @@ def _start(known, around, wind, loop):
 
 
 def _later(now, known, around, available, h, hull, wind, loop):
-    """The loop a step later: the ship with the load of the middle of the step, then reference, law and allocator."""
+    """The loop a step later: ship with the mid-step load, then reference, law and allocator."""
     given = now.allocated.tau_X, now.allocated.tau_Y, now.allocated.tau_N
+    # Extrapolate the load to the middle of the step; add the known error of thrust.
     middle = tuple(
         new + 0.5 * (new - old) + error
         for new, old, error in zip(given, now.before, around.thrust_error, strict=True)
@@ -176,10 +182,12 @@ def _later(now, known, around, available, h, hull, wind, loop):
     motion = advance(now.motion, middle, around, h, hull=hull, wind=wind)
     desired = reference.step(now.desired, known.goal, h, parameters=loop.reference)
     psi, u, v = motion[2:5]
+    # Wind load at the new state; the same functions run on board.
     load = wind_loads(*apparent_wind(psi, u, v, around.wind_north, around.wind_east), wind=wind)
     bias = _bias(now, motion, known, around, load, h, hull, loop)
     fed = tuple(known.wind_believed * one for one in load)
     pace = observer.pace(known.wave_frequency, loop.observer.full_frequency)
+    # The estimate is taken as perfect, apart from the bias.
     estimate = StateEstimate(*motion[:6], *bias, pace=pace)
     control = pid.step(now.control, estimate, desired, fed, h, ship=loop.ship, parameters=loop.law)
     allocated = pseudo_inverse.step(
@@ -189,8 +197,10 @@ def _later(now, known, around, available, h, hull, wind, loop):
 
 
 def _bias(now, motion, known, around, wind_load, h, hull, loop):
-    """The observer's bias a step later: towards the load that known thrust and wind leave, as in `surroundings`."""
+    """The observer's bias a step later: it follows the load that thrust and wind do not explain."""
     _, _, psi, u, v, r, u_r, v_r = motion
+    # Remaining load: hull, remaining force, thrust error and the disbelieved part of the wind. The
+    # observer's own damping is not part of the bias.
     X, Y, N = hull_loads(u_r, v_r, r, hull=hull)
     force_X, force_Y = to_body(psi, around.force_north, around.force_east)
     lost = 1.0 - known.wind_believed
@@ -200,5 +210,6 @@ def _bias(now, motion, known, around, wind_load, h, hull, loop):
     X = X + force_X + error_X + lost * wind_load[0] + ship.damping_surge * u
     Y = Y + force_Y + error_Y + lost * wind_load[1] + ship.damping_sway * v
     N = N + around.moment + error_N + lost * wind_load[2] + ship.damping_yaw * r
+    # The bias is kept in north-east and follows with a lag of first order.
     left = (*to_ned(psi, X, Y), N)
     return tuple(old + share * (new - old) for old, new in zip(now.bias, left, strict=True))

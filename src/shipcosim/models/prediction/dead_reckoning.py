@@ -1,4 +1,4 @@
-"""Dead reckoning: motion to come if thrust, wind, current and remaining force stay as they are known now."""
+"""Dead reckoning: future motion if thrust, wind, current and remaining force stay constant."""
 
 from math import ceil
 
@@ -25,7 +25,7 @@ def predict(
     hull: HullParameters,
     wind: WindParameters,
 ) -> tuple[Motion, ...]:
-    """Motion of the ship ahead in time by her equations of motion.
+    """Predict the motion of the ship by her equations of motion.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def predict(
     surroundings : Surroundings
         Wind, current and remaining force, held earth-fixed, and remaining moment; the load of the wind follows heading
         and speed of the ship, that of the current her velocity through the water. The error of thrust is held while
-        thrusters are told to give anything.
+        any thrust is commanded.
     horizons : tuple of float, increasing
         How far ahead. [s]
     longest_step : float
@@ -59,14 +59,16 @@ def predict(
     """
     ship = known.ship
     current = (surroundings.current_north, surroundings.current_east)
-    # What thrusters give: what they are told and their error, or nothing.
+    # Delivered thrust: the command and its error, or nothing.
     acting = abs(known.thrusters[0]) + abs(known.thrusters[1]) + abs(known.thrusters[2]) > _NO_LOAD
     X, Y, N = [where(acting, error, 0.0 * error) for error in surroundings.thrust_error]
     delivered = known.thrusters[0] + X, known.thrusters[1] + Y, known.thrusters[2] + N
+    # Integrate in the frame of the water, since hull loads depend on velocity through it.
     motion = (*ship, *through_water(ship.psi, ship.u, ship.v, *current))
     thrusters = delivered
     predictions = []
     before = 0.0
+    # Equal steps up to each horizon, none longer than allowed.
     for horizon in horizons:
         steps = int(ceil((horizon - before) / longest_step))
         h = (horizon - before) / steps
@@ -89,7 +91,7 @@ def advance(
     hull: HullParameters,
     wind: WindParameters,
 ) -> tuple:
-    """The ship one step of the midpoint rule later, integrated in the frame of the water as in `vessel.step`.
+    """One step of the midpoint rule, integrated in the frame of the water as in `vessel.step`.
 
     Parameters
     ----------
@@ -115,6 +117,7 @@ def advance(
     """
     x, y, psi, u, v, r, u_r, v_r = motion
     current = (around.current_north, around.current_east)
+    # Wind and remaining force are fixed to the earth: turn them at the heading of mid-step.
     middle = psi + 0.5 * h * r
     wind_X, wind_Y, wind_N = wind_loads(
         *apparent_wind(middle, u, v, around.wind_north, around.wind_east), wind=wind
@@ -127,7 +130,9 @@ def advance(
     def rates(u_r, v_r, r):
         return accelerations(u_r, v_r, r, X, Y, N, hull=hull)
 
+    # M ν̇_r + C(ν_r) ν_r + D(ν_r) ν_r = τ, with these loads held over the step.
     x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, h, *current)
     psi = wrap(psi)
+    # Velocity over ground = velocity through water + current.
     u_c, v_c = to_body(psi, *current)
     return x, y, psi, u_r + u_c, v_r + v_c, r, u_r, v_r

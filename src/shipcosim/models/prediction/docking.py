@@ -1,4 +1,4 @@
-"""Our docking predictor: equations of motion with a load from the own record, and an ensemble that corrects them.
+"""Docking predictor: equations of motion with a load from the ship's record, plus an ensemble.
 
 What the ensemble sees and gives is in the ship's own axes, so that a harbour turned by any angle is the same to it.
 Where its inputs leave the range of the training, or its members disagree more than there, the prediction goes over to
@@ -102,7 +102,7 @@ def begin(aboard: Aboard, age: float) -> Own:
     Parameters
     ----------
     aboard : Aboard
-        What is known now.
+        Inputs of the predictor now.
     age : float
         Of the measured place. [s]
 
@@ -124,33 +124,37 @@ def follow(
     wind: WindParameters,
     helm_: HelmParameters,
 ) -> Own:
-    """Record a second later: an observer of place, velocity and load with constant gains.
+    """Record a second later: an observer of position, velocity and load with constant gains.
 
     Parameters
     ----------
     own : Own
         A second ago.
     before, now : Aboard
-        What was known then, and is known now.
+        Inputs of the predictor then and now.
     hull, wind, helm_ : HullParameters, WindParameters, HelmParameters
-        The ship as she knows herself.
+        The ship's model of herself.
 
     Returns
     -------
     Own
         [as its fields]
     """
+    # Predict one second with the load known so far.
     (foreseen,) = helm.predict(
         before._replace(ship=own.ship), left=own.load, hull=hull, wind=wind, helm=helm_, seconds=1
     )
+    # Compare with the measurement, moved on by its age.
     measured = helm.moved_on(now.ship, helm_.position_age)
     missed = [seen - thought for seen, thought in zip(measured, foreseen, strict=True)]
     missed[2] = wrap(missed[2])
+    # Correct position and velocity by fixed shares of the innovation.
     gains = (PLACE_GAIN,) * 3 + (VELOCITY_GAIN,) * 3
     ship = [
         thought + gain * one for thought, gain, one in zip(foreseen, gains, missed, strict=True)
     ]
     ship[2] = wrap(ship[2])
+    # A velocity error means a missing load: acceleration times mass, by a small share.
     i11, i22, _, _, i66 = hull.inverse_mass
     load = tuple(
         load + LOAD_GAIN * one / inverse
@@ -165,7 +169,7 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     Parameters
     ----------
     aboard : Aboard
-        What is known now; floats or (...) arrays.
+        Inputs of the predictor now; floats or (...) arrays.
     own : Own
         The record.
     ahead : Motion
@@ -177,10 +181,12 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     -------
     (..., 30) array
         Where the quay is now and in 30 s [1], velocities now and then [m/s, rad/s], turn [rad], load [m/s2, rad/s2],
-        wind [m/s], what thrusters are told and give [N, rpm, rad].
+        wind [m/s], commands and feedback of thrusters [N, rpm, rad].
     """
     ship = own.ship
     (i11, i22, _, _, i66) = hull.inverse_mass
+    # Quay now and in 30 s, velocities now and then, and the turn between: the manoeuvre that is
+    # under way.
     found = [
         *quay(ship),
         *quay(ahead),
@@ -188,8 +194,10 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
         *ahead[3:],
         wrap(np.asarray(ahead.psi - ship.psi)),
     ]
+    # The load as an acceleration, so that it does not depend on the ship's size.
     found += [own.load[0] * i11, own.load[1] * i22, own.load[2] * i66]
     found += [aboard.wind_speed * cos(aboard.wind_from), aboard.wind_speed * sin(aboard.wind_from)]
+    # Commands and feedback of both azimuths as vectors: an angle alone would jump at ±180 degrees.
     for k in (0, 1):
         for size, angle in (
             (aboard.thrust_cmd[k], aboard.azimuth_cmd[k]),
@@ -202,7 +210,7 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
 
 
 def quay(ship: Motion) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
-    """Where the quay is, seen from the ship: forward, to starboard, and how far, the far compressed.
+    """Direction and distance of the quay from the ship; large distances are compressed.
 
     Parameters
     ----------
@@ -216,6 +224,7 @@ def quay(ship: Motion) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     """
     forward, starboard = to_body(ship.psi, -ship.x, -ship.y)
     distance = hypot(forward, starboard)
+    # Logarithmic beyond `NEAR`: differences matter close to the quay.
     size = np.log1p(distance / NEAR)
     share = size / (distance + 1e-9)
     return forward * share, starboard * share, size
@@ -265,7 +274,7 @@ def outputs(
 
 
 def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
-    """Features by their mean and standard deviation in training, cut at `CUT` of these.
+    """Features standardised by mean and deviation of the training, cut at `CUT`.
 
     Parameters
     ----------
@@ -283,7 +292,7 @@ def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
 
 
 def corrections(given: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """What outputs mean, for each second.
+    """Corrections for each second from the outputs.
 
     Parameters
     ----------
@@ -295,6 +304,7 @@ def corrections(given: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     tuple of three (..., `LONGEST`) arrays
         Forward, to starboard, heading. [m, m, rad]
     """
+    # Each correction is a polynomial in t / 30 s: smooth over time, with few outputs.
     k = len(POWERS)
     share = np.arange(1, LONGEST + 1) / LONGEST
     basis = np.stack([share**power for power in POWERS])
@@ -302,7 +312,7 @@ def corrections(given: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def spread(given: np.ndarray) -> np.ndarray:
-    """How far apart the members put the ship in 30 s.
+    """Distance between the members' positions in 30 s.
 
     Parameters
     ----------
@@ -319,7 +329,7 @@ def spread(given: np.ndarray) -> np.ndarray:
 
 
 def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmetic:
-    """Share of what was learned that is used.
+    """Share of the learned correction that is used.
 
     Parameters
     ----------
@@ -335,6 +345,7 @@ def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmet
     (...) array
         1 within the limits of training, 0 far outside. [1]
     """
+    # Inputs outside the training range, or members that disagree, reduce the share.
     sizes = abs((found - trained.mean) / trained.std)
     return trust(
         np.moveaxis(np.concatenate((sizes, np.asarray(spread(given))[..., None]), axis=-1), -1, 0),
@@ -343,7 +354,7 @@ def share_of(found: np.ndarray, given: np.ndarray, trained: Trained) -> Arithmet
 
 
 def corrected(ship: Motion, motions: Sequence[Motion], given: np.ndarray) -> list[tuple]:
-    """Places and headings with the correction of the ensemble.
+    """Positions and headings with the ensemble's correction.
 
     Parameters
     ----------
@@ -359,6 +370,7 @@ def corrected(ship: Motion, motions: Sequence[Motion], given: np.ndarray) -> lis
     list of tuples of three
         North, east, heading, one a second. [m, m, rad]
     """
+    # Mean of the members; the correction is in the ship's axes of now.
     forward, starboard, turn = corrections(given.mean(axis=0))
     found = []
     for k, motion in enumerate(motions):
@@ -370,7 +382,7 @@ def corrected(ship: Motion, motions: Sequence[Motion], given: np.ndarray) -> lis
 
 
 def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmetic) -> list[tuple]:
-    """Predictions between the kinetic model's and the learned ones; with a share of 0 exactly the former.
+    """Blend of kinetic and learned predictions; with a share of 0 exactly the kinetic one.
 
     Parameters
     ----------
@@ -387,6 +399,7 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
         North, east, heading, one a second. [m, m, rad]
     """
     found = []
+    # Blend along the shorter arc of the heading. `where` keeps the kinetic value to the last bit.
     for one, other in zip(kinetic, learned, strict=True):
         away = other[0] - one.x, other[1] - one.y, wrap(np.asarray(other[2] - one.psi))
         x, y, psi = (
@@ -414,6 +427,7 @@ def regions(
     tuple of two lists of three, like errors
         Radii and half-widths. [m, rad]
     """
+    # The widths were fitted offline; recent errors of the predictor scale them.
     known = RegionParameters(
         ordinary_position_error=float(widths[6]), ordinary_heading_error=float(widths[7])
     )

@@ -20,7 +20,7 @@ from shipcosim.models.ship.hull import HullParameters
 
 
 class Model(NamedTuple):
-    """The ship as she knows herself.
+    """The ship's model of herself.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class State(NamedTuple):
     latest : tuple of tuples of four
         As `helm.remembered` gives them. [rad, m/s, m/s, rad/s]
     aboard : Aboard
-        What is known now.
+        Inputs of the predictor now.
     own : Own or None
         Our law's record.
     memory : tuple of tuples of Memory
@@ -136,6 +136,7 @@ class Ours(Kinetic):
 
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
         own = state.own or docking.begin(state.aboard, model.helm.position_age)
+        # Equations of motion with the observed load, then the ensemble's correction on top.
         motions = helm.predict(
             state.aboard._replace(ship=own.ship), left=own.load, **model._asdict()
         )
@@ -143,6 +144,7 @@ class Ours(Kinetic):
         given, memory = docking.outputs(
             docking.standardised(found, self.trained), state.memory, self.trained
         )
+        # Outside of the training the kinetic prediction takes over.
         share = float(docking.share_of(found, given, self.trained))
         places = docking.corrected(own.ship, motions, given)
         if share < 1.0:
@@ -151,7 +153,7 @@ class Ours(Kinetic):
 
 
 def kinetic(state: State, model: Model) -> tuple:
-    """Motions by the equations of motion from averages of the start, as paper III has them.
+    """Motions by the equations of motion, from averages at the start as in paper III.
 
     Parameters
     ----------

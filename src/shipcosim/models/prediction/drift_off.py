@@ -1,4 +1,4 @@
-"""Our drift predictor: filters that learn from the ship's own record, and the equations of motion to fall back on.
+"""Drift predictor: filters that learn from the ship's own record, with a kinetic fallback.
 
 Where the ship is unlike those over which was learned, or the filters disagree, the prediction goes over to that of the
 kinetic predictor, `dead_reckoning` with `surroundings`, and beyond that is exactly it.
@@ -51,7 +51,7 @@ class Trained(NamedTuple):
     Parameters
     ----------
     learned : Learned
-        What is believed before the record. [units of its fields]
+        Learned prior. [units of its fields]
     limits : (9,) array
         Of each of `MEASURES` the largest value in training. [their units]
     """
@@ -102,7 +102,7 @@ def begin(
     Parameters
     ----------
     known : Known
-        What is known now; floats or (...) arrays.
+        Inputs of the predictor now; floats or (...) arrays.
     trained : Trained
         The ensemble.
     hull : HullParameters
@@ -137,7 +137,7 @@ def step(
     state : Hybrid
         At the last sample.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     h : float
         Time since the last sample. [s]
     trained : Trained
@@ -150,6 +150,7 @@ def step(
     Hybrid
         With this sample.
     """
+    # Both predictors follow every sample, so that the fallback is ready at any time.
     kinetic = surroundings.step(
         state.kinetic, known, h, hull=hull, wind=wind, ship=ship, parameters=parameters
     )
@@ -168,14 +169,14 @@ def predict(
     hull: HullParameters,
     wind: WindParameters,
 ) -> tuple[tuple[Motion, ...], Arithmetic]:
-    """Motion ahead, and the share of what is learned in it.
+    """Predict the motion, and give the share of the learned part.
 
     Parameters
     ----------
     state : Hybrid
         With the sample of now.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     horizons : tuple of three floats
         How far ahead. [s]
     longest_step : float
@@ -190,6 +191,7 @@ def predict(
     tuple of Motion, float or (...) array
         One per horizon; the share, 0 where the prediction is that of the kinetic predictor. [their units; 1]
     """
+    # The kinetic prediction is the fallback.
     alone = dead_reckoning.predict(
         known, state.kinetic, horizons=horizons, longest_step=longest_step, hull=hull, wind=wind
     )
@@ -201,16 +203,18 @@ def predict(
         "wind": wind,
     }
     found = _ahead(state.own, known, options)
+    # Trust in the filters; without a believed wind they have none.
     share = (
         trust(measures(state.own, known, found[-1], trained.learned), trained.limits)
         * known.wind_believed
     )
     mixed = (own_record.mixed(state.own, one) for one in found)
+    # The filters' predictions are averaged by their weights, then blended with the kinetic one.
     return tuple(blended(a, b, share) for a, b in zip(alone, mixed, strict=True)), share
 
 
 def _ahead(own, known, options):
-    """Predictions of all filters; one after another in floats where there is one ship, which is quicker."""
+    """Predictions of all filters; for one ship in floats, one after the other, which is faster."""
     if own.mean.ndim > 2:
         return own_record.predict(own, known, **options)
     try:
@@ -228,14 +232,14 @@ def _ahead(own, known, options):
 
 
 def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.ndarray:
-    """How far the ship is from where she is usually: `MEASURES`.
+    """How far the ship is from usual conditions: `MEASURES`.
 
     Parameters
     ----------
     own : Record
         Of the filters.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     last : Motion
         Their predictions at the last horizon.
     learned : Learned
@@ -246,14 +250,17 @@ def measures(own: Record, known: Known, last: Motion, learned: Learned) -> np.nd
     (9, ...) array
         [units of `MEASURES`]
     """
+    # Weighted mean state of the filters: current, force, moment, coefficients.
     share = own_record.weights(own)
     (x, y) = last[:2]
     states = (share[..., None] * own.mean).sum(axis=0)
     u_r, v_r = through_water(
         known.ship.psi, known.ship.u, known.ship.v, *np.moveaxis(states[..., CURRENT], -1, 0)
     )
+    # Deviation from the prior in standard deviations: the record contradicts what was learned.
     off = (states[..., COEFFICIENT] - learned.mean) / learned.std[..., COEFFICIENT]
     force = states[..., FORCE] / learned.std[..., FORCE]
+    # Weighted spread of the filters' positions at the last horizon.
     apart = share * ((x - (share * x).sum(axis=0)) ** 2 + (y - (share * y).sum(axis=0)) ** 2)
     found = [
         u_r,
@@ -277,7 +284,7 @@ def _size(vectors):
 
 
 def trust(found: np.ndarray, limits: np.ndarray) -> Arithmetic:
-    """Share of what is learned that is used: 1 within all limits, 0 from `OUT` of one of them on.
+    """Share of the learned part that is used: 1 within all limits, 0 from `OUT` of any limit.
 
     Parameters
     ----------
@@ -291,12 +298,13 @@ def trust(found: np.ndarray, limits: np.ndarray) -> Arithmetic:
     (...) array
         0 also where a measure is no number. [1]
     """
+    # The worst measure decides. NaN fails the comparison and gives 0.
     worst = (found.T / limits).T.max(axis=0)
     return where(worst < OUT, clip((OUT - worst) / (OUT - 1.0), 0.0, 1.0), 0.0 * limits[0])
 
 
 def blended(alone: Motion, learned: Motion, share: Arithmetic) -> Motion:
-    """One prediction between two; with a share of 0 exactly the first.
+    """Blend of two predictions; with a share of 0 exactly the first.
 
     Parameters
     ----------
@@ -311,6 +319,7 @@ def blended(alone: Motion, learned: Motion, share: Arithmetic) -> Motion:
         The blend.
     """
     away = [b - a for a, b in zip(alone, learned, strict=True)]
+    # Headings blend along the shorter arc.
     away[2] = wrap(np.asarray(away[2]))
     moved = [where(share > 0.0, a + share * d, a) for a, d in zip(alone, away, strict=True)]
     moved[2] = where(share > 0.0, wrap(np.asarray(moved[2])), alone.psi)

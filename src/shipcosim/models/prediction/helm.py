@@ -1,4 +1,4 @@
-"""A ship that is steered by hand, and her motion to come by her equations of motion while levers and wheel stay put.
+"""Predict the motion of a hand-steered ship by her equations of motion, with levers and wheel held.
 
 References
 ----------
@@ -35,7 +35,7 @@ LONGEST = 30
 
 @dataclass(frozen=True, kw_only=True)
 class HelmParameters:
-    """Two azimuth thrusters, alike, one at each side, and a bow tunnel, as the predictor knows them."""
+    """Two equal azimuth thrusters, one at each side, and a bow tunnel, in the predictor's model."""
 
     x: float = required("m", "position of the azimuths forward")
     y: float = required("m", "position of the port azimuth to starboard", maximum=0.0)
@@ -103,9 +103,9 @@ class Aboard(NamedTuple):
         Measured apparent wind at 10 m above the ship: speed, and direction it comes from, clockwise from the bow.
         [m/s, rad]
     thrust_cmd : tuple of three, like wind_speed
-        What port azimuth, starboard azimuth and tunnel are told to give. [N]
+        Commanded thrust of port azimuth, starboard azimuth and tunnel. [N]
     azimuth_cmd : tuple of two, like wind_speed
-        Where the azimuths are told to point. [rad]
+        Commanded directions of the azimuths. [rad]
     rpm : tuple of three, like wind_speed
         Measured shaft speeds, of the tunnel that of its motor. [rpm]
     azimuth : tuple of two, like wind_speed
@@ -155,6 +155,7 @@ def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
         [as its fields]
     """
     ship = Motion(*(known[name] for name in KNOWN[:6]))
+    # The wind loads refer to 10 m above the origin, the anemometer stands elsewhere.
     wind = wind_from_mast(
         known["wind_speed_meas"], known["wind_from_meas"], ship.u, ship.v, ship.r, mast=mast
     )
@@ -169,7 +170,7 @@ def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
 
 
 def moved_on(ship: Motion, age: float) -> Motion:
-    """The ship with her measured place moved on by its age, with the velocity of now.
+    """The ship with her measured position moved on by its age, at the present velocity.
 
     Parameters
     ----------
@@ -192,7 +193,7 @@ Start = tuple[tuple[Arithmetic, Arithmetic, Arithmetic, Arithmetic], ...]
 
 
 def remembered(before: Start, ship: Motion) -> Start:
-    """What is averaged at the start of a prediction, with the newest sample.
+    """Samples to average at the start of a prediction, with the newest one.
 
     Parameters
     ----------
@@ -210,7 +211,7 @@ def remembered(before: Start, ship: Motion) -> Start:
 
 
 def smoothed(latest: Start, ship: Motion) -> Motion:
-    """The measured ship with heading and velocity averaged over the latest samples.
+    """The measured ship, with heading and velocity averaged over the latest samples.
 
     Parameters
     ----------
@@ -224,6 +225,7 @@ def smoothed(latest: Start, ship: Motion) -> Motion:
     Motion
         The place is that of now.
     """
+    # Headings are averaged as deviations from the newest one, since they wrap.
     share = 1.0 / len(latest)
     psi = wrap(ship.psi + share * sum(wrap(one[0] - ship.psi) for one in latest))
     u, v, r = (share * sum(one[k] for one in latest) for k in (1, 2, 3))
@@ -236,12 +238,12 @@ def thruster_loads(
     """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
 
     Thrust and direction run from what shaft speed and direction give now to what is commanded, at their largest rates.
-    Once a drive has the thrust that it was told it keeps it at any speed.
+    Once a drive has reached its command, it keeps that thrust at any speed.
 
     Parameters
     ----------
     aboard : Aboard
-        What is known now.
+        Inputs of the predictor now.
     water : tuple of two floats or (...) arrays
         Velocity of the ship through the water now, forward and to starboard. [m/s]
     helm : HelmParameters
@@ -252,10 +254,12 @@ def thruster_loads(
     callable
         ``loads(t)(u_r, v_r, r)`` gives the load after t seconds. [N, N, N.m]
     """
+    # The tunnel now gives what its measured speed says, T = c n |n|.
     tunnel_now = helm.tunnel_thrust_coefficient * aboard.rpm[2] * abs(aboard.rpm[2])
     units = [_azimuth(aboard, k, y, water, helm) for k, y in enumerate((helm.y, -helm.y))]
 
     def loads(t):
+        # Thrusts move from their present values to the commands at their largest rates.
         tunnel = _towards(tunnel_now, aboard.thrust_cmd[2], t * helm.tunnel_thrust_rate)
         port, starboard = (unit(t) for unit in units)
 
@@ -270,16 +274,19 @@ def thruster_loads(
 
 
 def _azimuth(aboard, k, y, water, helm):
-    """Load of one azimuth over time and velocity, as `azimuth.azimuth_loads` without its losses."""
+    """Load of one azimuth over time and velocity, as `azimuth.azimuth_loads` without losses."""
     n = aboard.rpm[k] / 60.0
     azimuth = aboard.azimuth[k]
+    # The unit's own velocity through the water, by surge, sway and yaw, along its axis.
     u, v = velocity_at(helm.x, y, water[0], water[1], aboard.ship.r)
     thrust_now, _ = propeller_loads(
         cos(azimuth) * u + sin(azimuth) * v, n, propeller=helm.propeller
     )
+    # Shaft speed in excess of the bollard speed, since the ship has way on. It is kept.
     beyond = n - bollard_speed(
         thrust_now, propeller=helm.propeller
     )  # faster than at bollard, for the way that she has
+    # The azimuth turns the shorter way, at its largest rate.
     turn = wrap(aboard.azimuth_cmd[k] - azimuth)
     D = helm.diameter
     side_factor = -helm.side_force_coefficient * helm.propeller.water_density * D * D
@@ -287,10 +294,12 @@ def _azimuth(aboard, k, y, water, helm):
     def load(t):
         thrust = _towards(thrust_now, aboard.thrust_cmd[k], t * helm.thrust_rate)
         angle = azimuth + clip(turn, -t * helm.azimuth_rate, t * helm.azimuth_rate)
+        # Side force F_s = -c ρ D² (V + |n| D) u_s: momentum drag of the water taken along.
         wash = D * abs(bollard_speed(thrust, propeller=helm.propeller) + beyond)
         s = sin(angle)
         c = cos(angle)
 
+        # Thrust and direction are fixed in time; the side force follows the velocity within a step.
         def at(u_r, v_r, r):
             u, v = velocity_at(helm.x, y, u_r, v_r, r)
             u_s = c * v - s * u
@@ -316,7 +325,7 @@ def predict(
     helm: HelmParameters,
     seconds: int = LONGEST,
 ) -> tuple[Motion, ...]:
-    """Motion of the ship ahead by her equations of motion.
+    """Predict the motion of the ship by her equations of motion.
 
     Parameters
     ----------
@@ -327,7 +336,7 @@ def predict(
     left : tuple of three, like current
         Load in body axes that nothing else explains, as estimated; paper III has none. [N, N, N.m]
     hull, wind, helm : HullParameters, WindParameters, HelmParameters
-        The ship as she knows herself.
+        The ship's model of herself.
     seconds : int
         How far ahead. [s]
 
@@ -341,12 +350,15 @@ def predict(
     Midpoint rule with steps of one second, thrusters at the middle of each.
     """
     ship = aboard.ship
+    # The air's velocity over ground is held, not the apparent wind, which changes with her motion.
     air = _air(aboard)
     x, y, psi, _, _, r = ship
+    # Hull loads depend on the velocity through the water, so it is integrated.
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
     loads = thruster_loads(aboard, (u_r, v_r), helm=helm)
     found = []
     for second in range(seconds):
+        # Loads at the middle of each second: second-order accuracy with one step a second.
         rates = _rates(loads(second + 0.5), psi + 0.5 * r, current, air, left, hull, wind)
         x, y, psi, u_r, v_r, r = midpoint_motion(rates, x, y, psi, u_r, v_r, r, 1.0, *current)
         psi = wrap(psi)
@@ -356,7 +368,7 @@ def predict(
 
 
 def _rates(thrusters, heading, current, air, left, hull, wind):
-    """Rates of the velocity through the water at a heading, as `vessel.accelerations`."""
+    """Rates of the velocity through the water at a heading, as in `vessel.accelerations`."""
     u_c, v_c = to_body(heading, *current)
 
     def rates(u_r, v_r, r):
@@ -369,7 +381,8 @@ def _rates(thrusters, heading, current, air, left, hull, wind):
 
 
 def _air(aboard):
-    """Velocity of the air over ground, north and east, as `known.air_velocity`."""
+    """Velocity of the air over ground, north and east, as in `air_velocity`."""
+    # Air velocity = ship velocity - apparent wind (given by where it comes from).
     ship = aboard.ship
     speed = aboard.wind_speed
     return to_ned(

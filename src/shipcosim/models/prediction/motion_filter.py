@@ -1,4 +1,4 @@
-"""Filter of a ship's motion that rides through a loss of GNSS: her equations of motion, with numbers that were learned.
+"""Filter of a ship's motion that bridges a loss of GNSS, with learned parameters.
 
 With GNSS it is an observer of position, velocity and the load that thrust and wind do not explain (current, wave drift,
 errors of the model). Without, it integrates the same model, in which thrust and wind are measured and the load is held,
@@ -91,7 +91,7 @@ class State(NamedTuple):
 
 
 def design(arrays: Mapping) -> FilterNumbers:
-    """The filter's numbers from what training left.
+    """The filter's parameters from trained arrays.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def design(arrays: Mapping) -> FilterNumbers:
 
 
 def start(measured: Measured, *, design: FilterNumbers) -> State:
-    """State at the start: where GNSS says, at rest.
+    """State at the start: at the position of GNSS, at rest.
 
     Parameters
     ----------
@@ -138,14 +138,14 @@ def start(measured: Measured, *, design: FilterNumbers) -> State:
 
 
 def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -> State:
-    """State a sample later.
+    """State one sample later.
 
     Parameters
     ----------
     state : State
         At the sample before; floats, (...) arrays or tensors.
     measured : Measured
-        What is aboard now.
+        Measurements of now.
     h : float
         Time between the samples. [s]
     design : FilterNumbers
@@ -172,19 +172,24 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
     d = design
     psi = measured.psi
     valid = measured.valid
+    # Prediction: accelerations of thrust and wind, plus the estimated load turned into body axes.
     forward, side = _accelerations(measured, d)
     load = to_body(psi, state.load_north, state.load_east)
     u = _advanced(state.u, forward + load[0], d.surge_time, h)
     v = _advanced(state.v, side + load[1], d.sway_time, h)
+    # Displacement with the mean of old and new velocity (trapezoidal rule).
     north, east = to_ned(psi, 0.5 * h * (state.u + u), 0.5 * h * (state.v + v))
     x = state.x + north
     y = state.y + east
+    # Innovations of position and velocity in body axes; zero while GNSS is lost.
     ahead, beside = (valid * one for one in to_body(psi, measured.x - x, measured.y - y))
     faster = valid * (measured.u - u)
     sideways = valid * (measured.v - v)
+    # Variance of the velocity innovation: mostly waves. A rough sea lowers all gains.
     sea = state.sea + h / SEA_TIME * valid * (
         0.5 * (faster * faster + sideways * sideways) - state.sea
     )
+    # Correct position, velocity and load, each with gains of its own.
     k = h / (1.0 + d.position_in_sea * sea)
     north, east = to_ned(
         psi,
@@ -202,25 +207,30 @@ def step(state: State, measured: Measured, h: float, *, design: FilterNumbers) -
         k * (d.load_by_position * ahead + d.load_by_velocity * faster),
         k * (d.load_by_position * beside + d.load_by_velocity * sideways),
     )
+    # Without GNSS the load fades to its mean; with GNSS the mean follows the load slowly.
     fades = (1.0 - valid) * (1.0 - exp(-h / d.load_time))
     follows = valid * (1.0 - exp(-h / d.mean_time))
     load_north = state.load_north + north + fades * (state.mean_north - state.load_north)
     load_east = state.load_east + east + fades * (state.mean_east - state.load_east)
     mean_north = state.mean_north + follows * (load_north - state.mean_north)
     mean_east = state.mean_east + follows * (load_east - state.mean_east)
+    # Time since the loss, zero while GNSS works.
     lost_for = (1.0 - valid) * (state.lost_for + h)
     return State(x, y, u, v, load_north, load_east, mean_north, mean_east, sea, lost_for)
 
 
 def _accelerations(measured, d):
-    """Of thrust and wind, forward and to starboard."""
+    """Accelerations by thrust and wind, forward and to starboard."""
     bow_1, bow_2, stern_1, stern_2, port, starboard = measured.commands
     speed = measured.wind_speed
     wind_from = measured.wind_from
+    # Loads of wind and thrusters grow with the square of wind speed and command.
     square = speed * speed
+    # Main propellers: different coefficients ahead and astern.
     forward = d.ahead * (_ahead(port) + _ahead(starboard)) - d.astern * (
         _ahead(-port) + _ahead(-starboard)
     )
+    # Wind by the first and third harmonic of its direction: even in surge, odd in sway.
     forward = forward + square * (
         d.wind_surge_1 * cos(wind_from) + d.wind_surge_3 * cos(3.0 * wind_from)
     )
@@ -244,6 +254,6 @@ def _signed(command):
 
 
 def _advanced(velocity, acceleration, time, h):
-    """Velocity a sample later."""
+    """Velocity one sample later, with linear damping, exactly: u e^(-h/T) + a T (1 - e^(-h/T))."""
     kept = exp(-h / time)
     return velocity * kept + acceleration * time * (1.0 - kept)

@@ -1,4 +1,4 @@
-"""A loss of GNSS: what a ship still measures, and the region in which she is.
+"""Loss of GNSS: remaining measurements, and the region that contains the ship.
 
 A law that reckons her place is `design`, `start` and `step`, as `motion_filter` and `velocity_network` have them. Its
 states have `x`, `y`, `u`, `v`, `lost_for` and `sea`.
@@ -45,7 +45,7 @@ class Measured(NamedTuple):
 
 
 class Region(NamedTuple):
-    """Radius of the circle about the reckoned place that has the true one in 90 % of cases, as calibrated.
+    """Radius of the circle around the reckoned position with the true one in 90 % of cases.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Region(NamedTuple):
 
 
 def region_of(arrays: Mapping[str, np.ndarray]) -> Region:
-    """The region from what training left.
+    """The region from trained arrays.
 
     Parameters
     ----------
@@ -111,6 +111,9 @@ def radius(lost_for: Arithmetic, sea: Arithmetic, *, region: Region) -> Arithmet
     """
     times = region.times
     radii = region.radii
+    # Beyond the last time the radius grows with the last slope; max(0, t - t_n) written without a
+    # branch.
     slope = (radii[-1] - radii[-2]) / (times[-1] - times[-2])
     beyond = 0.5 * (abs(lost_for - times[-1]) + lost_for - times[-1])
+    # A rougher sea means less accurate velocity at the loss.
     return (interp(lost_for, times, radii) + slope * beyond) * (1.0 + region.sea_share * sqrt(sea))

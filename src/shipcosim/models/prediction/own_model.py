@@ -1,4 +1,4 @@
-"""Equations of motion of a ship with what her own model lacks: a residual load, and thrust that runs down.
+"""Equations of motion with the parts that a ship's own model lacks: residual load, thrust run-down.
 
 Current, remaining load and the coefficients of a residual load that is linear in them (`residual_load`) are states
 beside the motion; `own_record` estimates them all.
@@ -65,7 +65,7 @@ class Learned(NamedTuple):
     force_time, moment_time, wind_time : like current_walk
         Correlation times of remaining force and moment, time constant of the mean of the wind. [s]
     lag : like current_walk
-        Time constant with which thrust follows what it is told. [s]
+        Time constant with which thrust follows its command. [s]
     run_down_bow, run_down_stern : like current_walk
         Time in which thrust of 10 kN falls to a quarter when power is lost. [s]
     current_away : like current_walk
@@ -107,7 +107,7 @@ class Thrust(NamedTuple):
 
 
 def thrust_told(thrusters: Load, hull: HullParameters) -> Thrust:
-    """The thrust at bow and stern that gives a load.
+    """Thrust at bow and stern that gives a load.
 
     Parameters
     ----------
@@ -125,20 +125,21 @@ def thrust_told(thrusters: Load, hull: HullParameters) -> Thrust:
     ----------
     Statics; port and starboard units are taken together.
     """
+    # Two transverse forces at ± arm: Y = B + S, N = arm (B - S).
     X, Y, N = thrusters
     turning = N / (ARM * hull.length)
     return Thrust(0.5 * (Y + turning), X, 0.5 * (Y - turning))
 
 
 def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Thrust:
-    """Thrust a step later: it follows what it is told; told nothing at all, power is lost and the propellers run down.
+    """Thrust a step later: it follows the command; without any command the propellers run down.
 
     Parameters
     ----------
     thrust : Thrust
         Delivered now; floats, (...) arrays or tensors.
     told : Thrust
-        What is told.
+        Commanded thrust.
     h : float
         Step. [s]
     learned : Learned
@@ -158,13 +159,16 @@ def delivered(thrust: Thrust, told: Thrust, h: float, *, learned: Learned) -> Th
     ----------
     Newton's law for a shaft with quadratic torque.
     """
+    # All commands exactly zero means that power is lost.
     lost = (abs(told.bow) + abs(told.stern_X) + abs(told.stern_Y)) == 0.0
     share = 1.0 - exp(-h / learned.lag)
+    # Shaft speed goes with the root of thrust, 1/n grows evenly: T(t) = T0 / (1 + t/τ)², τ ∝ 1/n.
     stern = sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
     bow = sqrt((abs(thrust.bow) + _TINY) / HELD)
     slowed_stern = 1.0 + h * stern / learned.run_down_stern
     slowed_bow = 1.0 + h * bow / learned.run_down_bow
     factors = slowed_bow**-2, slowed_stern**-2, slowed_stern**-2
+    # Lag of first order while there is power, run-down without.
     values = zip(thrust, told, factors, strict=True)
     return Thrust(
         *[where(lost, now * factor, now + share * (then - now)) for now, then, factor in values]
@@ -207,21 +211,28 @@ def residual_load(
     Forms of the terms: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6;
     momentum drag of running thrusters in proportion to their speed, as `propulsion.azimuth`.
     """
+    # The sizes ρ/2 L T (and lengths) make the coefficients dimensionless and of order one.
     c = coefficients
     length = hull.length
     size = 0.5 * hull.water_density * length * hull.draught
     arm = ARM * length
+    # Wash of running stern thrusters: momentum drag proportional to their speed, ∝ √T.
     wash = HELD * sqrt((hypot(thrust.stern_X, thrust.stern_Y) + _TINY) / HELD)
     drag = -c[17] * wash * (v_r - arm * r)
+    # Yaw rate as the speed of bow and stern, so that all terms are forces.
     turn = length * r
+    # Surge: damping (quadratic and linear), wind and thrust errors. 0.034 is the size that the
+    # resistance of hulls has.
     X = (
         -0.034 * size * (c[0] * abs(u_r) + c[1] * SLOW) * u_r
         + c[9] * wind[0]
         + c[13] * thrust.stern_X
     )
+    # Sway and yaw: cross flow, turning, Munk moment (c6 u v), wind and wash.
     Y = -size * (c[2] * abs(v_r) + c[3] * SLOW) * v_r + c[10] * wind[1] + drag
     N = (c[4] * abs(v_r) + c[5] * SLOW + c[6] * u_r) * v_r + (c[7] * abs(turn) + c[8] * SLOW) * turn
     N = -size * length * N + c[11] * wind[2] + 0.1 * length * c[12] * wind[1] - arm * drag
+    # Errors of thrust at bow and stern act at the same arms.
     stern = c[14] * thrust.stern_Y
     bow = c[15] * thrust.bow
     return X - c[16] * wash * u_r, Y + stern + bow, N + arm * (bow - stern)
@@ -267,10 +278,12 @@ def moved(
     ----------
     Equations of motion as `ship.vessel`.
     """
+    # Midpoint rule: everything that turns with the ship is evaluated at half the turn.
     half = 0.5 * h
     (x, y, psi, u, v, r) = states[:6]
     middle = psi + half * r
     u_c, v_c = to_body(middle, *states[CURRENT])
+    # Wind, remaining force and thrust are held over the step.
     load = wind_loads(*apparent_wind(middle, u, v, *air), wind=wind)
     force_X, force_Y = to_body(middle, *states[FORCE])
     X = load[0] + thrust.stern_X + force_X
@@ -279,23 +292,29 @@ def moved(
     coefficients = tuple(states[COEFFICIENT])
 
     def rates(u, v, r):
+        # The residual load depends on the velocity, so it is evaluated within each stage.
         more = residual_load(coefficients, u - u_c, v - v_c, r, load, thrust, hull)
         u_dot, v_dot, r_dot = accelerations(
             u - u_c, v - v_c, r, X + more[0], Y + more[1], N + more[2], hull=hull
         )
+        # From rates through water to rates over ground: the current turns in body axes.
         return u_dot + r * v_c, v_dot - r * u_c, r_dot
 
+    # Half a step, then the whole step with the slope of the middle.
     first = rates(u, v, r)
     u_m = u + half * first[0]
     v_m = v + half * first[1]
     r_m = r + half * first[2]
     second = rates(u_m, v_m, r_m)
     north, east = to_ned(psi + half * r_m, u_m, v_m)
+    # Speeds are bounded, so a filter that diverges stays finite.
     place = x + h * north, y + h * east, psi + h * r_m
     speeds = [
         clip(now + h * rate, -most, most)
         for now, rate, most in zip((u, v, r), second, FASTEST, strict=True)
     ]
+    # Remaining force and moment: Gauss-Markov processes, whose mean decays. Current and
+    # coefficients stay.
     force = exp(-h / learned.force_time)
     moment = exp(-h / learned.moment_time)
     faded = [force * one for one in states[FORCE]]

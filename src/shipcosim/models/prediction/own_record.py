@@ -1,4 +1,4 @@
-"""Current, remaining load and errors of the ship's own model, as she can tell them from her own record.
+"""Estimate current, remaining load and model errors of a ship from her own record.
 
 Kalman filters whose states are the ship's motion, the current, a remaining load, and coefficients of a residual load
 (`own_model`). Whether a load is of the current or a force is settled only in the drift, so one filter begins without
@@ -92,12 +92,12 @@ class Record(NamedTuple):
 
 
 def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
-    """What is believed before any record.
+    """Estimate before any record: the learned prior.
 
     Parameters
     ----------
     known : Known
-        What is known now; floats, (...) arrays or tensors.
+        Inputs of the predictor now; floats, (...) arrays or tensors.
     learned : Learned
         Arrays or tensors that broadcast with them.
     hull : HullParameters
@@ -114,6 +114,7 @@ def begin(known: Known, *, learned: Learned, hull: HullParameters) -> Record:
     """
     like = 0.0 * (learned.mean[..., 0] + known.ship.u)
     library = library_of(like)
+    # One filter without current, four with a current from each side; the same uncertainty for all.
     mean = library.stack(_believed(known, learned, like))
     std = learned.std + like[..., None]
     covariance = (std * std)[..., None] * library.eye(len(STATES), dtype=std.dtype)
@@ -146,7 +147,7 @@ def weights(record: Record) -> Arithmetic:
 
 
 def mixed(record: Record, motions: Motion) -> Motion:
-    """Mean of what the filters say, by their weights.
+    """Weighted mean of the filters' motions.
 
     Parameters
     ----------
@@ -164,6 +165,7 @@ def mixed(record: Record, motions: Motion) -> Motion:
     ----------
     Definition.
     """
+    # Headings are averaged as unit vectors, since they wrap.
     share = weights(record)
     x, y, _, u, v, r = ((share * one).sum(0) for one in motions)
     psi = atan2((share * sin(motions.psi)).sum(0), (share * cos(motions.psi)).sum(0))
@@ -186,11 +188,11 @@ def step(
     record : Record
         Up to the last sample; arrays or tensors.
     known : Known
-        What is known now; floats, (...) arrays or tensors.
+        Inputs of the predictor now; floats, (...) arrays or tensors.
     h : float
         Time since the last sample. [s]
     learned : Learned
-        What was believed before the record.
+        Learned prior.
     hull, wind : HullParameters, WindParameters
         The ship's own model.
 
@@ -202,7 +204,7 @@ def step(
     Notes
     -----
     Extended Kalman filters. From sample to sample the ship's equations of motion are integrated by the midpoint rule
-    with the measured wind and the thrust that is told; the observer's place, heading and velocities correct the
+    with the measured wind and the commanded thrust; the observer's place, heading and velocities correct the
     prediction. Slopes are differences. A wind that the controller does not believe is replaced by its mean. A filter
     that goes astray begins anew, with the least weight.
 
@@ -213,15 +215,19 @@ def step(
     """
     library = library_of(record.mean)
     told = thrust_told(known.thrusters, hull)
+    # A disbelieved wind is replaced by its mean.
     believed = known.wind_believed > 0.5
     air = air_velocity(known)
     air = [
         where(believed, now, mean)
         for now, mean in zip(air, (record.wind_north, record.wind_east), strict=True)
     ]
+    # Thrust and wind at the middle of the step, as the midpoint rule needs them.
     thrust = delivered(record.thrust, told, h, learned=learned)
     held = Thrust(*[0.5 * (a + b) for a, b in zip(record.thrust, thrust, strict=True)])
     over = 0.5 * (record.air_north + air[0]), 0.5 * (record.air_east + air[1])
+    # Extended Kalman filter: predict mean and covariance, P ← F P Fᵀ + Q, then correct by the
+    # observer.
     then, slopes = _elapsed(
         record.mean, over, held, h, {"learned": learned, "hull": hull, "wind": wind}, library
     )
@@ -229,14 +235,18 @@ def step(
         h, learned, library
     )
     mean, covariance, likelihood = _corrected(then, covariance, known.ship, h, learned, library)
+    # Weights: sum of log-likelihoods with forgetting. Only a share counts, because errors of the
+    # observer last.
     likelihood = (
         record.likelihood * exp(-h / learned.evidence_time) + learned.evidence * h * likelihood
     )
+    # A filter that left the physical range restarts from the prior, with the least weight.
     astray, likelihood = _astray(then, mean, likelihood, library)
     if astray.any():
         fresh = begin(known, learned=learned, hull=hull)
         mean = where(astray[..., None], fresh.mean, mean)
         covariance = where(astray[..., None, None], fresh.covariance, covariance)
+    # The mean wind follows with a lag of first order: gusts do not last over the horizon.
     share = 1.0 - exp(-h / learned.wind_time)
     means = [
         m + share * (a - m) for m, a in zip((record.wind_north, record.wind_east), air, strict=True)
@@ -261,7 +271,7 @@ def predict(
     record : Record
         With the sample of now; arrays or tensors.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     horizons : tuple of float, increasing
         How far ahead. [s]
     steps : tuple of int
@@ -278,7 +288,7 @@ def predict(
 
     References
     ----------
-    Midpoint rule; wind, current and what thrusters are told are held, remaining force and moment fade.
+    Midpoint rule; wind, current and thrust commands are held, remaining force and moment fade.
     """
     single = record.mean.ndim == 1  # in Python's floats it takes a tenth of the time
     states = record.mean.tolist() if single else [record.mean[..., k] for k in range(len(STATES))]
@@ -289,6 +299,7 @@ def predict(
     found = []
     before = 0.0
     for horizon, count in zip(horizons, steps, strict=True):
+        # Equal steps up to each horizon; thrust and states advance together.
         h = (horizon - before) / count
         for _ in range(count):
             then = delivered(thrust, told, h, learned=learned)
@@ -306,7 +317,7 @@ def predict(
 
 
 def member(record: Record, index: int) -> Record:
-    """One of the filters, with Python's floats wherever it has single numbers.
+    """One of the filters, with Python floats for single numbers.
 
     Parameters
     ----------
@@ -332,7 +343,7 @@ def member(record: Record, index: int) -> Record:
 
 
 def _believed(known, learned, like):
-    """Expected states of each filter before any record."""
+    """Prior means of the states, for each filter."""
     library = library_of(like)
     found = []
     for directions in DIRECTIONS:
@@ -349,12 +360,14 @@ def _believed(known, learned, like):
 
 
 def _mean(a, b):
-    """Mean of a thrust that falls as 1/(1 + t/T)², which is the geometric one; of others nearly the arithmetic one."""
+    """Mean over a step: geometric for a thrust that falls as 1/(1 + t/T)², else arithmetic."""
     return where(a * b > 0.0, sqrt(abs(a * b) + _TINY) * where(a > 0.0, 1.0, -1.0), 0.5 * (a + b))
 
 
 def _elapsed(mean, air, thrust, h, model, library):
-    """Expected states a step later, and their slopes over those now."""
+    """Expected states a step later, and their slopes by the present states."""
+    # Slopes by differences: all states are displaced at once, along a first axis, in one
+    # evaluation.
     differences = library.asarray(DIFFERENCES, dtype=mean.dtype)
     moves = (library.eye(len(STATES), dtype=mean.dtype) * differences).reshape(
         len(STATES), *(1,) * (mean.ndim - 1), len(STATES)
@@ -363,6 +376,7 @@ def _elapsed(mean, air, thrust, h, model, library):
     then = library.stack(
         moved([at[..., k] for k in range(len(STATES))], air, thrust, h, **model), -1
     )
+    # Column j of F is (f(x + d_j) - f(x)) / d_j.
     return then[0], library.moveaxis(
         (then[1:] - then[:1]) / differences.reshape((-1,) + (1,) * mean.ndim), 0, -1
     )
@@ -370,10 +384,13 @@ def _elapsed(mean, air, thrust, h, model, library):
 
 def _grown(h, learned, library):
     """Covariance that a step adds."""
+    # Gauss-Markov: variance σ² (1 - e^(-2h/T)) keeps the stationary variance σ².
     force = exp(-2.0 * h / learned.force_time)
     moment = exp(-2.0 * h / learned.moment_time)
     zero = 0.0 * learned.current_walk
     variances = learned.std * learned.std
+    # Random walks of velocity, yaw rate and current grow with time. Positions and coefficients get
+    # no noise.
     speed = h * learned.disturbance[..., 0] ** 2
     rate = h * learned.disturbance[..., 1] ** 2
     current = h * learned.current_walk**2
@@ -398,30 +415,37 @@ def _grown(h, learned, library):
 
 
 def _corrected(mean, covariance, ship, h, learned, library):
-    """Mean and covariance with what the observer estimates as measurement, and the logarithm of its likelihood."""
+    """Mean and covariance corrected by the observer's estimate, and its log-likelihood."""
     count = len(MEASURED)
+    # The observer's estimates count as measurements; noise averaged over a second scales with 1/h.
     place, heading, speed, rate = (learned.noise[..., k] ** 2 / h for k in range(4))
     noise = library.stack([place, place, heading, speed, speed, rate], -1)
     noise = noise[..., None] * library.eye(count, dtype=mean.dtype)
+    # The measured states come first, so C P is the first rows of P.
     rows = covariance[..., :count, :]
     missed = [value - mean[..., k] for k, value in enumerate(ship)]
     missed[2] = wrap(missed[2])
     missed = library.stack(missed, -1)[..., None]
+    # Innovation covariance S = C P Cᵀ + R. One solve gives gain and distance.
     expected = rows[..., :count] + noise
     solved = library.linalg.solve(expected, library.concatenate([rows, missed], -1))
     gain = library.swapaxes(solved[..., :-1], -1, -2)
+    # log N(innovation; 0, S) up to a constant: -½ (eᵀ S⁻¹ e + ln det S).
     distance = (missed[..., 0] * solved[..., -1]).sum(-1)
     likelihood = -0.5 * (distance + library.linalg.slogdet(expected)[1])
+    # Update P - K C P; the symmetric part removes rounding.
     covariance = covariance - gain @ rows
     mean = mean + (gain @ missed)[..., 0]
     return mean, 0.5 * (covariance + library.swapaxes(covariance, -1, -2)), likelihood
 
 
 def _astray(then, mean, likelihood, library):
-    """Whether a filter is out of bounds, and likelihoods over the largest, at least `LEAST`."""
+    """True for filters out of bounds, and likelihoods relative to the largest, at least `LEAST`."""
+    # NaN fails the comparison, so it counts as astray too.
     astray = ~(abs(mean.sum(-1) + likelihood) < NO_NUMBER)
     for k, most in zip((3, 4, 5, 6, 7), (*FASTEST, STRONGEST, STRONGEST), strict=True):
         astray = astray | (abs(then[..., k]) >= most)
     zero = library.zeros_like(likelihood)
     likelihood = where(astray, zero - NO_NUMBER, likelihood)
+    # A floor for the weights: a filter that was wrong so far can come back.
     return astray, maximum(likelihood - library.amax(likelihood, 0), zero + LEAST)

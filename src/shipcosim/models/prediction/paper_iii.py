@@ -1,4 +1,4 @@
-"""The docking predictor of paper III: an ensemble of LSTMs adds the error of the kinetic model over 30 s directly.
+"""The docking predictor of paper III: LSTMs add the kinetic model's error over 30 s directly.
 
 References
 ----------
@@ -80,7 +80,7 @@ def ensemble_of(arrays: Mapping[str, np.ndarray]) -> Ensemble:
 
 
 def inputs(aboard: Aboard) -> np.ndarray:
-    """What the networks see, by `INPUTS`; angles in [0, 2π), place relative to where she is to lie.
+    """Inputs of the networks, as `INPUTS`; angles in [0, 2π), position relative to the berth.
 
     Parameters
     ----------
@@ -94,6 +94,7 @@ def inputs(aboard: Aboard) -> np.ndarray:
     """
     ship = aboard.ship
     turn = 2.0 * pi
+    # Course and speed over ground, as paper III has them.
     north, east = to_ned(ship.psi, ship.u, ship.v)
     found = [
         ship.x,
@@ -148,6 +149,7 @@ def errors(
         North in 1 to 30 s, then east; memory after the sample. [m; 1]
     """
     x = (found - ensemble.mean) / ensemble.std
+    # Standardise, evaluate all members, average, and scale back.
     pairs = [evaluate(net, x, kept) for net, kept in zip(ensemble.networks, memory, strict=True)]
     mean = sum(pair[0] for pair in pairs) / len(pairs)
     return ensemble.target_mean + ensemble.target_std * mean, tuple(pair[1] for pair in pairs)
@@ -168,6 +170,7 @@ def corrected(motions: Sequence[Motion], expected: np.ndarray) -> list[tuple]:
     list of tuples of three
         North, east, heading, one a second. [m, m, rad]
     """
+    # The outputs are all errors north, then all errors east.
     return [
         (one.x + expected[..., k], one.y + expected[..., LONGEST + k], one.psi)
         for k, one in enumerate(motions)

@@ -1,4 +1,4 @@
-"""The hybrid predictor of paper IV: networks correct the accelerations of the equations of motion, second by second.
+"""The hybrid predictor of paper IV: networks correct the model's accelerations, second by second.
 
 References
 ----------
@@ -96,6 +96,7 @@ def outputs(ensemble: Ensemble, inputs: np.ndarray) -> np.ndarray:
     (m, n, 3) array
         [m/s2, m/s2, rad/s2]
     """
+    # Standardised inputs, tanh layers, and a linear last layer with its scale.
     values = (inputs - ensemble.input_mean) / ensemble.input_std
     for weights, bias in ensemble.layers[:-1]:
         values = np.tanh(values @ weights + bias)
@@ -132,6 +133,7 @@ def model_acceleration(
     tuple of three, like psi
         [m/s2, m/s2, rad/s2]
     """
+    # Wind load at the present apparent wind, then M ν̇ = τ - C ν - D ν, without a current.
     load = wind_loads(*apparent_wind(psi, nu[0], nu[1], *air), wind=wind)
     return accelerations(*nu, *(a + b for a, b in zip(thrusters, load, strict=True)), hull=hull)
 
@@ -142,7 +144,7 @@ def begin(known: Known) -> Past:
     Parameters
     ----------
     known : Known
-        What is known now, in floats.
+        Inputs of the predictor now, in floats.
 
     Returns
     -------
@@ -161,7 +163,7 @@ def step(past: Past, known: Known, *, hull: HullParameters, wind: WindParameters
     past : Past
         Of the last sample.
     known : Known
-        What is known now, in floats or (...) arrays.
+        Inputs of the predictor now, floats or (...) arrays.
     hull, wind : HullParameters, WindParameters
         The ship's own model.
 
@@ -170,10 +172,13 @@ def step(past: Past, known: Known, *, hull: HullParameters, wind: WindParameters
     Past
         With this sample.
     """
+    # What the model expected for the last second, against what happened: the residual is an input
+    # of the networks.
     psi, *nu = past.states[-1]
     expected = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
     now = known.ship.u, known.ship.v, known.ship.r
     residual = tuple((b - a) / PERIOD - dot for a, b, dot in zip(nu, now, expected, strict=True))
+    # Unwrap the heading: add the turn along the shorter arc.
     turned = known.ship.psi - psi
     state = (psi + np.arctan2(np.sin(turned), np.cos(turned)), *now)
     return Past((*past.states[1:], state), air_velocity(known), tuple(known.thrusters), residual)
@@ -195,7 +200,7 @@ def predict(
     past : Past
         With the sample of now; floats or (n,) arrays.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     ensemble : Ensemble or None
         The networks; None for the equations of motion alone.
     seconds : int
@@ -213,18 +218,22 @@ def predict(
     Explicit steps of a second, the place by the mean of the velocities before and after; the residual is the mean of
     the networks. Wind and thrust are held.
     """
+    # Start from averages over the last seconds, which removes noise and waves.
     psi, *nu = (sum(one) / WINDOW for one in zip(*past.states, strict=True))
     x = known.ship.x
     y = known.ship.y
     residual = past.residual
     found = []
     for _ in range(seconds):
+        # Acceleration by the model, then the correction by the mean of the networks.
         dot = model_acceleration(psi, tuple(nu), past.wind, past.thrusters, hull=hull, wind=wind)
         if ensemble is not None:
             inputs = np.stack(np.broadcast_arrays(*nu, *dot, *residual), axis=-1)
             mean = outputs(ensemble, inputs[None] if inputs.ndim == 1 else inputs).mean(axis=0)
+            # The predicted residual is the next input: the networks feed back on themselves.
             residual = tuple(mean[0].tolist()) if inputs.ndim == 1 else tuple(mean.T)
             dot = tuple(a + b for a, b in zip(dot, residual, strict=True))
+        # Explicit Euler for velocities; the position uses their mean.
         then = [value + PERIOD * rate for value, rate in zip(nu, dot, strict=True)]
         u, v, r = (0.5 * (a + b) for a, b in zip(nu, then, strict=True))
         north, east = to_ned(psi + 0.5 * PERIOD * r, u, v)

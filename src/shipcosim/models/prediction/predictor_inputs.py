@@ -1,4 +1,4 @@
-"""What a ship knows of herself and of the weather: all that a predictor is given, whatever it makes of it.
+"""What a ship knows of herself and the weather: the inputs of all predictors.
 
 A predictor is a state and two functions: `step` takes the state and a `Known` to the next sample, `predict` gives the
 motion to come from both. Dead reckoning has its state in `surroundings`, and `predict` in `dead_reckoning`.
@@ -23,14 +23,14 @@ class Known(NamedTuple):
         Load in body axes that neither allocated thrust nor measured wind explains, as the same observer estimates it.
         [N, N, N.m]
     thrusters : like bias
-        Load in body axes that the thrusters were told to give. [N, N, N.m]
+        Commanded load of the thrusters in body axes. [N, N, N.m]
     wind_speed, wind_from : float or (...) array or tensor
         Measured apparent wind at 10 m above the ship: speed, and direction it comes from, clockwise from the bow.
         [m/s, rad]
     wind_believed : like wind_speed
         1 where the DP controller believes that wind, 0 where it does not: then its load is part of the bias. [1]
     desired : Desired, optional
-        Motion that the DP controller is asked for now; nothing where nobody says it.
+        Desired motion of the DP controller now; None where it is unknown.
     goal : tuple of three, like wind_speed, optional
         Where its reference model goes to: position and heading. [m, m, rad]
     wave_frequency : like wind_speed, optional
@@ -65,6 +65,7 @@ def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:
     ----------
     Definition; the inverse of `wind_loads.apparent_wind`.
     """
+    # Invert the apparent wind: air = ship - wind from its direction, turned into north-east.
     ship = known.ship
     speed = known.wind_speed
     return to_ned(

@@ -1,4 +1,4 @@
-"""Regions about predictions that have the truth in 90 % of cases.
+"""Regions about predictions that contain the truth in 90 % of cases.
 
 Calibrated widths hold for ships like those of the calibration. What widens them for another is the predictor's own
 record: how far she came from where she was foreseen ten seconds ago, which needs no truth.
@@ -111,7 +111,7 @@ def own_errors(
     ship : Motion
         The ship now, as estimated.
     foreseen : Motion
-        What was predicted for now, ten seconds ago.
+        Prediction for now, made ten seconds ago.
     h : float
         Time since the last sample. [s]
     regions : RegionParameters
@@ -122,6 +122,7 @@ def own_errors(
     tuple of two, like errors
         Position and heading. [m, rad]
     """
+    # Moving averages of the prediction error made ten seconds ago; this needs no truth.
     share = 1.0 - exp(-h / regions.error_time)
     position = hypot(ship.x - foreseen.x, ship.y - foreseen.y)
     heading = abs(wrap(ship.psi - foreseen.psi))
@@ -140,7 +141,7 @@ def widening(
     lost_for : like errors
         Time since all thrust was lost; negative while thrusters act. [s]
     regions : RegionParameters
-        What was calibrated.
+        Calibrated sizes.
 
     Returns
     -------
@@ -152,7 +153,10 @@ def widening(
         (errors[0], regions.ordinary_position_error, regions.later_position_share),
         (errors[1], regions.ordinary_heading_error, regions.later_heading_share),
     ):
+        # √(1 + (error / ordinary)²): 1 for small errors, 1.4 at the ordinary one, then
+        # proportional.
         grown = sqrt(1.0 + (error / ordinary) * (error / ordinary))
+        # No region while thrusters act; a smaller one after the first seconds of a drift.
         found.append(grown * where(lost_for < 0.0, 0.0, where(lost_for < JUST_LOST, 1.0, later)))
     return found[0], found[1]
 

@@ -1,9 +1,9 @@
-"""Wind, current and remaining force around a ship, as she can tell them from what she knows of herself.
+"""Estimate wind, current and remaining force around a ship from her own measurements.
 
 The bias load of the DP observer is one load at one state. Held while the ship drifts, it would push her for ever;
 but what pushes her most is the water's motion, and she comes to move with the water. So the bias is taken apart, into a
 current that loads the hull, and a force: only as she moves does she learn which is which. And into what thrusters give
-beside what they are told: that is gone as soon as they are, while the observer's bias still holds it.
+beyond their commands: that is gone as soon as the commands are, while the observer's bias still holds it.
 """
 
 from dataclasses import dataclass
@@ -123,7 +123,7 @@ def unknown(
     hull : HullParameters
         Whose length gives the lever of the remaining force.
     parameters : SurroundingsParameters
-        What is assumed.
+        Prior assumptions.
 
     Returns
     -------
@@ -143,6 +143,7 @@ def unknown(
         0.0,
     )
     indices = range(_STATES)
+    # Diagonal at the start: nothing is known of the relations.
     covariance = tuple(tuple(zero + variances[i] * (i == j) for j in indices) for i in indices)
     return Surroundings(
         *air_velocity(known), zero, zero, zero, zero, zero, covariance, (zero, zero, zero)
@@ -166,7 +167,7 @@ def step(
     surroundings : Surroundings
         As estimated at the last sample; floats, (...) arrays or tensors.
     known : Known
-        What is known now.
+        Inputs of the predictor now.
     h : float
         Time since the last sample. [s]
     hull : HullParameters
@@ -176,7 +177,7 @@ def step(
     ship : DpShip
         Model in which the bias load was estimated, for its linear damping.
     parameters : SurroundingsParameters
-        What is assumed.
+        Prior assumptions.
 
     Returns
     -------
@@ -204,16 +205,23 @@ def step(
     ----------
     Nørgaard, Poulsen, Ravn, New developments in state estimation for nonlinear systems, Automatica 36, 2000.
     """
+    # Wind first: its load is known and not to be explained by the current.
     air = _averaged(surroundings, known, h, parameters)
     wind_load = wind_loads(*apparent_wind(*known.ship[2:5], *air), wind=wind)
     left = _left_to_explain(known, wind_load, ship)
+    # Predict the states, then correct by three scalar measurements: X, Y and N.
     mean, covariance = _elapsed(surroundings, known.thrusters, h, hull, parameters)
+    # Hull loads are quadratic and flat at rest. Their slope is taken over one standard deviation of
+    # the current.
     spread = maximum(sqrt(0.5 * (covariance[0][0] + covariance[1][1])), _LEAST)
     rows = _slopes(known, mean, spread, hull)
     missed = _missed(known, left, mean, hull)
+    # White noise of intensity Q sampled with h has the variance Q / h; the moment's is larger by
+    # lever².
     noise = parameters.load_noise / h
     lever = parameters.force_lever * hull.length
     predicted = mean
+    # Sequential update: later innovations are reduced by what earlier ones explained already.
     for innovation, row, unit in zip(missed, rows, (1.0, 1.0, lever * lever), strict=True):
         explained = sum(
             slope * (now - before) for slope, now, before in zip(row, mean, predicted, strict=True)
@@ -223,16 +231,18 @@ def step(
 
 
 def _of_force(hull, parameters):
-    """Variances of remaining force, north and east, and moment."""
+    """Variances of remaining force, north and east, and of the moment."""
     force = parameters.force_std * parameters.force_std
     lever = parameters.force_lever * hull.length
     return force, force, lever * lever * force
 
 
 def _left_to_explain(known, wind_load, ship):
-    """Load that the observer leaves to explain in body axes: bias less damping and less a wind not believed."""
+    """Load left to explain, body axes: bias minus damping, minus a disbelieved wind's load."""
     motion = known.ship
     bias = known.bias
+    # The observer explains the motion by b - D ν. If it has no wind, the bias contains the wind's
+    # load.
     lost = 1.0 - known.wind_believed
     damping = (
         ship.damping_surge * motion.u,
@@ -246,7 +256,7 @@ def _left_to_explain(known, wind_load, ship):
 
 
 def _missed(known, left, mean, hull):
-    """What current, force, moment and errors of thrust do not explain of a load."""
+    """Load that current, force, moment and thrust errors do not explain."""
     motion = known.ship
     error = mean[5:]
     X, Y, N = hull_loads(*through_water(*motion[2:5], *mean[:2]), motion.r, hull=hull)
@@ -259,10 +269,11 @@ def _missed(known, left, mean, hull):
 
 
 def _slopes(known, mean, span, hull):
-    """Slopes of the loads forward, to starboard and in yaw over all states."""
+    """Slopes of X, Y and N over all states."""
     psi = known.ship.psi
     r = known.ship.r
     u_r, v_r = through_water(*known.ship[2:5], *mean[:2])
+    # Central differences over the span, in u_r and in v_r.
     over_u = zip(
         hull_loads(u_r + span, v_r, r, hull=hull),
         hull_loads(u_r - span, v_r, r, hull=hull),
@@ -278,6 +289,8 @@ def _slopes(known, mean, span, hull):
     ]  # a current takes from u_r
     X_v, Y_v, N_v = [(below - above) / (2.0 * span) for above, below in over_v]
     one = 1.0 + 0.0 * psi
+    # Current: by the slopes of the hull; force: turned into body axes; moment and thrust errors:
+    # directly.
     return (
         (*to_ned(psi, X_u, X_v), *to_ned(psi, one, 0.0), 0.0, 1.0, 0.0, 0.0),
         (*to_ned(psi, Y_u, Y_v), *to_ned(psi, 0.0, one), 0.0, 0.0, 1.0, 0.0),
@@ -293,7 +306,10 @@ def _elapsed(surroundings, thrusters, h, hull, parameters):
     keep = exp(-h / p.force_time)
     held = exp(-h / p.thrust_error_time)
     turning = N / arm
+    # Factors of a Gauss-Markov process; the current is a random walk and keeps its value.
     kept = (1.0, 1.0, keep, keep, keep, held, held, held)
+    # Added variances: (1 - k²) σ² keeps the stationary σ². Thrust errors scale with the thrust
+    # itself.
     force = [(1.0 - keep * keep) * variance for variance in _of_force(hull, p)]
     error = (
         (1.0 - held * held) * p.thrust_error * p.thrust_error * (X * X + Y * Y + turning * turning)
@@ -310,7 +326,8 @@ def _elapsed(surroundings, thrusters, h, hull, parameters):
 
 
 def _corrected(mean, covariance, row, innovation, noise):
-    """Mean and covariance after one scalar measurement: Kalman's update."""
+    """Kalman update of mean and covariance by one scalar measurement."""
+    # P cᵀ, then c P cᵀ + R: a scalar, so no matrix is inverted.
     spread = [sum(p * slope for p, slope in zip(line, row, strict=True)) for line in covariance]
     variance = sum(slope * p for slope, p in zip(row, spread, strict=True)) + noise
     gain = [p / variance for p in spread]
@@ -323,7 +340,7 @@ def _corrected(mean, covariance, row, innovation, noise):
 
 
 def _averaged(surroundings, known, h, parameters):
-    """Mean velocity of the air a sample later; held while the measured wind is not believed."""
+    """Mean velocity of the air a sample later; held while the wind is not believed."""
     keep = 1.0 - known.wind_believed * (1.0 - exp(-h / parameters.wind_time))
     before = surroundings.wind_north, surroundings.wind_east
     return tuple(

@@ -1,4 +1,4 @@
-"""Dead reckoning of paper II: two networks give surge and sway velocity from wind and thrusters alone.
+"""Dead reckoning of paper II: networks give surge and sway velocity from wind and thrusters.
 
 Position is that of GNSS while it works; while it is lost the networks' velocities are added up. They see the last ten
 seconds of their inputs, and neither position nor velocity.
@@ -62,7 +62,7 @@ class Regressor(NamedTuple):
 
 
 class VelocityNetworks(NamedTuple):
-    """Both networks, and what turns commands into power.
+    """Both networks, and the data that turn commands into power.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ class State(NamedTuple):
 
 
 def design(arrays: Mapping[str, np.ndarray]) -> VelocityNetworks:
-    """The networks from what training left.
+    """The networks from trained arrays.
 
     Parameters
     ----------
@@ -133,6 +133,7 @@ def design(arrays: Mapping[str, np.ndarray]) -> VelocityNetworks:
 
 def _regressor(arrays, axis):
     network: Network | tuple[Layer, Layer]
+    # Two forms of paper II: an LSTM, or a feed-forward network over the whole history.
     if f"{axis}.hidden.weights" in arrays:
         first, last = (
             Layer(arrays[f"{axis}.{name}.weights"], arrays[f"{axis}.{name}.bias"])
@@ -151,6 +152,7 @@ def _regressor(arrays, axis):
     )
 
 
+# Power as an input goes with the cube of the command (propeller law).
 def features(measured: Measured, full_power: np.ndarray, full_command: np.ndarray) -> np.ndarray:
     """Inputs that the paper considers.
 
@@ -175,7 +177,7 @@ def features(measured: Measured, full_power: np.ndarray, full_command: np.ndarra
 
 
 def start(measured: Measured, *, design: VelocityNetworks) -> State:
-    """State at the start: where GNSS says, with this sample as all of the history.
+    """State at the start: at the position of GNSS, with this sample as the whole history.
 
     Parameters
     ----------
@@ -195,14 +197,14 @@ def start(measured: Measured, *, design: VelocityNetworks) -> State:
 
 
 def step(state: State, measured: Measured, h: float, *, design: VelocityNetworks) -> State:
-    """State a sample later: p <- p + R(ψ) v h with the networks' v, or the position of GNSS where it works.
+    """State a sample later: p ← p + R(ψ) v h with the networks' v, or the position of GNSS.
 
     Parameters
     ----------
     state : State
         At the sample before; floats or (...) arrays. [as its fields]
     measured : Measured
-        What is aboard now. [as its fields]
+        Measurements of now. [as its fields]
     h : float
         Time between the samples, that of the training. [s]
     design : VelocityNetworks
@@ -217,10 +219,13 @@ def step(state: State, measured: Measured, h: float, *, design: VelocityNetworks
     ----------
     Paper II, eq. (4).
     """
+    # Velocities from the history up to the last sample, so that nothing later than the prediction
+    # is used.
     u = velocity(state.history, design.surge)
     v = velocity(state.history, design.sway)
     north, east = to_ned(measured.psi, u, v)
     lost = measured.valid < 0.5
+    # Add the newest sample, drop the oldest.
     now = features(measured, design.full_power, design.full_command)
     return State(
         np.where(lost, state.x + h * north, measured.x),
@@ -248,13 +253,16 @@ def velocity(history: np.ndarray, regressor: Regressor) -> np.ndarray:
     (...) array
         Velocity. [m/s]
     """
+    # Only the inputs that this network was trained with, standardised.
     x = (history[..., regressor.inputs] - regressor.mean) / regressor.std
     if isinstance(regressor.network, Network):
+        # LSTM: sample by sample, the last output counts.
         memory = empty_memory(regressor.network, x.shape[:-2])
         given = x[..., 0, :1]
         for k in range(x.shape[-2]):
             given, memory = evaluate(regressor.network, x[..., k, :], memory)
     else:
+        # Feed-forward: sigmoid(z) = (1 + tanh(z/2)) / 2.
         hidden, last = regressor.network
         z = dense(x.reshape(*x.shape[:-2], -1), hidden)
         given = dense(0.5 * (1.0 + np.tanh(0.5 * z)), last)

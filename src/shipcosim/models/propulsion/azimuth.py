@@ -1,4 +1,4 @@
-"""Azimuth thrusters: from commands of thrust and direction over drive, motor and shaft to the loads on the ship.
+"""Azimuth thrusters: from commands of thrust and direction to the loads on the ship.
 
 Limits, drive and motor are in `drive`, the propeller in `propeller`; here is what turning adds to them.
 """
@@ -149,14 +149,17 @@ def azimuth_step(
     ----------
     As `drive.drive_step` and `propeller.propeller_loads`.
     """
+    # Steering first: direction towards the command at the available rate.
     azimuth = thruster.azimuth
     still = failures.stopped | failures.azimuth_frozen
+    # With a reversed sensor the steering sees -azimuth: it heads for a wrong direction.
     towards = where(
         failures.azimuth_reversed, azimuth_cmd + 2.0 * azimuth, azimuth_cmd
     )  # it measures -azimuth
     azimuth = turned(
         azimuth, towards, where(still, 0.0, failures.rate_share * unit.azimuth_rate * h)
     )
+    # The propeller sees the water along its new axis, real offset included.
     u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
     return drive_step(
         thruster,
@@ -202,6 +205,7 @@ def azimuth_replay(
     ----------
     As `propeller.propeller_loads`; a constant shaft speed within the step is assumed.
     """
+    # The torque holds the shaft at constant speed: propeller torque plus friction.
     thruster = azimuth_given(n, azimuth, unit=unit)
     n = thruster.n
     u_a, _ = _inflow(*sincos(azimuth + unit.azimuth_offset), u_r, v_r, r, unit)
@@ -279,15 +283,18 @@ def azimuth_loads(
     across the hull loses thrust: Dang and Laheij, Hydrodynamic aspects of steerable thrusters, DP Conference 2004; the
     squared sine is assumed.
     """
+    # Velocity through the water along and across the unit's axis.
     n = thruster.n
     (s, c) = sincos(thruster.azimuth + unit.azimuth_offset)
     u_a, u_s = _inflow(s, c, u_r, v_r, r, unit)
     thrust = (
         propeller_loads(u_a, n, propeller=unit)[0] if propeller_thrust is None else propeller_thrust
     )
+    # Losses act on the thrust, not on the torque: the drive does not notice them.
     if unit.loses:
         thrust = thrust * _kept(n, s, neighbour_azimuth, neighbour_rpm, unit)
     thrust = thrust * thrust_share
+    # Side force F_s = -c ρ D² (V + |n| D) u_s: the water taken along is turned into the axis.
     D = unit.diameter
     wash = abs(n) * D
     if acts(unit.side_force_astern, neutral=1.0):
@@ -295,6 +302,7 @@ def azimuth_loads(
     side = (
         -unit.side_force_coefficient * unit.water_density * D * D * (hypot(u_a, u_s) + wash) * u_s
     )
+    # From the unit's axes into those of the ship, then about her origin.
     return Loads(
         thrust, side, *load_at(unit.x, unit.y, thrust * c - side * s, thrust * s + side * c)
     )
@@ -331,18 +339,20 @@ def turned(azimuth: Arithmetic, azimuth_cmd: Arithmetic, most: Arithmetic) -> Ar
 
 
 def _inflow(s, c, u_r, v_r, r, unit):
-    """Velocity of the unit through the water, along and across its axis, whose direction has sine s, cosine c. [m/s]"""
+    """Velocity of the unit through water, along and across its axis (sine s, cosine c). [m/s]"""
     u, v = velocity_at(unit.x, unit.y, u_r, v_r, r)
     return c * u + s * v, c * v - s * u
 
 
 def _kept(n, s, neighbour_azimuth, neighbour_rpm, unit):
-    """Share of the propeller's thrust that the losses leave, at an azimuth with the sine s. [1]"""
+    """Share of the propeller's thrust after losses, at an azimuth with the sine s. [1]"""
+    # Independent losses multiply. Each is skipped where its parameter is neutral.
     kept = (1.0 - unit.thrust_loss) * where(n < 0.0, 1.0 - unit.reverse_loss, 1.0)
     if acts(unit.angle_loss):
         kept = kept * (1.0 - unit.angle_loss * s * s)
     if not acts(unit.interaction_loss):
         return kept
+    # Loss by the neighbour's slipstream, at this unit's position relative to it.
     x = unit.x - unit.neighbour_x
     y = unit.y - unit.neighbour_y
     share = slipstream_share(x, y, neighbour_azimuth, neighbour_rpm, width=unit.interaction_width)

@@ -118,11 +118,13 @@ def drive_step(
     Thruster
         State at the end.
     """
+    # Failures as factors: power on or off, sign of the measured shaft speed.
     running = where(failures.stopped, 0.0, 1.0)
     sign = where(failures.rpm_reversed, -1.0, 1.0)
     start = running * thruster.thrust_cmd
     wanted, rate = _set_point(thruster, thrust_cmd, failures, drive)
     change = clip(running * wanted - start, -rate * h, rate * h)
+    # Gains per rad/s are used with shaft speeds in rev/s, hence 2π.
     gain = drive.proportional_gain * _TURN
     ratio = drive.integral_gain / drive.proportional_gain
     integral_gain = drive.integral_gain * _TURN
@@ -130,16 +132,19 @@ def drive_step(
     inertia = drive.inertia * _TURN
     motor = _motor(drive, gain, running, sign, failures.power_limit)
 
+    # Set point within the step: the command moves linearly.
     def demand(share):
         n_d = speed(start + share * change)
         return n_d, torque(n_d) + gain * n_d
 
+    # Shaft: I 2π ṅ = Q_motor - Q_propeller - friction; integral z as in the module's docstring.
     def rates(n, integral, n_d, forward):
         thrust, load = loads(n)
         asked, given = motor(n, integral, forward, load)
         n_dot = (given - load - friction * n) / inertia
         return n_dot, integral_gain * (n_d - speed(sign * thrust)) + ratio * (given - asked)
 
+    # Sub-steps, because the shaft with its drive is faster than the step of an FMU.
     parts = substeps(h, _LONGEST_SUBSTEP)
 
     def turn(state):
@@ -150,6 +155,7 @@ def drive_step(
 
     state = 0.0, thruster.n, running * thruster.integral, demand(0.0)
     _, n, integral, now = times(parts, turn, state)
+    # Outputs at the end of the step; saturated means a limit of thrust, rate or motor was active.
     reached = start + change
     thrust, load = loads(n)
     asked, given = motor(n, integral, now[1], load)
@@ -160,7 +166,8 @@ def drive_step(
 
 
 def _set_point(thruster, thrust_cmd, failures, drive):
-    """Thrust that the drive heads for, and the rate at which it does. [N, N/s]"""
+    """Target thrust of the drive, and the rate at which it moves there. [N, N/s]"""
+    # A frozen drive keeps its set point; a drive that fails to full thrust goes there at once.
     wanted = where(
         failures.rpm_frozen,
         thruster.thrust_cmd,
@@ -191,14 +198,16 @@ def powers(thruster: Thruster, drive: Any) -> tuple[Arithmetic, Arithmetic]:
     ----------
     Balance of energy; that drive and motor have no losses is assumed.
     """
+    # Shaft power 2π n Q: positive while driving, negative while braking.
     shaft = _TURN * thruster.n * thruster.torque
     driving = maximum(shaft, 0.0)
     braking = maximum(-shaft, 0.0)
+    # Only the regenerated share of the braking power goes back into the grid.
     return driving - drive.regeneration * braking, (1.0 - drive.regeneration) * braking
 
 
 def _motor(drive, gain, running, sign, power_limit):
-    """Function that gives the torque that the drive asks for, and what the motor gives of it.
+    """Function that gives the torque asked for by the drive, and the torque of the motor.
 
     The motor keeps within its limits of torque, power and speed.
     """
@@ -207,8 +216,13 @@ def _motor(drive, gain, running, sign, power_limit):
     power = minimum(drive.power_max, power_limit) / _TURN
 
     def motor(n, integral, forward, load):
+        # PI law on shaft speed with feedforward of the bollard torque; the sensor may have the
+        # wrong sign.
         asked = forward - gain * (sign * n) + integral
+        # Power limit as a torque limit, Q ≤ P / (2π n); near rest only torque limits.
         most = minimum(torque_max, power / maximum(abs(n), _SLOW))
+        # Speed limit: the net torque is at most k_p 2π (n_max - n), so the shaft approaches n_max
+        # at the rate k_p/I.
         least = maximum(-most, load - gain * (n_max + n))
         most = minimum(most, load + gain * (n_max - n))
         return asked, running * clip(asked, least, most)

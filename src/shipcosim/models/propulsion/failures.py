@@ -1,4 +1,4 @@
-"""Failures of a thruster, as failure mode and effect analyses (FMEA) list them. Each is neutral by default."""
+"""Failures of a thruster, as FMEAs list them. Each is neutral by default."""
 
 from typing import NamedTuple
 

@@ -98,14 +98,17 @@ def fixed_loads(
     Loads(thrust=10.0, side_force=0.0, tau_X=10.0, tau_Y=0.0, tau_N=-3.0)
     """
     p = thruster
+    # Ahead and astern have their own gains and coefficients.
     thrust = force * where(force < 0.0, p.gain_astern, p.gain_ahead)
     thrust = thrust + speed * abs(speed) * where(
         speed < 0.0, p.coefficient_astern, p.coefficient_ahead
     )
+    # Speed of the water along the thruster, at its place on the ship.
     c = cos(p.direction)
     s = sin(p.direction)
     u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
     along = c * u_a + s * v_a
+    # Advance in the direction of thrust reduces it linearly, but never below zero.
     kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
     thrust = (1.0 - p.thrust_loss) * thrust * kept
     return Loads(thrust, 0.0 * thrust, *load_at(p.x, p.y, c * thrust, s * thrust))

@@ -1,4 +1,4 @@
-"""Interaction of thrusters: what a unit's slipstream takes of another's thrust, by distance and angle.
+"""Interaction of thrusters: thrust lost in the slipstream of another, by distance and angle.
 
 The loss of two units one behind the other, and how it goes when the front one turns away, are measured; what is added
 here is assumed: a slipstream slower than the hit unit's own takes proportionally less, several slipstreams multiply,
@@ -40,7 +40,7 @@ def _diameter(number):
 
 @dataclass(frozen=True, kw_only=True)
 class InteractionParameters:
-    """Places and sizes of the units that can hit one another."""
+    """Positions and sizes of the units that can affect one another."""
 
     x_1: float = _place(1, "forward")
     y_1: float = _place(1, "to starboard")
@@ -70,7 +70,7 @@ class InteractionParameters:
 
 
 class Pair(NamedTuple):
-    """One unit behind another.
+    """A pair of units, one in front of the other.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class Pair(NamedTuple):
 
 
 def tandem_share(distance: Arithmetic) -> Arithmetic:
-    """Share of its thrust that a unit keeps on the axis of an equal one's slipstream, 1 - 0.8^((x/D)^(2/3)).
+    """Share of thrust kept on the axis of an equal unit's slipstream, 1 - 0.8^((x/D)^(2/3)).
 
     Parameters
     ----------
@@ -140,8 +140,10 @@ def kept_share(off_axis: Arithmetic, tandem: Arithmetic, ratio: Arithmetic) -> A
     Angle: Dang and Laheij 2004. That the loss goes with the ratio is assumed: so does the advance number that a
     slipstream means for the unit that it hits.
     """
+    # Off the axis: t + (1 - t) φ³ / (130/t³ + φ³), φ in degrees, as measured.
     cube = (abs(off_axis) * _DEGREES) ** 3
     kept = tandem + (1.0 - tandem) * cube / (130.0 / tandem**3 + cube)
+    # A weak slipstream takes proportionally less, a strong one no more than measured.
     return 1.0 - (1.0 - kept) * minimum(1.0, ratio)
 
 
@@ -151,7 +153,7 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
     Parameters
     ----------
     parameters : InteractionParameters
-        Places and sizes; a unit without diameter is none.
+        Places and sizes; a unit without diameter does not exist.
 
     Returns
     -------
@@ -169,10 +171,12 @@ def pairs(parameters: InteractionParameters) -> tuple[Pair, ...]:
     """
     units = list(zip(*(parameters.of_units(name) for name in ("x", "y", "diameter")), strict=True))
     found = []
+    # Each unit may be in front of each other one; a unit without diameter does not exist.
     for front, (x, y, diameter) in enumerate(units):
         for behind, (other_x, other_y, other) in enumerate(units):
             if front == behind or diameter <= 0.0 or other <= 0.0:
                 continue
+            # Distance in diameters of the front unit gives the loss on the axis.
             distance = hypot(other_x - x, other_y - y)
             if distance == 0.0:
                 raise ValueError(
@@ -213,6 +217,7 @@ def pair_table(
     As `pairs`.
     """
     bearing, tandem = np.zeros((2, UNITS, UNITS))
+    # A unit that is not hit keeps all of its thrust.
     tandem += 1.0
     for front, behind, angle, kept in pairs(parameters):
         bearing[front, behind], tandem[front, behind] = angle, kept
@@ -247,9 +252,11 @@ def thrust_shares(
     As `kept_share`; that several slipstreams multiply is assumed.
     """
     shares = [1.0 + 0.0 * azimuth for azimuth in azimuths]
+    # The slipstream goes opposite to the thrust. Several of them multiply.
     for front, behind, bearing, tandem in found:
         wash = washes[front]
         towards = where(wash > 0.0, azimuths[front] + pi, azimuths[front])
+        # Compare the slipstreams' speeds; the small number avoids a division by zero.
         ratio = abs(wash) / (abs(washes[behind]) + _STILL)
         loss = 1.0 - kept_share(wrap(bearing - towards), tandem, ratio)
         shares[behind] = shares[behind] * (1.0 - loss_scale * loss)

@@ -1,4 +1,4 @@
-"""Thrusters by a measured map: thrust over whatever commands them (per cent, pulse width, speed, pitch), with a lag."""
+"""Thrusters with a measured map: thrust over any command (per cent, pulse width), with a lag."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -74,7 +74,7 @@ def mapped_thrust(command: Arithmetic, *, thruster: MapParameters) -> Arithmetic
 
 
 def within_map(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic:
-    """The thrust nearest to a wanted one that the map has.
+    """The thrust within the map that is nearest to a wanted one.
 
     Parameters
     ----------
@@ -131,6 +131,7 @@ def mapped_command(thrust: Arithmetic, *, thruster: MapParameters) -> Arithmetic
     1700.0
     """
     commands, thrusts = _map(thruster.thrust_table)
+    # The inverse map: both columns increase, so they can be swapped.
     return interp(thrust, thrusts, commands)
 
 
@@ -158,6 +159,7 @@ def commanded(
     Definition.
     """
     if thruster.command_rate == 0.0:
+        # A limit of zero means no limit.
         return wanted
     most = thruster.command_rate * h
     return command + clip(wanted - command, -most, most)
@@ -188,6 +190,7 @@ def mapped_step(
     """
     if thruster.time_constant == 0.0:
         return wanted
+    # Lag of first order, exact over the step: T + (T0 - T) e^(-h/τ).
     return wanted + (thrust - wanted) * exp(0.0 * thrust - h / thruster.time_constant)
 
 
@@ -221,10 +224,12 @@ def mapped_loads(
     27.5
     """
     p = thruster
+    # Speed of the water along the thruster, at its place on the ship.
     c = cos(p.direction)
     s = sin(p.direction)
     u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
     along = c * u_a + s * v_a
+    # Advance in the direction of thrust reduces it linearly, but never below zero.
     kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
     thrust = (1.0 - p.thrust_loss) * thrust * kept
     return Loads(thrust, 0.0 * thrust, *load_at(p.x, p.y, c * thrust, s * thrust))
@@ -232,7 +237,7 @@ def mapped_loads(
 
 @lru_cache(maxsize=16)
 def _map(text):
-    """Columns of the map."""
+    """Columns of the map; the thrust must not fall."""
     commands, thrusts = columns(text, 2)
     for number, (before, after) in enumerate(zip(thrusts, thrusts[1:], strict=False), 2):
         if after < before:

@@ -138,16 +138,17 @@ class PropellerParameters:
 
     @property
     def curves(self):
-        """CT and CQ over the whole circle, and bollard coefficients; remembered by their tables, no state."""
+        """CT and CQ over the whole circle, and bollard coefficients; cached by their tables."""
         return _curves(
             self.thrust_polynomial, self.thrust_factors, self.torque_polynomial, self.torque_factors
         )
 
     @cached_property
     def bollard(self):
-        """Thrust, then torque, over squared shaft speed at no speed, each ahead and astern. [N.s2, N.m.s2]"""
+        """Bollard thrust and torque over squared speed, ahead and astern. [N.s2, N.m.s2]"""
         D = self.diameter
         (KT_ahead, KT_astern, KQ_ahead, KQ_astern) = self.curves.bollard
+        # T = ρ D⁴ K_T n², Q = ρ D⁵ K_Q n².
         K = self.water_density * D**4
         thrust = K * self.thrust_scale
         torque = K * D * self.torque_scale
@@ -188,7 +189,7 @@ def propeller_loads(
 
 
 def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Arithmetic], tuple]:
-    """`propeller_loads` over the shaft speed alone, for many shaft speeds at one speed of advance.
+    """`propeller_loads` over shaft speed alone, for many speeds at one speed of advance.
 
     Parameters
     ----------
@@ -202,6 +203,7 @@ def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Ar
     callable
         ``loads(n)`` gives thrust and torque at a shaft speed. [N, N.m]
     """
+    # Everything that does not depend on n is computed once: the drive calls this many times a step.
     D = propeller.diameter
     disc = propeller.disc
     table = propeller.curves.table
@@ -213,8 +215,10 @@ def loads_at(u_a: Arithmetic, *, propeller: PropellerParameters) -> Callable[[Ar
     square = u_a * u_a
 
     def loads(n):
+        # β = atan2(u_a, 0.7 π n D): no singular point at n = 0.
         tip = tip_per_n * n
         ct, cq, outside = interp_even(atan2(u_a, tip), table)
+        # C = ρ/2 (u_a² + (0.7 π n D)²) π D²/4; T = CT C, Q = CQ D C.
         C = disc * (square + tip * tip)
         return thrust_scale * (1.0 + outside * outside_more) * ct * C, torque_scale * cq * D * C
 
@@ -255,6 +259,7 @@ def bollard_speed(thrust: Arithmetic, *, propeller: PropellerParameters) -> Arit
     like thrust
         Shaft speed. [rev/s]
     """
+    # T = c n |n|, hence n = ±√(|T| / c), with its own coefficient astern.
     ahead, astern, _, _ = propeller.bollard
     back = thrust < 0.0
     speed = sqrt((abs(thrust) + _ALMOST_NONE) / where(back, astern, ahead))
@@ -274,6 +279,7 @@ def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     tuple of two (n,) arrays
         CT, CQ. [1, 1]
     """
+    # CT(β) = Σ a_k cos kβ + b_k sin kβ, and CQ likewise.
     order = np.arange(len(_CT_COS))
     c = np.cos(np.outer(beta, order))
     s = np.sin(np.outer(beta, order))
@@ -283,13 +289,18 @@ def series(beta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 @lru_cache(maxsize=16)
 def _curves(thrust_polynomial, thrust_factors, torque_polynomial, torque_factors):
     """Curves of a propeller from its tables."""
+    # A fine table over the whole circle, so that one step needs no series.
     degrees = np.arange(-1800, 1801) * _STEP
     ct, cq = series(np.radians(degrees))
     ct, end = _coefficient(ct, degrees, thrust_factors, thrust_polynomial)
     cq, _ = _coefficient(cq, degrees, torque_factors, torque_polynomial)
+    # Weight of the outside scale: 0 in the first quadrant, 1 well outside, linear between, so
+    # thrust has no step.
     outside = np.interp(
         degrees, (-180.0, -30.0, 0.0, end, 60.0, 180.0), (1.0, 1.0, 0.0, 0.0, 1.0, 1.0)
     )
+    # KT = CT π/8 (0.7 π)² at bollard: C in units of ρ n² D⁴. Ahead is β = 0, astern β = ±180
+    # degrees.
     factor = 0.5 * _AREA * _TIP**2
     middle = len(ct) // 2
     bollard = (factor * np.array([ct[middle], -ct[0], cq[middle], -cq[0]])).tolist()
@@ -297,12 +308,14 @@ def _curves(thrust_polynomial, thrust_factors, torque_polynomial, torque_factors
 
 
 def _coefficient(of_series, degrees, factors, polynomial):
-    """CT or CQ over the whole circle: factors on the series, and the polynomial up to its end; and that end."""
+    """CT or CQ over the whole circle: factors on the series, polynomial up to its end; the end."""
     at, factor = columns(factors, 2)
     found = of_series * np.interp(degrees, at, factor)
     ((end, *k),) = parse(polynomial)
+    # In the first quadrant the propeller's own polynomial applies: J = 0.7 π tan β.
     first = (degrees > -0.5 * _STEP) & (degrees < end + 0.5 * _STEP)
     J = _TIP * np.tan(np.radians(degrees[first]))
+    # From KT(J) to CT(β): divide by π/8 ((0.7 π)² + J²) = π/8 (0.7 π)² / cos² β.
     found[first] = (
         np.polyval(k[::-1], J) * np.cos(np.radians(degrees[first])) ** 2 / (0.5 * _AREA * _TIP**2)
     )

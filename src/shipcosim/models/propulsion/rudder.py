@@ -121,9 +121,12 @@ def propeller_in_wake(
     """
     p = unit
     D = unit.diameter
+    # Drift angle at the propeller; to either side the wake changes by its own C2.
     drift = atan2(-(v_r + p.propeller_x * r), abs(u_r))
     change = where(drift < 0.0, p.wake_change_port, p.wake_change_starboard)
+    # Speed of advance: u (1 - w), where drift reduces the wake w.
     u_p = u_r * (1.0 - p.wake) * (1.0 + (1.0 - exp(-p.wake_rate * abs(drift))) * (change - 1.0))
+    # Thrust by the K_T polynomial, written in n and u_p, so that it is defined at n = 0.
     k0 = p.k0 * where(n < 0.0, p.astern, 1.0)
     thrust = k0 * D**4 * n * abs(n) + p.k1 * D**3 * abs(n) * u_p + p.k2 * D**2 * u_p * abs(u_p)
     return (1.0 - p.thrust_loss) * p.water_density * thrust, u_p
@@ -167,15 +170,20 @@ def rudder_normal_force(
     (assumed), and neither does the flow of a ship that goes astern: there u_R is that of the race alone.
     """
     p = unit
+    # The race's gain of speed from the thrust (momentum theory): u_∞² = u_P² + 8 T / (π ρ D²).
     ahead = maximum(u_p, 0.0 * u_p)
     race = 8.0 * maximum(thrust, 0.0 * thrust) / (pi * p.water_density * p.diameter**2)
     behind = sqrt(ahead * ahead + race + _TINY)
+    # At the rudder only a part of that gain is reached.
     inner = ahead + p.race_gain * (behind - ahead)
+    # Mean of the squares over the part of the rudder inside the race and the part outside.
     u_rudder = p.wake_ratio * sqrt(
         p.covered * inner * inner + (1.0 - p.covered) * ahead * ahead + _TINY
     )
+    # Cross flow at the rudder, straightened by hull and propeller.
     across = -v_r - p.straightening_x * r
     v_rudder = across * where(across < 0.0, p.straightening_port, p.straightening_starboard)
+    # Normal force of a thin rudder: ρ/2 A f_α V² sin(inflow angle).
     square = u_rudder * u_rudder + v_rudder * v_rudder
     size = 0.5 * p.water_density * p.rudder_area * p.lift_gradient
     return size * square * sin(angle - atan2(v_rudder, u_rudder))
@@ -214,11 +222,16 @@ def propeller_rudder_loads(
     As the module.
     """
     p = unit
+    # A positive rudder angle turns the ship to starboard, a positive azimuth to port: opposite
+    # signs.
     thrust, u_p = propeller_in_wake(n, u_r, v_r, r, unit=p)
     normal = rudder_normal_force(-azimuth, thrust, u_p, v_r, r, unit=p)
     side = -normal * cos(azimuth)
+    # Thrust deduction: the propeller's suction adds resistance. The rudder's drag is reduced
+    # likewise.
     given = (1.0 - p.thrust_deduction) * thrust
     surge = given + (1.0 - p.rudder_deduction) * normal * sin(azimuth)
+    # The rudder's side force also acts on the hull in front of it, a_H of it at x_H.
     return Loads(
         given,
         side,

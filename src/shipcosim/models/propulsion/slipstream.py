@@ -1,4 +1,4 @@
-"""Slipstream of a thruster, which reduces the thrust of a neighbour that lies in it."""
+"""Slipstream of a thruster, which reduces the thrust of a neighbour in it."""
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, atan2, exp, pi, where
@@ -40,6 +40,8 @@ def slipstream_share(
     >>> slipstream_share(0.0, -4.0, pi / 2, -100.0, width=0.35) < 1e-30
     True
     """
+    # The water goes opposite to the thrust.
     towards = where(rpm > 0.0, azimuth + pi, azimuth)
+    # Gaussian over the angle off the axis; a shaft at rest has no slipstream.
     angle = wrap(atan2(y, x) - towards) / width
     return where(rpm == 0.0, 0.0 * abs(angle), exp(-angle * angle))

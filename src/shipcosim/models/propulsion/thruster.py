@@ -1,4 +1,4 @@
-"""What all kinds of thrusters have in common: their loads on the ship."""
+"""Parts common to all kinds of thrusters: their loads on the ship."""
 
 from typing import NamedTuple
 

@@ -88,10 +88,13 @@ def tunnel_step(
     ----------
     As `drive.drive_step`; quadratic thrust and torque curves: nominal model, tunnel thruster.
     """
+    # Under way the jet is bent off, and thrust falls with exp(-c u²).
     loss = exp(-tunnel.speed_loss * u_r * u_r)
+    # Coefficients per rpm² become those per (rev/s)²: 60².
     k_T = 3600.0 * tunnel.thrust_coefficient
     k_Q = 3600.0 * tunnel.torque_coefficient
 
+    # Inverse of the quadratic thrust curve; the small number keeps the derivative finite at zero.
     def speed(thrust):
         n = sqrt((abs(thrust) + _ALMOST_NONE) / k_T)
         return where(thrust < 0.0, -n, n)
@@ -100,6 +103,7 @@ def tunnel_step(
         square = n * abs(n)
         return loss * k_T * square, k_Q * square
 
+    # The drive sees quadratic thrust and torque; the loss by speed acts on the thrust alone.
     return drive_step(
         thruster,
         thruster.azimuth,
@@ -132,8 +136,10 @@ def tunnel_replay(n: Arithmetic, *, tunnel: TunnelParameters) -> Thruster:
     ----------
     As `tunnel_step`.
     """
+    # The real speed is the logged one minus its offset.
     n = n - tunnel.rpm_offset / 60.0
     square = 3600.0 * n * abs(n)
+    # The torque holds the motor at constant speed: load plus friction.
     torque = tunnel.torque_coefficient * square + tunnel.friction * _TURN * n
     thrust = tunnel.thrust_coefficient * square
     return at_rest(0.5 * pi + 0.0 * n)._replace(
@@ -162,6 +168,7 @@ def tunnel_loads(thruster: Thruster, u_r: Arithmetic, *, tunnel: TunnelParameter
     ----------
     As `tunnel_step`.
     """
+    # T = c n |n|, with the losses; it acts across, at the tunnel's place.
     n = 60.0 * thruster.n
     kept = (1.0 - tunnel.thrust_loss) * exp(-tunnel.speed_loss * u_r * u_r)
     thrust = tunnel.thrust_coefficient * n * abs(n) * kept

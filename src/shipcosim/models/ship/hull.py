@@ -1,4 +1,4 @@
-"""Loads of the water on a hull that moves through it: a sum of named contributions, each zero where it is unused.
+"""Loads of the water on a moving hull: a sum of named contributions, each zero if unused.
 
 Every contribution is a function of the velocity through the water (u, v, r) and of `HullParameters`. A hull uses those
 for which it has coefficients; a new effect is one more function here, with coefficients that are zero by default.
@@ -212,7 +212,7 @@ class HullParameters:
 
     @cached_property
     def strips(self):
-        """Half the length l, and k l with k = rho C_d T / 2, of the cross flow. [m, kg/m]"""
+        """Half the length l, and k l with k = ρ C_d T / 2, of the cross flow. [m, kg/m]"""
         half = 0.5 * self.length
         return (
             half,
@@ -225,18 +225,21 @@ class HullParameters:
         )
 
     @property
+    # With a cross-flow model the scale acts there; otherwise on the damping coefficients.
     def _damping_scales(self):
         return self.drag_scale, 1.0 if "cross_flow" in self.contributions else self.cross_flow_scale
 
     @cached_property
     def inverse_mass(self):
         """Elements 11, 22, 26, 62, 66 of the inverse of M_RB + M_A."""
+        # M = [m + A11, 0, 0; 0, m22, m26; 0, m62, m66], with m x_G coupling sway and yaw.
         mass, inertia = self.rigid_body
         static = mass * self.centre_of_gravity_x
         m22 = mass + self.A22
         m26 = static + self.A26
         m62 = static + self.A62
         m66 = inertia + self.A66
+        # Surge is decoupled; the sway-yaw block is inverted in closed form.
         determinant = m22 * m66 - m26 * m62
         return (
             1.0 / (mass + self.A11),
@@ -267,6 +270,7 @@ def hull_loads(u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, hull: HullPar
     Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.1 to 2.3;
     each contribution names its own.
     """
+    # Zero in the arithmetic of the velocities.
     X = Y = N = 0.0 * u_r
     for name in hull.contributions:
         dX, dY, dN = _LOADS[name](u_r, v_r, r, hull=hull)
@@ -288,6 +292,8 @@ def added_mass_coriolis(
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
     """
     share, A11, A22, A26 = hull.coriolis
+    # C_A(ν) ν with a = A11 u and b = A22 v + A26 r: (b r, -a r, a v - b u) moved to the right side.
+    # The last part is the Munk moment.
     surge = A11 * u
     sway = share * (A22 * v + A26 * r)
     return sway * r, -surge * r, surge * v - sway * u
@@ -321,8 +327,10 @@ def quadratic_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: Hull
     Cambridge, 2017); a power is assumed.
     """
     X_uu, Y_vv, N_rr = hull.quadratic
+    # X_uu u |u|, always against the motion.
     X = X_uu * u * abs(u)
     if acts(hull.drag_growth):
+        # Another power of speed, equal at Froude number 0.25: F_n² = u² / (g L).
         X = X * (u * u / (_SPEED_SQUARED * hull.length) + _SLOW) ** (0.5 * hull.drag_growth)
     return X, Y_vv * v * abs(v), N_rr * r * abs(r)
 
@@ -336,6 +344,7 @@ def lift(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -
     ----------
     Assumed form, abs(u_r) v_r; coefficient and point of attack are fitted (nominal model, equation of motion).
     """
+    # Lift acts at one point: its moment is the force times the lever.
     Y = hull.lift * abs(u) * v
     return 0.0 * u, Y, hull.lift_x * Y
 
@@ -358,12 +367,16 @@ def cross_flow(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     Strip-wise cross-flow drag: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
     ch. 6. The closed form of the integrals is derived here.
     """
+    # Sway speed of a strip: v + x r, from v - w to v + w with w = r l.
     half, k = hull.strips
     w = r * half
     sway = abs(v)
     yaw = abs(w)
+    # The integral has two cases, by which of |v| and |w| is larger. Written with both, it needs no
+    # branch.
     larger = maximum(sway, yaw)
     smaller = minimum(sway, yaw)
+    # q = m / |w|: 1 if sway dominates; the small number avoids 0 / 0 at rest.
     q = smaller / (yaw + _TINY)
     q = q * q
     Y = -2.0 * k * v * (larger + smaller * smaller / (3.0 * larger + _TINY))
@@ -382,6 +395,7 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     Structure after OMAE2015-41789, as in MCSim_python, RVG_maneuvering_3DOF_python/vesselmodel.py.
     """
     p = hull
+    # Powers and products, each once.
     av = abs(v)
     ar = abs(r)
     uv = u * v
@@ -390,6 +404,7 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     vv = v * v
     rr = r * r
     uu = u * u
+    # Surge, sway and yaw as in the source, grouped by common factors.
     X = (
         p.X_vv * vv
         + p.X_rr * rr
@@ -440,15 +455,20 @@ def mmg(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) ->
     p = hull
     length = hull.length
     scale = hull.cross_flow_scale
+    # ρ/2 L d is the size of all MMG forces.
     size = 0.5 * hull.water_density * length * hull.draught
+    # r' = r L / U: with w = L r, products of v' and r' are products of v and w over U².
     w = length * r
+    # Bounded below, so that the loads stay finite when the ship turns on the spot.
     U = maximum(hypot(u, v), 0.5 * abs(w)) + _TINY
     vv = v * v
     vw = v * w
     ww = w * w
+    # Terms of order 2 need no U; those of order 1 get U, those of order 3 and 4 are divided.
     X = p.mmg_X_vv * vv + p.mmg_X_vr * vw + p.mmg_X_rr * ww + p.mmg_X_vvvv * (vv / U) * (vv / U)
     Y = p.mmg_Y_vvv * vv * v + p.mmg_Y_vvr * vv * w + p.mmg_Y_vrr * v * ww + p.mmg_Y_rrr * ww * w
     N = p.mmg_N_vvv * vv * v + p.mmg_N_vvr * vv * w + p.mmg_N_vrr * v * ww + p.mmg_N_rrr * ww * w
+    # First order with U, third order with 1 / U; the scale acts on the cross-flow part.
     Y = U * (p.mmg_Y_v * v + p.mmg_Y_r * w) + scale * Y / U
     N = U * (p.mmg_N_v * v + p.mmg_N_r * w) + scale * N / U
     return size * X, size * Y, size * length * N

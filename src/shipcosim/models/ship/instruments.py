@@ -1,4 +1,4 @@
-"""Measured motion of a ship whose antenna, compass, speed log or clock is not as assumed.
+"""Measured motion of a ship with errors of antenna, compass, speed log or clock.
 
 Position and velocity are those of the antenna; surge and sway are its velocity over ground resolved with the measured
 heading.
@@ -67,8 +67,10 @@ def readings(
     >>> [round(value, 3) for value in readings(0.0, 0.0, 0.0, 5.0, 0.0, 0.0, heading_bias=pi / 2)]
     [0.0, 0.0, 1.571, 0.0, -5.0, 0.0]
     """
+    # Position and velocity at the antenna, by its lever arm.
     north, east = to_ned(psi, lever_x, lever_y)
     u, v = velocity_at(lever_x, lever_y, u, v, r)
+    # The log resolves the velocity with the measured heading: turned by its bias.
     u, v = to_body(heading_bias, velocity_scale * u, velocity_scale * v)
     return Motion(x + north, y + east, wrap(psi + heading_bias), u, v, r)
 
@@ -86,7 +88,7 @@ def true_motion(
     lever_y: Arithmetic = 0.0,
     velocity_scale: Arithmetic = 1.0,
 ) -> Motion:
-    """True motion that belongs to a measured one, the inverse of `readings`: for runs that start from a logged state.
+    """True motion for a measured one, the inverse of `readings`: for runs from a logged state.
 
     Parameters
     ----------
@@ -102,6 +104,7 @@ def true_motion(
     Motion
         True position, heading and velocity of the origin.
     """
+    # Undo the steps of `readings` in reverse order.
     psi = wrap(psi - heading_bias)
     u, v = to_ned(heading_bias, u / velocity_scale, v / velocity_scale)
     u, v = velocity_at(-lever_x, -lever_y, u, v, r)
@@ -130,12 +133,13 @@ def history_with(
     tuple of (float, Motion)
         The new history. [s]
     """
+    # Keep one entry before the earliest time, for the interpolation.
     first = next((number for number, (time, _) in enumerate(history) if time > since), len(history))
     return (*history[max(first - 1, 0) :], (t, values))
 
 
 def motion_at(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
-    """Motion at a time of its history: linear between entries, headings the shorter way.
+    """Motion at a time in its history: linear between entries, headings the shorter way.
 
     Before the first entry the motion is that of the first; after the last it is extrapolated from the last two, because
     an FMU that outputs values at the end of its step has inputs of its start.
@@ -159,12 +163,15 @@ def motion_at(history: tuple[tuple[float, Motion], ...], t: float) -> Motion:
     >>> half_way.x, round(half_way.psi, 3)
     (2.0, -3.142)
     """
+    # The first entry at or after t; beyond the last the last two extrapolate.
     later = next(
         (number for number, (time, _) in enumerate(history) if time >= t), len(history) - 1
     )
     (t_0, a) = history[max(later - 1, 0)]
     (t_1, b) = history[later]
+    # A share below 0 (before the first entry) becomes 0.
     share = max((t - t_0) / (t_1 - t_0), 0.0) if t_1 > t_0 else 1.0
     between = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
+    # The heading interpolates along the shorter arc.
     between[2] = wrap(a.psi + share * wrap(b.psi - a.psi))
     return Motion(*between)

@@ -1,4 +1,4 @@
-"""The wind at an anemometer on a mast, and what it says about the wind on the ship.
+"""Wind at an anemometer on a mast, and the wind on the ship that it implies.
 
 References
 ----------
@@ -45,7 +45,7 @@ def wind_at_mast(
     *,
     mast: MastParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
-    """Components of the apparent wind at the anemometer of a ship with a given apparent wind at 10 m above her origin.
+    """Apparent wind components at the anemometer, for an apparent wind at 10 m above the origin.
 
     Parameters
     ----------
@@ -71,8 +71,11 @@ def wind_at_mast(
     >>> wind_at_mast(0.0, 0.0, 0.0, 0.0, 0.1, mast=mast)
     (0.0, 0.4)
     """
+    # Power law of the profile: true wind grows by the gain, but not the part that is the ship's own
+    # velocity.
     gain = mast.gain
     more = gain - 1.0
+    # Components of where the wind comes from; yaw moves the mast through the air.
     return (
         gain * speed * cos(wind_from) - more * u - r * mast.mast_y,
         gain * speed * sin(wind_from) - more * v + r * mast.mast_x,
@@ -88,7 +91,7 @@ def wind_from_mast(
     *,
     mast: MastParameters,
 ) -> tuple[Arithmetic, Arithmetic]:
-    """Apparent wind at 10 m above the origin of a ship with a given apparent wind at the anemometer.
+    """Apparent wind at 10 m above the origin, for an apparent wind at the anemometer.
 
     The inverse of `wind_at_mast`.
 
@@ -108,6 +111,7 @@ def wind_from_mast(
     tuple of two, like speed
         Speed and direction at 10 m above the origin. [m/s, rad in [-π, π]]
     """
+    # `wind_at_mast` solved for the wind at 10 m.
     gain = mast.gain
     more = gain - 1.0
     share = 1.0 / gain

@@ -1,4 +1,4 @@
-"""Loads on a ship whose form is not that of the hull's law: what they differ by, each nothing where it is neutral.
+"""Loads on a ship whose form differs from the hull model: the differences, neutral by default.
 
 The hull's law stands in `hull`. Here cross-flow drag changes along the hull and, like the resistance, follows another
 power of speed; wind loads have factors by direction; and a force remembers the motion of some seconds.
@@ -93,6 +93,7 @@ class RoughFormParameters:
         if self.strip_factors == _NO_STRIPS and not acts(self.cross_flow_power, 2.0):
             return ()
         table = columns(self.strip_factors, 2)
+        # Middles of strips of equal width, from -1 (stern) to 1 (bow).
         places = [(2 * i + 1) / STRIPS - 1.0 for i in range(STRIPS)]
         return tuple((place, interp(place, *table)) for place in places)
 
@@ -106,7 +107,7 @@ class RoughFormParameters:
 def form_loads(
     u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters, form: RoughFormParameters
 ) -> Load:
-    """Loads on a hull of this form less those of the hull's law.
+    """Loads on a hull of this form minus those of the hull model.
 
     Parameters
     ----------
@@ -127,10 +128,13 @@ def form_loads(
     A quadratic drag d abs(w) w becomes d abs(w) w (abs(w)/w_0)^(p - 2), the resistance with p = `drag_power` and
     w = u, a strip's drag with p = `cross_flow_power` and w = v + x r, times the strip's factor.
     """
+    # Differences only: at neutral parameters nothing is computed.
     X = Y = N = 0.0 * u
     if acts(form.drag_power, 2.0):
+        # Resistance with another power, equal at the reference speed: factor (|u| / u_0)^(p - 2).
         X = hull.quadratic[0] * u * abs(u) * (_power(u, DRAG_SPEED, form.drag_power) - 1.0)
     half, k = hull.strips
+    # Cross flow strip by strip, minus the drag that the hull model already has.
     for place, factor in form.strips:
         w = v + place * half * r
         drag = (
@@ -153,7 +157,7 @@ def _power(w, reference, power):
 def memory_loads(
     velocity: Load, remembered: Load, h: float, *, hull: HullParameters, form: RoughFormParameters
 ) -> tuple[Load, Load]:
-    """Load of a force that remembers the motion, and what it remembers a step later.
+    """Load of a force with memory, and its memory a step later.
 
     The load is -m_k (ν_r - z) / T with ż = (ν_r - z) / T: in slow motion an added mass m_k, in quick motion a damping.
 
@@ -182,7 +186,9 @@ def memory_loads(
     Cummins' retardation force with one exponential: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control,
     2nd ed., Wiley, 2021, ch. 5.
     """
+    # One exponential as the retardation function (Cummins): m_k (ν - z) / T.
     added = hull.A11, hull.A22, hull.A66
+    # z follows ν with a lag of first order, exact for a held velocity.
     share = 1.0 - exp(-h / form.memory_time)
     newer = [now - then for now, then in zip(velocity, remembered, strict=True)]
     X, Y, N = (
@@ -196,7 +202,7 @@ def memory_loads(
 def rough_wind_loads(
     speed: Arithmetic, wind_from: Arithmetic, *, wind: WindParameters, form: RoughFormParameters
 ) -> Load:
-    """Loads of the apparent wind, with factors by direction: port and starboard differ.
+    """Loads of the apparent wind with factors by direction; port and starboard differ.
 
     Parameters
     ----------
@@ -223,6 +229,7 @@ def rough_wind_loads(
     if form.wind_factors == _NO_WIND:
         return X, Y, N
     angles, *factors = _round(form.wind_factors)
+    # The table goes once around; angles from port count from 180 to 360 degrees.
     x, y, n = interp_columns(
         where(wind_from < 0.0, wind_from + 2.0 * pi, wind_from), angles, *factors
     )

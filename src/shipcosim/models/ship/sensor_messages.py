@@ -1,4 +1,4 @@
-"""What sensors give out: the records that pass between them and the DP controller.
+"""Messages of sensors: the records that pass between them and the DP controller.
 
 References
 ----------

@@ -8,7 +8,7 @@ measurements.
 References
 ----------
 Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper II, Table I,
-read as the nominal model says under sensors. Periods and latencies: assumed, typical of DP telegrams.
+read as the nominal model says under sensors. Periods and latencies: assumed, typical of DP messages.
 """
 
 from dataclasses import dataclass
@@ -101,7 +101,7 @@ class SensorParameters:
 
 
 class Truth(NamedTuple):
-    """What is measured: motion, low-frequency and wave motion added, and apparent wind.
+    """True values to be measured: total motion (low-frequency plus waves), apparent wind.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ class SensorState(NamedTuple):
     wind : Anemometer
         Of the anemometer.
     telegrams : Telegrams
-        What the sensors give out until the next tick.
+        Messages of the sensors until the next tick.
     """
 
     taken: int
@@ -267,7 +267,7 @@ def start(
     parameters: SensorParameters,
     mast: MastParameters,
 ) -> SensorState:
-    """First sample of every channel, given out at once, with Gauss-Markov errors of their stationary distribution.
+    """First sample of each channel, given out at once, with stationary Gauss-Markov errors.
 
     Parameters
     ----------
@@ -276,7 +276,7 @@ def start(
     truth : Truth
         True values at t.
     failures : SensorFailures
-        What is wrong with the sensors at t.
+        Failures of the sensors at t.
     parameters : SensorParameters
         Errors and sample periods.
     mast : MastParameters
@@ -288,13 +288,18 @@ def start(
         State after the first tick.
     """
     p = parameters
+    # Number of the present tick: random numbers depend on it, not on the step.
     k = samples_due(t, parameters.period) - 1
     clocks = parameters.clocks
     numbers = [_numbers(p, k, channel) for channel in range(3)]
+    # Perfect values stand in for the last sample, in case a sensor starts frozen or lost.
     fixes = (Fix(truth.x, truth.y, truth.u, truth.v, 1.0),) * 3
     headings = ((Heading(truth.psi, 1.0),) * 2, truth.r)
+    # Gauss-Markov errors start in their stationary distribution, so there is no transient.
     wander = tuple(p.position_drift_std * number for number in numbers[0][:6])
     positions = Channel(wander, (0.0,) * 6, (fixes,))
+    # Fill the history with the first sample, so that a message exists before the first latency is
+    # over.
     positions = positions._replace(
         history=(_fixes(positions, numbers[0], truth, failures, p),) * _length(clocks[0])
     )
@@ -333,7 +338,7 @@ def step(
     truth : Truth
         True values at t.
     failures : SensorFailures
-        What is wrong with the sensors at t.
+        Failures of the sensors at t.
     parameters : SensorParameters
         Errors and sample periods.
     mast : MastParameters
@@ -344,6 +349,7 @@ def step(
     SensorState
         State after the ticks.
     """
+    # Several ticks may be due if the step is longer than the period.
     due = samples_due(t, parameters.period)
     return repeat(
         lambda state: state.taken < due,
@@ -353,16 +359,18 @@ def step(
 
 
 def _ticked(state, truth, failures, p, mast):
-    """State after one more tick, at which every channel whose turn it is takes a sample."""
+    """State after one more tick; each channel whose turn it is takes a sample."""
     k = state.taken
     positions = state.positions
     headings = state.headings
     wind = state.wind
+    # Positions: every so many ticks. Errors and drifts move on by one sample period.
     if k % p.clocks[0][0] == 0:
         numbers = _numbers(p, k, 0)
         rates = [rate for failure in failures.positions for rate in failure[4:]]
         positions = _moved(positions, numbers, p.position_wander, rates, p.position_period)
         positions = _noted(positions, _fixes(positions, numbers, truth, failures, p))
+    # Headings and yaw rate: at every tick, since theirs is the clock.
     numbers = _numbers(p, k, 1)
     rates = [failure.rate for failure in failures.compasses]
     headings = _moved(headings, numbers, p.heading_wander, rates, p.period)
@@ -378,7 +386,7 @@ def _ticked(state, truth, failures, p, mast):
 
 
 def _length(clock):
-    """How many samples a history holds, so that one as old as the latency is among them at any tick."""
+    """Length of a history, so that a sample as old as the latency is in it at any tick."""
     return clock[1] // clock[0] + 2
 
 
@@ -392,13 +400,13 @@ def _numbers(p, k, channel):
 
 
 def _wander(period, std, time):
-    """Gauss-Markov errors from sample to sample, exact: b <- phi b + sigma sqrt(1 - phi^2) w, phi = exp(-period/T)."""
+    """Exact Gauss-Markov step: b ← φ b + σ √(1 - φ²) w, with φ = exp(-period / T)."""
     phi = exp(-period / time)
     return phi, std * sqrt(1.0 - phi * phi)
 
 
 def _moved(channel, numbers, wander, rates, period):
-    """Gauss-Markov errors and drifts by failure one period later; the latter start and end with their rates."""
+    """Gauss-Markov errors and failure drifts one period later; drifts end with their rates."""
     phi, kick = wander
     errors = tuple([phi * b + kick * w for b, w in zip(channel.wander, numbers, strict=False)])
     drift = tuple(
@@ -416,11 +424,12 @@ def _noted(channel, sample):
 
 
 def _fixes(channel, numbers, truth, failures, p):
-    """Sample of all position references; numbers: six of the Gauss-Markov errors, then four for each of them."""
+    """Sample of all position references; numbers: six Gauss-Markov errors, then four for each."""
     (fixes, wander, drift) = _last(channel)
     p_std = p.position_noise_std
     v_std = p.velocity_noise_std
     found = []
+    # Measured = true + wander (correlated) + drift (failure) + white noise + offset (failure).
     for i, (failure, last) in enumerate(zip(failures.positions, fixes, strict=True)):
         n = 2 * i
         e = 2 * i + 1
@@ -436,10 +445,11 @@ def _fixes(channel, numbers, truth, failures, p):
 
 
 def _headings(channel, numbers, truth, failures, p):
-    """Sample of both compasses, and of the rate gyro; numbers: two Gauss-Markov errors, then compasses, gyro."""
+    """Sample of both compasses and the gyro; numbers: two Gauss-Markov errors, compasses, gyro."""
     (headings, _), wander, drift = _last(channel)
     found = []
     for i, (failure, last) in enumerate(zip(failures.compasses, headings, strict=True)):
+        # Measured = true + wander + drift + white noise + offset, wrapped.
         fresh = wrap(
             truth.psi + wander[i] + drift[i] + p.heading_noise_std * numbers[2 + i] + failure.offset
         )
@@ -454,6 +464,7 @@ def _wind(anemometer, numbers, failures, p):
     # Mean of the components, not of speed and direction, which has no mean across the bow.
     samples = zip(*anemometer.components, strict=True)
     ahead, starboard = (sum(component) / anemometer.count for component in samples)
+    # Noise of speed is relative; scale and offset are failures.
     fresh = (
         hypot(ahead, starboard) * (1.0 + p.wind_speed_noise * numbers[0]) * failure.scale,
         wrap(atan2(starboard, ahead) + p.wind_from_noise_std * numbers[1] + failure.offset),
@@ -467,7 +478,8 @@ def _last(channel):
 
 
 def _held(failure, fresh, last):
-    """Fresh values, or where a sensor is frozen or lost its last ones; then whether it is valid."""
+    """Fresh values, or the last ones if a sensor is frozen or lost; then its validity."""
+    # A frozen sensor still reports that it works; a lost one does not.
     lost = failure.lost
     held = failure.frozen | failure.lost
     return [
@@ -483,7 +495,7 @@ def _air(truth, mast):
 
 
 def _telegrams(k, positions, headings, wind, p):
-    """What is given out at tick k: of each channel the newest sample that is as old as the latency, or the first."""
+    """Messages at tick k: of each channel the newest sample as old as the latency, or the first."""
     for_positions, for_headings, for_wind = p.clocks
     fixes, position_time = _given_out(k, positions, for_positions, p.period)
     (compasses, r), heading_time = _given_out(k, headings, for_headings, p.period)
@@ -492,7 +504,8 @@ def _telegrams(k, positions, headings, wind, p):
 
 
 def _given_out(k, channel, clock, period):
-    """Sample of a channel that is given out at tick k, and its time."""
+    """The sample of a channel that is given out at tick k, and its time."""
     every, delay = clock
+    # The newest sample at least `delay` ticks old, counted back from the end of the history.
     sample = maximum(0, (k - delay) // every)
     return row_of(channel.history, sample - k // every - 1), sample * every * period

@@ -1,4 +1,4 @@
-"""Equations of motion of a ship in surge, sway and yaw, in a uniform current that is held over a step.
+"""Equations of motion in surge, sway and yaw, in a uniform current held over a step.
 
 References
 ----------
@@ -68,14 +68,17 @@ def step(
         State at the end.
     """
 
+    # M ν̇_r + C(ν_r) ν_r + D(ν_r) ν_r = τ, with the loads held over the step.
     def rates(u_r, v_r, r):
         return accelerations(u_r, v_r, r, tau_X, tau_Y, tau_N, hull=hull)
 
+    # Integrate in the frame of the water; its own displacement is added to the position.
     u_r, v_r = through_water(vessel.psi, vessel.u, vessel.v, current_north, current_east)
     x = vessel.x + h * current_north
     y = vessel.y + h * current_east
     psi = vessel.psi
     r = vessel.r
+    # Sub-steps below the fastest mode of the hull.
     parts = substeps(h, _LONGEST_SUBSTEP)
 
     def turn(now):
@@ -83,6 +86,7 @@ def step(
         return rk4_motion(rates, x, y, psi, u_r, v_r, r, h / parts)
 
     x, y, psi, u_r, v_r, r = times(parts, turn, (x, y, psi, u_r, v_r, r))
+    # Back to velocity over ground, at the new heading.
     u_c, v_c = to_body(psi, current_north, current_east)
     return Motion(x, y, wrap(psi), u_r + u_c, v_r + v_c, r)
 
@@ -116,6 +120,7 @@ def carried(
     Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 10, for M_A; Faltinsen,
     Sea Loads on Ships and Offshore Structures, Cambridge, 1990, for the pressure of the accelerated water.
     """
+    # The water's change of velocity in body axes; the share is what carries the ship.
     u_c, v_c = to_body(vessel.psi, change_north, change_east)
     share = hull.current_acceleration
     x, y, psi, u, v, r = vessel
@@ -158,9 +163,11 @@ def _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull):
     X, Y, N = loads
     m = hull.rigid_body[0]
     xg = hull.centre_of_gravity_x
+    # Rigid-body Coriolis and centripetal forces, C_RB(ν) ν, with the centre of gravity at x_G.
     X = X + tau_X + m * r * (v_r + xg * r)
     Y = Y + tau_Y - m * r * u_r
     N = N + tau_N - m * xg * r * u_r
+    # Surge alone, sway and yaw coupled: ν̇_r = M⁻¹ τ.
     i11, i22, i26, i62, i66 = hull.inverse_mass
     return i11 * X, i22 * Y + i26 * N, i62 * Y + i66 * N
 
@@ -240,7 +247,7 @@ def at_present(
     *,
     hull: HullParameters,
 ) -> tuple[tuple, tuple, Load]:
-    """Velocity relative to the water, rates and hull loads that follow from state and external loads at one time.
+    """Velocity through water, rates and hull loads at one time, from state and external loads.
 
     Parameters
     ----------
@@ -266,6 +273,8 @@ def at_present(
     u_r = vessel.u - u_c
     v_r = vessel.v - v_c
     r = vessel.r
+    # The hull loads are computed once, for the rates and as an output.
     loads = hull_loads(u_r, v_r, r, hull=hull)
     u_dot, v_dot, r_dot = _accelerations(loads, u_r, v_r, r, tau_X, tau_Y, tau_N, hull)
+    # A constant current turns in body axes: ν̇_c = (r v_c, -r u_c, 0).
     return (u_r, v_r), (u_dot + r * v_c, v_dot - r * u_c, r_dot), loads

@@ -1,1 +1,1 @@
-"""FMUs with the models in C: start and step recorded on symbols, C text, packing, and the comparison with Python."""
+"""FMUs with models in C: recording of start and step, C text, packing, comparison with Python."""

@@ -1,4 +1,4 @@
-"""NumPy for arrays that may hold symbols: its own functions, and in their place primitives of the C runtime."""
+"""NumPy for arrays that may hold symbols; linear algebra and random numbers become C primitives."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from shipcosim.native.symbols import (
 
 
 class _OrNumPy:
-    """Has what a module of NumPy has."""
+    """Wrapper of a NumPy module: results that hold symbols become symbol arrays."""
 
     def __init__(self, module: Any):
         self._module = module
@@ -31,7 +31,8 @@ class _OrNumPy:
 
 
 def _each(function: Callable, *matrices: np.ndarray) -> np.ndarray:
-    """A function of matrices, of the last two axes of each."""
+    """Apply a function of matrices to the last two axes of stacked matrices."""
+    # The leading axes are broadcast as NumPy does; the C primitive takes one matrix at a time.
     stack = np.broadcast_shapes(*(matrix.shape[:-2] for matrix in matrices))
     if not stack:
         return function(*matrices)
@@ -43,6 +44,7 @@ def _each(function: Callable, *matrices: np.ndarray) -> np.ndarray:
 class _LinearAlgebra(_OrNumPy):
     def inv(self, a: Any) -> np.ndarray:
         a = np.asarray(a)
+        # A⁻¹ is the solution of A X = I: one C primitive serves both.
         return self.solve(a, np.broadcast_to(np.eye(a.shape[-1]), a.shape))
 
     def solve(self, a: Any, b: Any) -> np.ndarray:
@@ -51,11 +53,13 @@ class _LinearAlgebra(_OrNumPy):
         symbol = first_symbol(a, b)
         if symbol is None:
             return np.linalg.solve(a, b)
+        # A vector is a matrix with one column.
         if b.ndim == 1:
             return self.solve(a, b[:, None])[:, 0]
 
         def of_one(a, b):
             n, m = b.shape
+            # The C primitive takes the sizes first, then both matrices row by row.
             return primitive(
                 symbol, "solved", (n, m), [n, m, *a.ravel().tolist(), *b.ravel().tolist()]
             )
@@ -76,7 +80,7 @@ class _LinearAlgebra(_OrNumPy):
 
 
 class _Generator:
-    """A random generator whose seeds are symbols."""
+    """A random generator with symbolic seeds."""
 
     def __init__(self, seeds: Sequence[Any]):
         self._seeds = list(seeds)
@@ -103,6 +107,8 @@ class _Generator:
         shape: Any = (
             () if size is None else (size,) if isinstance(size, (int, np.integer)) else tuple(size)
         )
+        # The C runtime has no generator object. Each call gives the whole history of draws, so it
+        # can repeat them and return the last.
         self._drawn += [kind, int(np.prod(shape, dtype=int))]
         symbol = first_symbol(self._seeds)
         assert symbol is not None
@@ -131,12 +137,14 @@ def _clipped(x, low, high):
 
 def _interpolated(x, xs, ys):
     symbol = first_symbol(x, xs, ys)
+    # A scalar in a constant table has its own operation; other cases go to a C primitive.
     x = np.asarray(x)
     if first_symbol(xs, ys) is None and x.ndim == 0:
         return Maths.interp(x.item(), xs, ys)
     assert symbol is not None
     xs = np.asarray(xs)
     ys = np.asarray(ys)
+    # The primitive's arguments: both sizes, the points x, then the table of xs and ys.
     given = [x.size, xs.size, *x.ravel().tolist(), *xs.tolist(), *ys.tolist()]
     found = primitive(symbol, "interpolated_in", x.shape, given)
     return found if x.ndim else found.item()

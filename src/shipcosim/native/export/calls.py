@@ -1,4 +1,4 @@
-"""What a recorded model asks of others, in C as well: functions whose results are kept, and numeric primitives."""
+"""Functions with cached results and numeric primitives, recorded for C without Python."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from shipcosim.native.recording import Block, Call, Recording, typed
 
 
 class ExportRecording(Recording):
-    """A recording for code without Python: what is kept by its arguments is recorded too."""
+    """A recording for code without Python: functions with cached results are recorded too."""
 
     stands_alone = True
     most_ways = 60
@@ -32,11 +32,13 @@ class Procedure:
 
 
 def procedure_of(call: Call) -> Procedure:
-    """Record a function whose results are kept."""
+    """Record a function with cached results."""
     given = Flat(call.arguments)
+    # The memory of this recording is the function's changing arguments.
     recording = ExportRecording([given.numbers[place] for place in call.changing])
 
     def run():
+        # Constant arguments keep their values; the changing ones become loads of the memory.
         numbers: list[Any] = [
             typed(number, leaf.kind)
             for number, leaf in zip(given.numbers, given.leaves, strict=True)

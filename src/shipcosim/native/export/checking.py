@@ -1,4 +1,4 @@
-"""An FMU in C against the same FMU in Python: start and steps, with random parameters and inputs."""
+"""Compare an FMU in C with the one in Python: start and steps, random parameters and inputs."""
 
 from __future__ import annotations
 
@@ -58,11 +58,14 @@ def refuse_other_results(
         A variable differs by more than `LARGEST`, with its name, the step and both values; or one of them refuses what
         the other takes.
     """
+    # A fixed seed, so that a build succeeds or fails in the same way each time.
     random = np.random.default_rng(1)
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         path = Path(folder, f"model{TARGETS[own_target()].suffix}")
         path.write_bytes(library)
         loaded = ctypes.CDLL(str(path))
+        # The first round uses the example as it is; the others draw parameters near it. Each round
+        # has larger inputs.
         for example in examples:
             for number in range(len(SHARES)):
                 _compare_run(
@@ -81,11 +84,13 @@ def _compare_run(cls, library, guid, parameters, random, number):
     inputs = {v.name: v.start for v in cls.variables if v.causality == "input"}
     is_near = number > 0
     try:
+        # A start time other than zero finds code that takes it for zero.
         time = float(random.integers(0, 3)) * 100.0
         python.setup_experiment(time)
         compiled.setup(time)
         _set(python, parameters)
         compiled.set(parameters)
+        # Start values of inputs matter too: the start may compute outputs from them.
         _draw(cls, inputs, random, SHARES[number])
         _set(python, inputs)
         compiled.set(inputs)
@@ -94,6 +99,8 @@ def _compare_run(cls, library, guid, parameters, random, number):
         ):
             return
         _compare(cls, python, compiled, "at the start")
+        # Each step gets new inputs, both sides the same. The states go on by themselves, so errors
+        # of the state show too.
         h = cls.default_step_size
         for step_number in range(STEPS):
             _draw(cls, inputs, random, SHARES[number])
@@ -109,6 +116,8 @@ def _compare_run(cls, library, guid, parameters, random, number):
                 is_near,
             ):
                 return
+            # Beyond this speed the model has diverged: rounding grows and a comparison says
+            # nothing.
             if _is_lost(cls, python):
                 return
             _compare(cls, python, compiled, step)
@@ -117,13 +126,15 @@ def _compare_run(cls, library, guid, parameters, random, number):
 
 
 def _both(in_python, in_c, when, compiled, is_near) -> bool:
-    """Do something in both; whether it has worked in both. What one of them refuses, the other must refuse too."""
+    """Run an action in both; true if it worked in both. Both must refuse the same."""
     try:
         in_python()
         refused = ""
     except Exception as error:
         refused = f"{type(error).__name__}: {error}"
     done = in_c()
+    # Random parameters may need a variant that was not compiled. The FMU refuses them, as it
+    # should.
     if not done and NOT_FOR_THESE in compiled.said and is_near:
         return False
     if done == (not refused):
@@ -134,19 +145,22 @@ def _both(in_python, in_c, when, compiled, is_near) -> bool:
 
 def _compare(cls, python, compiled, when):
     for name, found in compiled.outputs().items():
+        # Relative above one, absolute below: outputs near zero have no relative error.
         expected = float(getattr(python, name))
         if abs(found - expected) > LARGEST * max(abs(expected), 1.0):
             raise Untraceable(f"{when} {name} is {found:.12g} in C and {expected:.12g} in Python")
 
 
 def _near(cls, example, random) -> dict[str, Any]:
-    """All parameters of an example; near them with a random generator, within their bounds."""
+    """All parameters of an example; with a random generator, near them and within their bounds."""
     found = {}
     for v in cls.variables:
         if v.causality != "parameter":
             continue
         value = example.get(v.name, v.start)
         if (
+            # Only real parameters vary: others select code. Omitted and unlimited ones keep their
+            # meaning.
             random is not None
             and v.type == "Real"
             and not v.is_left_out(value)
@@ -160,13 +174,13 @@ def _near(cls, example, random) -> dict[str, Any]:
 
 
 def _is_lost(cls, python):
-    """Whether something moves so fast that rounding becomes visible."""
+    """True if an output moves so fast that rounding errors become visible."""
     fast = [v.name for v in cls.variables if v.causality == "output" and v.unit in ("m/s", "rad/s")]
     return any(abs(getattr(python, name)) > FASTEST for name in fast)
 
 
 def _draw(cls, inputs, random, share):
-    """Change inputs at random: numbers wander, flags turn seldom."""
+    """Change the inputs at random: numbers drift around their start, flags change seldom."""
     for v in cls.variables:
         if v.causality != "input":
             continue
@@ -174,9 +188,13 @@ def _draw(cls, inputs, random, share):
         if v.type == "Real":
             low = -math.inf if v.minimum is None else v.minimum
             high = math.inf if v.maximum is None else v.maximum
+            # An input of 1e12 and more means unlimited; its random value gets the size of real
+            # power, 1e5.
             size = SIZES.get(v.unit, 0.5) if abs(v.start) < 1e12 else 1e5
             if abs(v.start) >= 1e12 and random.random() < 0.9:
                 continue  # plenty of power and the like stays so, mostly
+            # First-order autoregressive noise about the start, so that inputs move as signals do.
+            # The memory of 0.9 a step keeps them bounded.
             start = v.start if abs(v.start) < 1e12 else 2e5
             value = (
                 0.9 * (value - start if abs(value) < 1e12 else 0.0)
@@ -199,11 +217,12 @@ def _set(python, values):
 
 
 class _Compiled:
-    """An instance of the FMU in C, by the functions of FMI."""
+    """An instance of the C FMU, called through the functions of FMI."""
 
     def __init__(self, cls, library, guid):
         self._library = library
         self.said = ""
+        # FMI sets and gets values by type, so group the variables by type once.
         self._of_type = {
             kind: [
                 (v.name, reference) for reference, v in enumerate(cls.variables) if v.type == kind

@@ -1,4 +1,4 @@
-"""Python's own functions of numbers, which take floats alone, for modules that run on symbols."""
+"""Python's math functions and number types, replaced so that modules can run on symbols."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _of(original: Callable, of_symbols: Callable) -> Callable:
 
 
 class _AsType(type):
-    """A type of numbers that makes symbols of symbols."""
+    """A number type whose constructor maps symbols to symbols."""
 
     def __call__(cls, *values: Any) -> Any:
         if values and isinstance(values[0], np.ndarray) and values[0].ndim == 0:
@@ -86,12 +86,14 @@ _NUMPY = NumPy()
 
 @contextmanager
 def understood(package: str) -> Iterator[None]:
-    """Let int, float and the functions of `math` and NumPy take symbols in the modules of a package, for a while."""
+    """Let int, float, `math` and NumPy accept symbols in the modules of a package."""
+    # A model finds these names in its module, so its code needs no change to run on symbols.
     modules = [
         vars(module)
         for name, module in list(sys.modules.items())
         if name.partition(".")[0] == package
     ]
+    # Keep the names of each module: they must be restored after the recording.
     before = [dict(module) for module in modules]
     for module in modules:
         for name, value in list(module.items()):
@@ -100,14 +102,17 @@ def understood(package: str) -> Iterator[None]:
             elif value is np:
                 module[name] = _NUMPY
             elif isinstance(value, functools._lru_cache_wrapper):
+                # Symbols have no hash, so a cache by arguments is bypassed for them.
                 module[name] = _of(value, value.__wrapped__)
             elif callable(value) and getattr(value, "__module__", "") == "math":
                 module[name] = _REPLACED.get(value, value)
+        # Built-in names are found after the module's names: define them there.
         module.setdefault("int", _Int)
         module.setdefault("float", _Float)
     try:
         yield
     finally:
+        # Restore every module, also after an error; other FMUs share this process.
         for module, kept in zip(modules, before, strict=True):
             for name in set(module) - set(kept):
                 del module[name]

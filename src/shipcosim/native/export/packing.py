@@ -1,4 +1,4 @@
-"""Packs FMUs without Python: what `shipcosim build --native` does for one of them."""
+"""Pack FMUs without Python, as `shipcosim build --native` does."""
 
 from __future__ import annotations
 
@@ -57,6 +57,7 @@ def build_native_fmu(
         There is no such FMU, it is wrong by itself, the compiler fails, or the file cannot be written.
     """
     with fmu_class(source) as (cls, script, bundled):
+        # Record all variants and write the C text while the FMU's modules accept symbols.
         words = sys.modules[f"{bundled.package}.shipcosim.fmi.failures"].text_of
         with understood(bundled.package):
             found = list(_variants(cls, examples))
@@ -64,6 +65,8 @@ def build_native_fmu(
             values = [given for _, given in found]
             text = source_of_model(cls, script.stem, "", variants, words)
         try:
+            # The GUID is the hash of description and text without a GUID: the same model gives the
+            # same GUID. It then goes into both.
             blank = _description(cls, script.stem, "")
             guid = f"{{{hashlib.sha256(blank + text.encode()).hexdigest()[:32]}}}"
             files = {"modelDescription.xml": _description(cls, script.stem, guid)} | documentation(
@@ -72,6 +75,7 @@ def build_native_fmu(
         except ValueError as error:
             raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
         text = text.replace('#define GUID ""', f'#define GUID "{guid}"')
+        # Compare on this machine before anything is written. Other targets have the same source.
         own = compiled(text, own_target())
         refuse_other_results(cls, own, guid, values)
     files["sources/all.c"] = text.encode()
@@ -90,21 +94,26 @@ def _variants(
     """
     seen: list[dict[str, Any]] = []
     given = [dict(example) for example in examples] or [{}]
+    # The start values are one more example, unless a parameter has none and must be set.
     if examples and not any(v.required for v in cls.variables):
         given.append({})
     for number, values in enumerate(given):
         if values in given[:number]:
+            # Systems often repeat a set of parameters.
             continue
         variant = variant_of(cls, values, cls.default_step_size)
         yield variant, values
         seen.append(variant.fixed)
         flags = [v.name for v in cls.variables if v.type == "Boolean" and v.name in variant.fixed]
+        # A user may toggle a flag that no example does. Few flags: every combination gets a
+        # variant. Many would multiply the code.
         for chosen in (
             itertools.product([False, True], repeat=len(flags)) if len(flags) <= MOST_FLAGS else ()
         ):
             flagged = dict(zip(flags, chosen, strict=True))
             if variant.fixed | flagged in seen:
                 continue
+            # Note it before recording: a combination that fails is not tried again.
             seen.append(variant.fixed | flagged)
             try:
                 yield variant_of(cls, values | flagged, cls.default_step_size), values | flagged
@@ -113,7 +122,7 @@ def _variants(
 
 
 def _description(cls, identifier, guid) -> bytes:
-    """The model description of the FMU in Python, but for what is said of its binary."""
+    """The description of the Python FMU, with the entries that differ for a C binary."""
     root = ElementTree.fromstring(model_description(cls, identifier, guid))
     binary = root.find("CoSimulation")
     assert binary is not None

@@ -1,4 +1,4 @@
-"""Platforms: what FMI 2.0 calls them, and how the one compiler makes a library for each of them."""
+"""Platforms: their names in FMI 2.0, and how the compiler builds a library for each."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ TARGETS = {
 
 
 def own_target() -> str:
-    """The platform that this runs on."""
+    """The platform of this machine."""
     return {"win32": "windows", "darwin": "macos"}.get(sys.platform, "linux")
 
 
 def targets_of(given: str) -> list[str]:
-    """Names of platforms in a text, by commas; this platform's where it is empty.
+    """Platforms in a comma-separated text; this platform if it is empty.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def targets_of(given: str) -> list[str]:
 
 
 def compiled(source: str, target: str) -> bytes:
-    """The library of a C text for a platform.
+    """Compile a C text for a platform.
 
     Raises
     ------
@@ -86,12 +86,13 @@ def compiled(source: str, target: str) -> bytes:
 
 
 def _compiled(source, triple, suffix) -> bytes:
-    """A library, from the cache where it is there. A cache that cannot be written keeps nothing."""
+    """Compile a library or read it from the cache. A cache that cannot be written keeps nothing."""
     key = hashlib.sha256(repr((source, triple, OPTIONS)).encode()).hexdigest()[:32]
     path = cache() / "native" / f"{key}{suffix}"
     if path.is_file():
         return path.read_bytes()
     library = _from_compiler(source, triple, suffix)
+    # Write aside, then rename: a reader never sees half a library.
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent)
@@ -118,6 +119,7 @@ def _from_compiler(source, triple, suffix) -> bytes:
             "-o",
             library.name,
         ]
+        # The mathematics of Windows is in its C runtime; elsewhere it is a library of its own.
         command += [] if "windows" in triple else ["-lm"]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
@@ -128,13 +130,16 @@ def _from_compiler(source, triple, suffix) -> bytes:
 
 
 def _universal(libraries: list[bytes]) -> bytes:
-    """Apple's file of several libraries: a table of processors, offsets and sizes, then each at an even page."""
+    """Apple's universal file: a table of processors and offsets, then the libraries."""
+    # Pages of 16 KiB, as ARM Macs need them: 2¹⁴, which is the alignment 14 in the table.
     page = 1 << 14
     head = struct.pack(">II", 0xCAFEBABE, len(libraries))
     body = b""
     for library in libraries:
+        # A Mach-O file begins with its magic number; processor and subtype follow.
         processor, kind = struct.unpack_from("<II", library, 4)
         offset = page + len(body)
         head += struct.pack(">IIIII", processor, kind, offset, len(library), 14)
+        # Fill up to the next page, so that the next library starts at one.
         body += library + bytes(-len(library) % page)
     return head + bytes(page - len(head)) + body

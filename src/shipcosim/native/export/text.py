@@ -26,7 +26,7 @@ TYPES = {"Real": "REAL", "Integer": "INTEGER", "Boolean": "BOOLEAN", "String": "
 def source_of_model(
     cls: Any, identifier: str, guid: str, variants: Sequence[Variant], words: Callable
 ) -> str:
-    """The whole C text of an FMU.
+    """Write the whole C text of an FMU.
 
     Parameters
     ----------
@@ -45,6 +45,8 @@ def source_of_model(
     written = set()
     found = []
     for variant in variants:
+        # Variants often record the same code, for example where a flag has no effect. Equal ones
+        # are written once.
         text, size = _functions(variant, len(found), words, others)
         plain = (*variant.fixed.items(), _plain(text))
         if plain in written:
@@ -54,12 +56,14 @@ def source_of_model(
         functions.append(text)
         kept.append(size)
     variants = found
+    # The runtime checks after each step that all real outputs are finite.
     outputs = [
         str(i) for i, v in enumerate(cls.variables) if v.causality == "output" and v.type == "Real"
     ]
     head = [
         f"#define IDENTIFIER {_text(identifier)}",
         f"#define GUID {_text(guid)}",
+        # Sizes for the C runtime: one instance has room for the largest variant.
         f"enum {{ N_VARIABLES = {len(cls.variables)}, N_VARIANTS = {len(variants)}, N_OUTPUTS = {len(outputs)},",
         f"       MOST_MEMORY = {max(variant.size for variant in variants)}, MOST_KEPT = {max(kept)} }};",
         f"#define LEFT_OUT {LEFT_OUT!r}",
@@ -70,6 +74,7 @@ def source_of_model(
         "};",
         "",
     ]
+    # From this table the runtime selects the variant that fits the given parameters.
     table = [
         _variant(cls, number, variant, size)
         for number, (variant, size) in enumerate(zip(variants, kept, strict=True))
@@ -92,12 +97,14 @@ def source_of_model(
 def _functions(
     variant: Variant, number: int, words: Callable, others: dict[str, str]
 ) -> tuple[str, int]:
-    """Start and step of a variant as C, and how many numbers they keep together."""
+    """Write start and step of a variant; return the text and the size of their shared cache."""
     n = len(variant.places)
+    # Start and step share one array of cached results; those of the step lie behind the start's.
     start = ModelWriter(variant.start, f"start_{number}", words, lambda place: place, 0, others)
     step = ModelWriter(
         variant.step, f"step_{number}", words, variant.places.__getitem__, start.n_kept, others
     )
+    # Writing must add no places: the memory is laid out already.
     assert n == len(variant.places)
     return "\n".join([start.function(), step.function()]), start.n_kept + step.n_kept
 
@@ -136,12 +143,13 @@ class ModelWriter(Writer):
         self._where = place
         self._others = others
         self._names = []
+        # The places of arguments and results move behind what others have cached.
         self.n_kept = sum(a + b for a, b in kept_sizes(step.recording))
         self.arguments = [first_kept + first for first in self.arguments]
         self.results = [first_kept + first for first in self.results]
 
     def function(self) -> str:
-        """The function, behind those that it calls."""
+        """Write the function and, before it, the functions that it calls."""
         called = []
         for call in self.recording.calls:
             name, text = _Procedure(
@@ -150,6 +158,7 @@ class ModelWriter(Writer):
             self._names.append(name)
             called.append(text)
         self._block(self.step.root, 1, self._finish)
+        # Without optimisation very long functions compile in seconds; they run seldom.
         much = "PLAIN " if len(self.lines) > MUCH else ""
         head = f"static {much}int {self.name}(double *restrict m, double *restrict k, Instance *o)"
         tables = [
@@ -183,6 +192,7 @@ class ModelWriter(Writer):
     def _value(self, symbol: Symbol, depth):
         if symbol.op == "primitive":
             name, size, *arguments = symbol.operands
+            # C cannot return an array: the primitive writes its result to a local one.
             given = ", ".join(map(operand, arguments))
             self._put(depth, f"double p{symbol.number}[{size}];")
             self._put(
@@ -201,6 +211,7 @@ class ModelWriter(Writer):
     def _call(self, operands, depth):
         number, *arguments = operands
         first = self.arguments[number]
+        # The cached result holds while the arguments are equal. NaN is never equal.
         same = (
             " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
         )
@@ -210,20 +221,22 @@ class ModelWriter(Writer):
         self._put(
             depth + 1, f"if ({self._names[number]}(k + {first}, k + {self.results[number]}, o)) {{"
         )
+        # A failed call must not leave arguments that look valid: NaN forces another call.
         self._put(depth + 2, f"{f'k[{first}] = NAN; ' if arguments else ''}return GIVEN_UP;")
         self._put(depth + 1, "}")
         self._put(depth, "}")
 
 
 class _Procedure(ModelWriter):
-    """Writes a function that computes what is kept: from its arguments in `m` into `k`."""
+    """Writes a function with cached results: arguments in `m`, results in `k`."""
 
     def __init__(self, procedure: Any, name: str, words: Callable, others: dict[str, str]):
         super().__init__(procedure, name, words, lambda place: place, 0, others)
 
     def named_function(self) -> tuple[str, str]:
-        """Its name, and its text where there is none like it yet."""
+        """Its name and text; the text is empty if an equal function exists."""
         text = self.function()
+        # Components with the same tables call equal functions; one copy in C serves all.
         plain = _plain(text)
         if plain in self._others:
             return self._others[plain], ""
@@ -240,7 +253,7 @@ class _Procedure(ModelWriter):
 
 
 def _plain(text: str) -> str:
-    """The text of functions with other names: the same for those that compute the same."""
+    """Rename the variables of a text in order: equal for functions that compute the same."""
     numbers = {
         found: f"v{place}" for place, found in enumerate(dict.fromkeys(_VALUES.findall(text)))
     }
@@ -248,13 +261,14 @@ def _plain(text: str) -> str:
 
 
 def say(text: str, recording: Recording) -> str:
-    """C that says a text, with its values."""
+    """Write C statements that report a text with its values."""
     said = []
     for words, how in parts(text):
         if not how:
             said.append(f"say(o, {_text(words)});")
             continue
         symbol = recording.said[int(words)]
+        # A value with a format goes to printf; integers are doubles in C, so `d` becomes `.0f`.
         if how != "r":
             said.append(
                 f"say_number(o, {operand(symbol)}, {_text('%' + how.replace('d', '.0f'))});"
@@ -269,6 +283,7 @@ def say(text: str, recording: Recording) -> str:
 
 
 def _variable(variable) -> str:
+    # A missing bound is infinite, so that the runtime needs no special case.
     text = variable.type == "String"
     low = -math.inf if variable.minimum is None else variable.minimum
     high = math.inf if variable.maximum is None else variable.maximum
@@ -286,6 +301,7 @@ def _variable(variable) -> str:
 
 
 def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
+    # A variant is chosen by its fixed values: reference, number and text of each.
     references = {variable.name: reference for reference, variable in enumerate(cls.variables)}
     choices = [
         f"{{{references[name]}, {'0.0' if isinstance(value, str) else literal(value)}, "
@@ -300,8 +316,9 @@ def _variant(cls, number, variant: Variant, kept: int) -> tuple[str, str]:
 
 
 def _text(value: str) -> str:
-    """A text as a literal of C, in parts of a length that every compiler takes."""
+    """A text as a C literal, split into parts that every compiler accepts."""
     escapes = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "?": "\\?"}
+    # Non-ASCII letters are written as octal bytes of UTF-8; `?` is escaped against trigraphs.
     letters = [
         escapes.get(c, c if " " <= c <= "~" else "".join(f"\\{b:03o}" for b in c.encode()))
         for c in value

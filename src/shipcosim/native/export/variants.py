@@ -1,7 +1,7 @@
-"""Start and step of an FMU as recordings, for parameters that are known only when the FMU runs.
+"""Start and step of an FMU as recordings, for parameters that only the running FMU knows.
 
-Numbers are symbols. Texts are part of the code, and so are flags and counts where they shape it: each set of them is a
-variant of its own.
+Numbers are symbols. Texts are part of the code; so are flags and counts that shape it. Each set of
+them is a variant.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Variant:
 
 
 def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Variant:
-    """The variant for some parameters, in which as few of them as possible belong to the code.
+    """Record the variant for some parameters; as few of them as possible are part of the code.
 
     Parameters
     ----------
@@ -70,6 +70,8 @@ def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Varian
     """
     parameters = [variable for variable in cls.variables if variable.causality == "parameter"]  # pyright: ignore
     given = {variable.name: values.get(variable.name, variable.start) for variable in parameters}
+    # Try the most general code first. Flags and integers become part of it only where the model
+    # needs their values. Fixed decisions on parameters are the last resort.
     texts = [variable.name for variable in parameters if variable.type == "String"]
     whole = [variable.name for variable in parameters if variable.type in ("Integer", "Boolean")]
     reasons = []
@@ -83,11 +85,12 @@ def variant_of(cls: type, values: Mapping[str, Any], step_size: float) -> Varian
             return _recorded(cls, given, names, step_size, decided)
         except Untraceable as reason:
             reasons.append(reason)
+    # The last attempt is the least general; its reason is the one that remains.
     raise reasons[-1]
 
 
 def with_its_line(function: Callable) -> Callable:
-    """Whatever a function raises is an `Untraceable` that names the line of the component's own code."""
+    """Raise errors of a function as `Untraceable`, with the line of the component's code."""
 
     @functools.wraps(function)
     def call(*arguments):
@@ -103,7 +106,8 @@ def with_its_line(function: Callable) -> Callable:
 
 @with_its_line
 def _recorded(cls, given, names, step_size, decided) -> Variant:
-    """With `decided`, questions that parameters alone answer belong to the code, answered as for the example."""
+    """Record a variant. `decided`: questions on parameters alone are answered as in the example."""
+    # Fixed parameters are constants, all other variables are loads from the memory.
     fixed = {name: given[name] for name in names}
     constant = frozenset(fixed)
     unchanging = frozenset(group.name for group in cls.groups)
@@ -115,6 +119,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
         else set()
     )
     recording = ExportRecording([*example, 0.0], settled)
+    # Record the start first: it makes the state on which the step works.
     root, clone, flat = _recorded_start(cls, fixed, recording)
 
     # Every number of the state has a place: that of the FMU's variable of its name, or one of its own behind them.
@@ -143,6 +148,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
 
     # The step is recorded on the state that the start left.
     step = trace(clone, shape, 0.0, step_size, numbers, ExportRecording)
+    # At the end of each way the start writes its state to the same places.
     for end in ends(root):
         if isinstance(end.result, Flat):
             end.result = _written(end.result, flat, places)
@@ -159,7 +165,7 @@ def _recorded(cls, given, names, step_size, decided) -> Variant:
 
 
 def _recorded_start(cls, fixed, recording):
-    """The tree of ways that the start can go, and instance and flat state of the first that gets to its end."""
+    """Record the start: its tree of ways, and instance and flat state of the first complete way."""
     constant = frozenset(fixed)
     unchanging = frozenset(group.name for group in cls.groups)
     made = []
@@ -167,9 +173,12 @@ def _recorded_start(cls, fixed, recording):
     def run():
         clone = _with_symbols(cls, fixed, recording)
         with only_arithmetic(cls.__module__.partition(".")[0]), _remembering(cls.groups):
+            # Derived values of the parameters are computed at the start, so they belong to the
+            # memory.
             clone.start()
             for group in cls.groups:
                 remember(getattr(clone, group.name))
+        # Compiled code has no log, so a message at the start would be lost.
         if clone.messages:
             raise Untraceable("it writes to the log")
         _put_in_order(clone)
@@ -178,13 +187,15 @@ def _recorded_start(cls, fixed, recording):
         return flat
 
     root = recording.record(run)
+    # No way reaches the end of the start: report the first error.
     if not made:
         raise next(end.result for end in ends(root))
     return root, *made[0]
 
 
 def _put_in_order(clone):
-    """Order of attributes that does not depend on the way by which the start went."""
+    """Sort the attributes, so that their order does not depend on the way of the start."""
+    # Declared variables first, all others by name: places are compared by position.
     values = dict(vars(clone))
     first = [*(item.name for item in (*clone.variables, *clone.groups))]
     vars(clone).clear()
@@ -195,7 +206,7 @@ def _put_in_order(clone):
 
 @contextmanager
 def _remembering(groups):
-    """Let dataclasses of parameters compute all that they remember when they are made, not inside a loop or a way."""
+    """Let parameter dataclasses compute their cached values when they are made."""
     kinds = [group.kind for group in groups]
 
     def made(kind, **values):
@@ -213,37 +224,42 @@ def _remembering(groups):
 
 
 def _with_symbols(cls, fixed, recording: Recording):
-    """A component whose inputs and parameters are symbols, but for the fixed ones."""
+    """A component with symbols as inputs and parameters, except the fixed ones."""
     clone = cls("it")
     clone.start_time = recording.value("load", "d", len(cls.variables) + START_TIME)
     values = vars(clone)
     for reference, variable in enumerate(cls.variables):
         if variable.name in fixed:
             values[variable.name] = fixed[variable.name]
+        # Outputs are computed by the start, and texts cannot be numbers.
         elif variable.causality != "output" and variable.type != "String":
             values[variable.name] = recording.value("load", KINDS[variable.type], reference)
     return clone
 
 
 def _numbers(flat, recording):
-    """The numbers of an example after its start, as far as they are known."""
+    """The numbers of an example after its start; zero where they are unknown."""
     found = []
     for number in flat.numbers:
         try:
             found.append(recording.example(number))
         except (Untraceable, ArithmeticError, ValueError, RecursionError):
+            # The value may depend on a loop. Zero is enough: it only answers questions for whole
+            # numbers.
             found.append(0.0)
     return found
 
 
 def _widest(flat: Flat, root) -> Flat:
-    """The leaves of the first way, where all ways have this shape; floats where one way has a float."""
+    """The leaves of the first way, if all ways have its shape; floats where any way has a float."""
     for end in ends(root):
         if isinstance(end.result, Flat):
+            # Start and step have one layout, whatever way the start takes.
             if not end.result.same_shape(flat):
                 raise Untraceable(
                     f"its start gives states of several shapes: {flat.difference(end.result)}"
                 )
+            # A number that is a float on one way must not be cut to an integer on another.
             kinds = [kind_of(number) for number in end.result.numbers]
             flat.leaves = [
                 leaf._replace(kind="d") if k == "d" else leaf
@@ -253,7 +269,7 @@ def _widest(flat: Flat, root) -> Flat:
 
 
 def _written(result: Flat, flat: Flat, places) -> list[tuple[int, Any]]:
-    """What a way of the start writes: all but what lies there already."""
+    """The numbers that a way of the start writes: those that are not in their places already."""
     pairs = zip(places, result.numbers, strict=True)
     return [
         (place, number)

@@ -1,4 +1,4 @@
-"""Connectors, connections and values of arrays made into those of their elements.
+"""Replace connectors, connections and values of arrays by those of their elements.
 
 A connection joins two arrays of one shape element by element, or, with indices at an end, single elements.
 
@@ -40,13 +40,16 @@ def element_connectors(
     found = []
     known = {}
     for connector in connectors:
+        # The FMU's sizes win over those in the SSD, which may leave sizes open.
         written = connector.dimensions
         given = arrays.get(connector.name, written)
         dimensions = tuple(size for size in given if size is not None)
         is_open = len(dimensions) < len(given)
+        # A limit protects the memory from a typing error in a size.
         if dimensions and not is_open and (min(dimensions) < 1 or prod(dimensions) > MOST_ELEMENTS):
             remedy = f"Arrays have from 1 to {MOST_ELEMENTS} elements."
             findings.error(connector.place, f"The connector is {shape_text(dimensions)}.", remedy)
+        # Sizes stay open, or contradict the FMU.
         elif written and (is_open or not _fits(written, dimensions)):
             shown = "x".join("?" if size is None else str(size) for size in written)
             remedy = (
@@ -57,6 +60,7 @@ def element_connectors(
             findings.error(connector.place, f"The connector is an array of {shown}.", remedy)
         elif dimensions:
             known[connector.name] = dimensions
+            # An array becomes one connector for each element, named as FMI does.
             names = element_names(connector.name, dimensions)
             found += [replace(connector, name=name, dimensions=()) for name in names]
         else:
@@ -70,7 +74,7 @@ def _fits(written: tuple[int | None, ...], dimensions: tuple[int | None, ...]) -
 
 
 def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Findings) -> list[Link]:
-    """Connections of the elements that a connection joins.
+    """Connections of elements that a connection joins.
 
     Parameters
     ----------
@@ -85,6 +89,7 @@ def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Find
     -------
     list of Link
     """
+    # The usual case: no arrays and no indices.
     if not (start or end or link.start_indices or link.end_indices):
         return [link]
     names = [
@@ -96,6 +101,7 @@ def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Find
     ]
     if None in names:
         return []
+    # An index picks one element, which is a scalar. Shapes must be equal then.
     shapes = [() if link.start_indices else start, () if link.end_indices else end]
     if shapes[0] != shapes[1]:
         found = f"{shape_text(shapes[0])} cannot be connected to {shape_text(shapes[1])}."
@@ -105,6 +111,7 @@ def element_links(link: Link, start: Dimensions, end: Dimensions, findings: Find
             "Both must have the same shape; startIndices and endIndices name an element.",
         )
         return []
+    # Join element by element, in row-major order.
     bare = replace(link, start_indices=(), end_indices=())
     return [replace(bare, start_connector=a, end_connector=b) for a, b in zip(*names, strict=True)]
 
@@ -115,6 +122,7 @@ def _end_names(
     """Names of the elements at one end, or None."""
     if not indices:
         return element_names(name, dimensions) if dimensions else [name]
+    # SSP counts indices from 1.
     inside = [1 <= index <= size for index, size in zip(indices, dimensions, strict=False)]
     if len(indices) != len(dimensions) or not all(inside):
         shown = ",".join(map(str, indices))
@@ -128,7 +136,7 @@ def _end_names(
 
 
 def element_values(value: ParameterValue, findings: Findings) -> list[ParameterValue]:
-    """Parameter values of an array's elements; the value itself where it is no array.
+    """Parameter values of an array's elements; a scalar's value itself.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""From a package to a system ready to run: its hierarchy made flat, values brought to their variables, all checked."""
+"""From a package to a system ready to run: flatten, set values, check."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -51,9 +51,11 @@ def assemble_package(
     structure = None if document is None else read_structure(document, findings)
     if structure is None:
         return None
+    # Parameter sets are read once, also if the system is laid out twice.
     sets = list(parameter_sets(parameters, findings))
     before = len(findings.problems)
 
+    # Collect the hierarchy, apply the sets over the system's own values, and flatten it.
     def flat(sizes: Mapping[str, Mapping[str, int]]) -> System:
         tree = Hierarchy(findings, described, sizes, swapped)
         take_in(tree, structure, package)
@@ -61,6 +63,8 @@ def assemble_package(
             apply_set(tree, values)
         return _system(tree, structure, file, findings)
 
+    # Lay out with the FMUs' own array sizes. If the values set other sizes, do it once more with
+    # these; findings of the first pass are dropped.
     system = flat({})
     if any(found for component in system.components.values() for found in resized(component)):
         findings.back_to(before)
@@ -69,7 +73,7 @@ def assemble_package(
 
 
 def parameter_sets(parameters: ParameterSets, findings: Findings) -> Iterator[ParameterSet]:
-    """Parameter sets given for a run, read where they are paths.
+    """Parameter sets given for a run, read if they are paths.
 
     Parameters
     ----------
@@ -88,6 +92,7 @@ def parameter_sets(parameters: ParameterSets, findings: Findings) -> Iterator[Pa
 
 
 def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings) -> System:
+    # Order: connections first (they add undeclared ports), then values, then components.
     connections = connect(tree, findings)
     settings = Settings(tree, findings)
     settings.apply()
@@ -98,10 +103,12 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         for found in resized(component):
             findings.error(component.name, found, RESIZE)
     remark_unconnected(components, connections, findings)
+    # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
     if findings.errors:
         return System(name, file, components)
     signals = OuterSignals(tree, components, connections, settings.system_start)
+    # Connections from parameters of the system are done already, by its start values.
     return System(
         name=name,
         file=file,
@@ -147,7 +154,7 @@ def components_of(tree: Hierarchy, settings: Settings) -> dict[str, Component]:
 
 
 def _is_given(connection: Connection, tree: Hierarchy) -> bool:
-    """Whether a connection only hands in a parameter of the outermost system, whose value is among the start values."""
+    """True if a connection hands in a parameter of the outermost system; start values cover it."""
     owner, name = connection.source
     return owner is None and tree.ports[Key((), name)].kind in ("parameter", "structuralParameter")
 
@@ -160,7 +167,7 @@ def _experiment(structure: Structure) -> Experiment:
 
 
 def _check_names(tree: Hierarchy, findings: Findings) -> None:
-    """Two components can end up with one full name where names have dots; results could not tell them apart."""
+    """Report components with the same full name, which results could not tell apart."""
     seen = {}
     for path, (element, _) in tree.components.items():
         name = ".".join(path)

@@ -1,4 +1,4 @@
-"""Parameter bindings: the values that they set, under the names that prefixes and mappings give them."""
+"""Parameter bindings: their values, under the names that prefixes and mappings give them."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -41,6 +41,7 @@ def take_bindings(
         document = tree.library.content(binding.values, place, fmu)
         if document is None:
             continue
+        # Prefix and mapping are alternatives of renaming: the mapping refers to prefixed names.
         values = tree.library.parameter_set(document)
         mapping = None
         if binding.mapping is not None:
@@ -53,7 +54,7 @@ def take_bindings(
 
 
 def apply_set(tree: Hierarchy, values: ParameterSet) -> None:
-    """Set the values of a parameter set on the outermost system, over everything set before.
+    """Set the values of a parameter set on the outermost system, after all others.
 
     Parameters
     ----------
@@ -82,9 +83,10 @@ def _mapped(
     prefix: str,
     mapping: Iterable[MappingEntry],
 ) -> list[Setting]:
-    """Values under the names that a parameter mapping gives them; those that it does not name are not used."""
+    """Values under the names of a parameter mapping; values that it does not name are not used."""
     by_name = {prefix + value.name: value for value in values.values}
     settings = []
+    # The mapping may convert the value too; the conversion happens on the way to the variable.
     for entry in mapping:
         if entry.source not in by_name:
             found = f"The parameter set '{values.name}' has no '{entry.source}'."

@@ -1,4 +1,4 @@
-"""Connections from variable to variable, through whatever systems and dictionaries lie between."""
+"""Connections from variable to variable, through nested systems and dictionaries."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -56,11 +56,14 @@ def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
     -------
     tuple of Connection
     """
+    # Trace back from each place where a value is used to where it comes from.
     incoming = _incoming(tree, findings)
     connections = []
     for key, port in tree.ports.items():
         if key in incoming and _is_end(key, port):
             wires = _way(key, incoming, findings)
+            # Nested connectors and dictionaries disappear: one connection from first source to last
+            # target.
             if wires and (source := _source(wires[0].source, tree)) is not None:
                 connections.append(_connection(wires, source, tree, findings))
     return tuple(connections)
@@ -68,6 +71,7 @@ def connect(tree: Hierarchy, findings: Findings) -> tuple[Connection, ...]:
 
 def _incoming(tree: Hierarchy, findings: Findings) -> dict[Key, Wire]:
     """The wire into each port."""
+    # SSP allows one source per input.
     incoming = {}
     for wire in tree.wires:
         if wire.target in incoming:
@@ -80,14 +84,15 @@ def _incoming(tree: Hierarchy, findings: Findings) -> dict[Key, Wire]:
 
 
 def _is_end(key: Key, port: Port) -> bool:
-    """Whether a value that arrives here is used here, rather than passed on."""
+    """True if a value is used at this port, not passed on."""
     return port.owner == "component" or (port.owner == "system" and key.path == ())
 
 
 def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wire]:
-    """Wires that lead to a port, first one first; empty where they go in a circle."""
+    """Wires that lead to a port, the first one first; empty if they form a circle."""
     wires = []
     seen = set()
+    # Go against the flow; a port seen twice is a circle without any component.
     while key in incoming:
         seen.add(key)
         wires.append(incoming[key])
@@ -103,7 +108,7 @@ def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wir
 
 
 def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
-    """Component (None: the outermost system) and name of a source; None where values end in nothing."""
+    """Component (None: the outermost system) and name of a source; None if there is no source."""
     port = tree.ports[key]
     if port.owner == "component":
         return ".".join(key.path), key.name
@@ -113,6 +118,7 @@ def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
 def _connection(
     wires: list[Wire], source: tuple[str | None, str], tree: Hierarchy, findings: Findings
 ) -> Connection:
+    # Convert from wire to wire, then into the unit of the FMU's variable.
     first = tree.ports[wires[0].source]
     last = tree.ports[wires[-1].target]
     flow = Flow(first.type, first.variable_unit or first.unit, first.items)
@@ -122,6 +128,7 @@ def _connection(
     flow = flow.in_unit(last.variable_unit or last.unit)
     key = wires[-1].target
     target = (".".join(key.path) if last.owner == "component" else None, key.name)
+    # A connection into a parameter acts once, at the start.
     initial = last.owner == "component" and last.kind in ("parameter", "structuralParameter")
     return Connection(
         source, target, flow.factor, flow.offset, flow.mapping, initial, wires[-1].place

@@ -1,4 +1,4 @@
-"""Conversion of a value from port to port: units, linear transformations, mapping tables, types."""
+"""Convert values from port to port: units, linear transformations, mapping tables, types."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -55,11 +55,12 @@ class Flow:
         return value
 
     def scaled(self, factor: float, offset: float) -> "Flow":
-        """The same flow with a linear step after it."""
+        """The same flow, followed by a linear step."""
+        # a (f x + o) + b = (a f) x + (a o + b).
         return replace(self, factor=factor * self.factor, offset=factor * self.offset + offset)
 
     def in_unit(self, unit: Unit | None) -> "Flow":
-        """Converted to a unit; unchanged where the unit is not known."""
+        """Converted to a unit; unchanged if the unit is unknown."""
         if unit is None:
             return self
         return replace(self.scaled(*conversion(self.unit, unit)), unit=unit)
@@ -72,7 +73,7 @@ def advance(
     what: tuple[str, tuple[str, str]],
     findings: Findings,
 ) -> Flow:
-    """Flow behind a wire or a mapping entry.
+    """Flow after a wire or a mapping entry.
 
     Units are converted as late as possible, so that what comes back to its unit comes back to its value.
 
@@ -94,6 +95,7 @@ def advance(
     Flow
     """
     place, names = what
+    # After an error take the port's type, so that one mistake gives one message.
     if (
         port.type is not None
         and flow.type is not None
@@ -103,19 +105,23 @@ def advance(
             place, f"{names[0]} is {flow.type}, {names[1]} is {port.type}.", "Connect equal types."
         )
         return replace(flow, type=port.type)
+    # Without conversion the number stays and counts in the port's unit.
     if wire.suppress_unit_conversion:
         flow = replace(flow, unit=port.unit)
     _compare_units(flow, port, place, names, findings)
+    # A mapping table replaces discrete values.
     transformation = wire.transformation
     if transformation is not None and transformation.kind != "Linear":
         flow = _mapped(flow, transformation, port, place, findings)
     flow = _items_checked(flow, port, transformation, place, findings)
+    # What the port does not state is carried along from before.
     flow = replace(
         flow,
         type=port.type or flow.type,
         unit=flow.unit or port.unit,
         items=port.items or flow.items,
     )
+    # A linear transformation works on the number in the port's unit.
     if transformation is not None and transformation.kind == "Linear":
         if flow.type not in ("Real", None):
             found = f"A linear transformation of {flow.type} values."
@@ -129,6 +135,7 @@ def _compare_units(
 ) -> None:
     if flow.unit is None or port.unit is None:
         return
+    # Units may be equal, convertible, of unknown definition, or incompatible.
     related = relation(flow.unit, port.unit)
     found = f"{names[0]} is in {flow.unit.name}, {names[1]} in {port.unit.name}"
     if related == "incompatible":
@@ -157,6 +164,7 @@ def _mapped(
         "Integer": ("Integer", "Enumeration"),
         "Enumeration": ("Enumeration",),
     }[kind]
+    # A table fits discrete types of its own kind only.
     if flow.type not in (*allowed, None) or port.type not in (*allowed, None):
         findings.error(
             place,
@@ -165,6 +173,7 @@ def _mapped(
         )
         return flow
     table = transformation.table
+    # Connections carry numbers, so names of items are translated into numbers here.
     if kind == "Enumeration":
         # Table of numbers from a table of item names.
         target = port.items or flow.items
@@ -178,6 +187,7 @@ def _mapped(
         }
     elif port.items:
         _check_numbers(table, flow.items, port.items, place, findings)
+    # Chain the tables: what came out of the earlier one goes through this one.
     before = flow.mapping or {}
     after = {value: table.get(between, between) for value, between in before.items()}
     return replace(flow, mapping={**table, **after})
@@ -186,7 +196,8 @@ def _mapped(
 def _check_numbers(
     table: Mapping, source: Items, target: Items, place: str, findings: Findings
 ) -> None:
-    """What a mapping by numbers makes of a source's items must be items of the target."""
+    """Check that a mapping of numbers gives items of the target."""
+    # Values outside the table pass unchanged.
     made = {table.get(value, value) for value in (source.values() or table)}
     if lost := sorted(made - set(target.values())):
         found = f"The mapping gives {', '.join(map(str, lost))}, which the target's enumeration has not."
@@ -200,9 +211,10 @@ def _check_numbers(
 def _items_checked(
     flow: Flow, port: Port, transformation: Transformation | None, place: str, findings: Findings
 ) -> Flow:
-    """Two enumerations must agree in what their numbers mean, unless a mapping says otherwise."""
+    """Check that two enumerations agree in their numbers, unless a mapping is given."""
     if not flow.items or not port.items or transformation is not None:
         return flow
+    # A number must exist in the target, and mean the item of the same name.
     lost = sorted(set(flow.items.values()) - set(port.items.values()))
     if lost:
         found = f"Values {', '.join(map(str, lost))} of the source's enumeration do not exist in the target's."

@@ -1,4 +1,4 @@
-"""Signal dictionaries: what they define, and the connectors of references to them."""
+"""Signal dictionaries: their definitions, and the connectors of references to them."""
 
 from shipcosim.errors import it_has, suggestion
 from shipcosim.ssp.flatten.hierarchy import Dictionaries, ElementPath, Hierarchy, Surroundings
@@ -20,7 +20,7 @@ def dictionaries_of(
     path : tuple of str
         Its place.
     place : Surroundings
-        What is around it.
+        Its surroundings.
 
     Returns
     -------
@@ -51,6 +51,7 @@ def take_reference(
     place : Surroundings
         Has the dictionaries that it can mean; the innermost one of the name counts.
     """
+    # The innermost dictionary of the name counts, as with variables in nested blocks.
     lookup = (
         known[element.dictionary] for known in place.dictionaries if element.dictionary in known
     )
@@ -70,6 +71,7 @@ def take_reference(
             tree.findings.error(connector.place, found, it_has(connector.name, entries))
             continue
         entry = entries[connector.name]
+        # The entry becomes a port itself, so that all references to it share one value.
         tree.references[key] = Key(owner, connector.name)
         tree.ports[tree.references[key]] = Port(
             "inout", entry.kind, "dictionary", entry.unit, entry.items
@@ -77,7 +79,7 @@ def take_reference(
 
 
 def join_dictionaries(tree: Hierarchy) -> None:
-    """Add the wires between references and dictionaries.
+    """Add wires between references and dictionaries.
 
     A reference that something flows into feeds the dictionary; from any other one the dictionary is read.
     """

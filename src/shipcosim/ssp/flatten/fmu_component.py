@@ -1,4 +1,4 @@
-"""A component that is an FMU: its connectors, held against the variables of its FMU."""
+"""A component with an FMU: its connectors, compared with the FMU's variables."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ CAUSALITIES = {
 def take_fmu(
     tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
 ) -> None:
-    """Collect a component with its FMU, the ports of its connectors and the values that are bound to it.
+    """Collect an FMU component: ports of its connectors, and values bound to it.
 
     Parameters
     ----------
@@ -35,14 +35,17 @@ def take_fmu(
     path : tuple of str
         Its place.
     place : Surroundings
-        What is around it.
+        Its surroundings.
     """
     fmu = _fmu_of(tree, element, path, place)
     tree.components[path] = element, fmu
     tree.arrays[path] = {} if fmu is None else dict(fmu.arrays)
+    # Arrays of the FMU are laid out first; the SSD may declare further sizes.
     connectors, declared = element_connectors(element.connectors, tree.arrays[path], tree.findings)
     tree.arrays[path] |= declared
     swapped = ".".join(path) in tree.swapped
+    # A swapped FMU may lack connectors. Whether they are needed is checked when all wires are
+    # known.
     for connector in connectors:
         lacking = fmu is not None and swapped and not has_connector(fmu, connector)
         tree.ports[Key(path, connector.name)] = (
@@ -59,6 +62,7 @@ def take_fmu(
             tree.findings.error(
                 element.place, f"{fmu.path.name} offers no {' and no '.join(forms)}.", remedy
             )
+    # The component's own bindings come first: those of outer systems replace them.
     take_bindings(tree, element.bindings, path, place, near=True, fmu=fmu)
 
 
@@ -70,6 +74,7 @@ def _fmu_of(
             element.place, "It has no source: there is nothing to run.", "Name an FMU or a system."
         )
         return None
+    # A swapped FMU takes the place of the component's own.
     file = tree.swapped.get(".".join(path)) or tree.library.file(element, element.source, place)
     fmu = tree.library.fmu(file, place.package) if file else None
     return fmu and without_arrays(fmu, element.place, tree.findings, tree.sizes.get(".".join(path)))
@@ -85,6 +90,7 @@ def _port(connector: Connector, fmu: FmuDescription | None, findings: Findings) 
             findings.error(connector.place, found, it_has(connector.name, known))
         fields = (connector.kind, connector.type, "component", connector.unit, connector.items)
         return Port(*fields, place=connector.place)
+    # The SSD may state its own unit and description; the FMU fills the gaps.
     _compare(connector, variable, fmu, findings)
     port = variable_port(variable, fmu, connector.place)
     description = connector.description or variable.description
@@ -105,6 +111,7 @@ def _compare(
     if connector.type not in (None, variable.kind):
         found = f"The connector is of type {connector.type}, but in {name} the variable is {variable.type}."
         findings.error(place, found, f"Write <{variable.type}>, or leave the type out.")
+    # Another unit is allowed if it can be converted; the conversion is noted.
     own = find_unit(variable.unit, fmu.units)
     if own is None or connector.unit is None:
         return

@@ -1,4 +1,4 @@
-"""Nested elements of an SSD collected: components with their FMUs, ports, wires between ports, and values set.
+"""Collected elements of an SSD: components with FMUs, ports, wires, and values set.
 
 A port is a connector at its place in the hierarchy. Nested systems, systems in other files and signal dictionaries all
 become ports with wires between them, so that what follows knows no hierarchy.
@@ -24,7 +24,7 @@ Dictionaries = dict[str, tuple[ElementPath, dict[str, DictionaryEntry]]]
 
 
 class Hierarchy:
-    """Everything found on the way through the nested elements.
+    """Everything found in the nested elements.
 
     Parameters
     ----------

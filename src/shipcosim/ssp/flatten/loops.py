@@ -1,4 +1,4 @@
-"""Algebraic loops of a system: links and direct feedthrough that lead back to where they start."""
+"""Algebraic loops: connections and direct feedthrough that lead back to their start."""
 
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator, Mapping
@@ -61,17 +61,22 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
     -------
     list of AlgebraicLoop
     """
+    # Coarse search first: a loop of variables is also a loop of components. Only their FMUs need to
+    # be read.
     links = [c for c in system.connections if c.source[0] and c.target[0] and not c.initial]
     links = list({(c.source, c.target): None for c in links})
     rough = [(source[0], target[0]) for source, target in links]
     circling = {name for part in _strong(_graph(rough), rough) for name in part}
     links = [link for link in links if link[0][0] in circling and link[1][0] in circling]
     fmus = {name: system.components[name].fmu for name in circling}
+    # Each FMU file is read once, however many components use it.
     read = {
         fmu.path: feedthrough(fmu, at_start)
         for fmu in {fmu.path: fmu for fmu in fmus.values()}.values()
     }
     stated = {name: read[fmu.path] for name, fmu in fmus.items()}
+    # Graph of variables: connections between components, feedthrough inside them. Each strongly
+    # connected part is a loop.
     edges = links + [edge for name in circling for edge in _inside(name, links, stated[name])]
     return [
         _loop(part, edges, links, list(system.components)) for part in _strong(_graph(edges), edges)
@@ -79,11 +84,12 @@ def find_loops(system: System, at_start: bool = False) -> list[AlgebraicLoop]:
 
 
 def loop_problems(system: System) -> Iterator[Problem]:
-    """A remark on each loop of the run, and on each that is one at the start alone; with what it does and breaks it."""
+    """A remark on each loop of the run, and on each that exists only at the start."""
     running = find_loops(system)
     for loop in running:
         does = "In a run with fixed steps each link delays by one step, and the start is iterated, which may not settle."
         yield _problem(system, loop, "An algebraic loop", does)
+    # A loop at the start is reported only if it is no part of a loop of the run.
     seen = [set(loop.components) for loop in running]
     for loop in find_loops(system, at_start=True):
         if not any(set(loop.components) <= components for components in seen):
@@ -113,8 +119,9 @@ def _remedy(loop: AlgebraicLoop) -> str:
 
 
 def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) -> Iterator[Edge]:
-    """Edges from inputs to outputs of a component; an output that its FMU says nothing of follows all inputs."""
+    """Edges from inputs to outputs; an output without declared dependencies follows all."""
     inputs = {target for _, target in links if target[0] == name}
+    # One node for all inputs keeps the graph small: n + m edges instead of n × m.
     knot = name, None
     yield from ((end, knot) for end in sorted(inputs))
     for output in {source: None for source, _ in links if source[0] == name}:
@@ -131,15 +138,17 @@ def _loop(
     inside, edges = (
         [edge for edge in several if part.issuperset(edge)] for several in (links, edges)
     )
+    # A shortest cycle explains the loop best; the rest is only counted.
     way = _shortest(inside, edges)
     components = [name for name in names if any(end[0] == name for end in part)]
     silent = [name for name in components if (name, None) in part]
+    # Components whose delay alone would break the loop are the remedies to offer.
     breaking = [name for name in components[:MOST_TRIED] if _breaks(name, edges)]
     return AlgebraicLoop(way, len(inside) - len(way), components, silent, breaking)
 
 
 def _breaks(name: str, edges: list[Edge]) -> bool:
-    """Whether nothing goes round any more without what goes on inside a component."""
+    """True if no cycle remains without the inside of a component."""
     rest = [edge for edge in edges if not edge[0][0] == edge[1][0] == name]
     return not _strong(_graph(rest), rest)
 
@@ -149,6 +158,7 @@ def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
     graph = _graph(edges)
     ways = []
     known = set(links)
+    # Breadth-first search from the end of each connection back to its start.
     for source, target in links[:MOST_STARTS]:
         before: dict[Node, Node | None] = {target: None}
         queue = deque([target])
@@ -158,10 +168,12 @@ def _shortest(links: list[Edge], edges: list[Edge]) -> list[Edge]:
                 if following not in before:
                     before[following] = node
                     queue.append(following)
+        # Follow the predecessors back to get the path.
         way = [source]
         node = source
         while (node := before[node]) is not None:
             way.insert(0, node)
+        # Keep only connections: edges inside components are no part of the message.
         steps = list(zip([source, *way], way, strict=False))
         ways.append([step for step in steps if step in known])
     return min(ways, key=len)
@@ -176,9 +188,10 @@ def _graph(edges: Iterable[tuple]) -> dict:
 
 
 def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
-    """Strongly connected components with at least one edge inside, by Kosaraju's algorithm, without recursion."""
+    """Strongly connected parts with an inner edge: Kosaraju's algorithm, iterative."""
     done = set()
     order = []
+    # First pass: order of completion of a depth-first search.
     for start in graph:
         stack = [(start, iter(graph[start]))] if start not in done else []
         done.add(start)
@@ -191,6 +204,7 @@ def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
             else:
                 done.add(fresh)
                 stack.append((fresh, iter(graph[fresh])))
+    # Second pass on the reversed graph, last completed first: each tree is one part.
     back = _graph([(target, source) for source, target in edges])
     parts = []
     placed = set()
@@ -203,6 +217,7 @@ def _strong(graph: Mapping, edges: Iterable[tuple]) -> list[list]:
             fresh = [one for one in back[node] if one not in placed]
             placed.update(fresh)
             queue.extend(dict.fromkeys(fresh))
+        # A single node counts only if it has an edge to itself.
         if len(part) > 1 or (part and part[0] in graph[part[0]]):
             parts.append(part)
     return parts

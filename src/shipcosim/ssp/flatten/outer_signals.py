@@ -1,4 +1,4 @@
-"""Connectors of the outermost system as signals: type, unit and start value, some from what they are connected to."""
+"""Connectors of the outermost system as signals: type, unit and start value."""
 
 from collections.abc import Iterable, Mapping
 
@@ -11,7 +11,7 @@ from shipcosim.ssp.xml.values import Value
 
 
 class OuterSignals:
-    """Connectors of the outermost system, with what follows from what they are connected to.
+    """Connectors of the outermost system, completed from their connections.
 
     Parameters
     ----------
@@ -48,6 +48,7 @@ class OuterSignals:
 
     def _signal(self, key: Key) -> Signal:
         port = self.tree.ports[key]
+        # What the SSD leaves open is taken from the variables behind the connector.
         ends = self._ends(key)
         unit = (
             port.unit.name if port.unit else next((end.unit for end, _ in ends if end.unit), None)
@@ -70,10 +71,12 @@ class OuterSignals:
         ]
 
     def _derived(self, ends: list[tuple[Variable, Connection]]) -> Value | None:
-        """Start of an input that none is set for: what the variables behind it start with, where they agree."""
+        """Start of an input without one: that of the variables behind it, if they agree."""
         starts = set()
         for _, connection in ends:
             name, variable = connection.target
+            # Invert the connection, source = (target - offset) / factor; a mapping cannot be
+            # inverted.
             value = self.components[name or ""].start_value(variable)
             if value is None or connection.mapping is not None or connection.factor == 0.0:
                 return None

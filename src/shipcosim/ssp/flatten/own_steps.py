@@ -1,4 +1,4 @@
-"""Steps of components made multiples of the base step, where the file means one but for rounding."""
+"""Make steps of components multiples of the base step, if the file differs only by rounding."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -25,7 +25,7 @@ def with_whole_steps(
     components : mapping of str to Component
         By name.
     base : float or None
-        Step of the system; None: nobody has said it. [s]
+        Step of the system; None if it is unknown. [s]
     findings : Findings
         Takes what is changed.
     as_libcosim : bool
@@ -34,6 +34,8 @@ def with_whole_steps(
     fitted = {}
     for name, component in components.items():
         step = component.step_size
+        # A difference within rounding means the multiple; anything else is left to the check of the
+        # plan.
         n = None if step is None or not base else _multiple(step / base, as_libcosim)
         if n is not None and step is not None and base and abs(n * base - step) > EXACT * step:
             found = f"Its step of {step:.9g} s is no multiple of the base step of {base:.9g} s"
@@ -46,7 +48,7 @@ def with_whole_steps(
 
 
 def _multiple(ratio: float, as_libcosim: bool) -> int | None:
-    """Number of base steps that a ratio of two steps stands for, or None."""
+    """Number of base steps that a ratio of steps stands for, or None."""
     nearest = round(ratio)
     if nearest and abs(ratio - nearest) <= ROUNDED * nearest:
         return nearest

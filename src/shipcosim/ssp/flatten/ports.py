@@ -1,4 +1,4 @@
-"""Ports (connectors at their place in the hierarchy), wires between them and values set on them."""
+"""Ports (connectors in the hierarchy), the wires between them, and values set on them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ FREE = ("inout", "unspecified")
 
 
 class Key(NamedTuple):
-    """Name of a port: the names of the elements that it is in, without the outermost system's, and its own."""
+    """Name of a port: the elements that contain it, without the outermost system, and its own."""
 
     path: tuple[str, ...]
     name: str
@@ -59,7 +59,7 @@ class Port:
 
 @dataclass(frozen=True)
 class Wire:
-    """A connection in the direction in which values go.
+    """A connection in the direction of its value.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Parameter values brought to the variables that they are for, in the FMU's unit and type.
+"""Bring parameter values to their variables, in the FMU's unit and type.
 
 Order, as the standard has it: a component's own bindings first, then those of the systems around it from the inside
 out, then sets given for this run; at one level in the order of the file. Later values replace earlier ones.
@@ -26,7 +26,7 @@ Arrival = tuple[Value, Flow, "Wire | Setting", Key]
 
 
 class Settings:
-    """Values that parameter sets give to the variables of a hierarchy's components.
+    """Values that parameter sets give to the components' variables.
 
     Parameters
     ----------
@@ -52,6 +52,7 @@ class Settings:
         self.tolerances = defaultdict(dict)
         self.system_start = {}
         self.tolerance = None  # of the value that is being delivered
+        # Wires by their source: values set on a system connector go on along them.
         self.outgoing = defaultdict(list)
         for wire in tree.wires:
             self.outgoing[wire.source].append(wire)
@@ -61,7 +62,7 @@ class Settings:
         ] = {}  # of components that run another FMU: parameters which it does not have
 
     def _names(self) -> dict[str, list[Key]]:
-        """Ports by their full name; names need not be unique where element names have dots, then all are meant."""
+        """Ports by full name; where element names have dots a name may mean several ports."""
         named = defaultdict(list)
         for path, (_, fmu) in self.tree.components.items():
             for name in () if fmu is None else fmu.variables:
@@ -73,6 +74,7 @@ class Settings:
 
     def apply(self) -> None:
         """Bring every value to its variables."""
+        # In order of application: later values replace earlier ones.
         for setting in self.tree.settings:
             keys = self.named.get(".".join((*setting.path, setting.name)), ())
             if not keys:
@@ -89,7 +91,8 @@ class Settings:
     def _deliver(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
     ) -> None:
-        """Take a value over one step to a port, and on from there; once to each port, also where wires go round."""
+        """Take a value over a step to a port and onwards; once to each port, also in a circle."""
+        # A parameter of a system may feed several components through nested systems.
         ahead = [(value, flow, step, key)]
         seen = set()
         while ahead:
@@ -101,21 +104,25 @@ class Settings:
     def _arrive(
         self, value: Value, flow: Flow, step: Wire | Setting, key: Key, place: str
     ) -> Iterable[Arrival]:
-        """Next steps of a value that has come to a port."""
+        """Next steps of a value that has arrived at a port."""
         port = self._port(key)
+        # The name of an item becomes a number at the first port that knows the items.
         if flow.type == "Enumeration" and isinstance(value, str):
             value, flow, step = self._number(value, flow, step, port, place)
             if value is None:
                 return ()
         flow = advance(flow, step, port, (place, ("the value", str(key))), self.findings)
+        # At a component the way ends: convert and store.
         if port.owner == "component":
             self._start(value, flow, key, port, place)
             return ()
+        # An output of a system has no effect on what is inside.
         if port.owner == "system" and port.kind not in SOURCES_INSIDE:
             self.findings.remark(
                 place, f"{key} is of kind {port.kind}; a start value there has no effect."
             )
             return ()
+        # The outermost system keeps the value itself, as the start of its input.
         if key.path == () and port.owner == "system":
             self.system_start[key.name] = flow.in_unit(port.unit)(value)
         return [(value, flow, wire, wire.target) for wire in self.outgoing[key]]
@@ -136,6 +143,7 @@ class Settings:
         """
         if not port.items:
             return value, flow, step
+        # A mapping by names acts before the number is known, and is used up by it.
         table = step.transformation.table if step.transformation else {}
         name = table.get(value, value)
         if name not in port.items:
@@ -149,14 +157,17 @@ class Settings:
         variable = port.variable
         if variable is None:
             return  # its FMU is missing, which is an error already
+        # FMI lets parameters and inputs be set, not calculated variables.
         if not variable.settable:
             found = f"{key} is of causality {variable.causality}, a value that the FMU calculates."
             self.findings.error(place, found, "Set parameters and inputs.")
             return
+        # Convert to the FMU's own unit, then check its bounds.
         convert = flow.in_unit(port.variable_unit or port.unit)
         if check_bounds(convert(value), variable, place, str(key), self.findings):
             self.start[key.path][key.name] = convert(value)
             self.tolerances[key.path].pop(key.name, None)
+            # The tolerance is a difference: the offset of the unit must not enter.
             if self.tolerance is not None and type(value) in (
                 int,
                 float,
@@ -166,10 +177,13 @@ class Settings:
                 )
 
     def _unknown(self, setting: Setting) -> None:
-        """A set may hold more than is used here, as the standard says; but what looks like a slip is an error."""
+        """Report an unknown name: an error if it looks like a slip, else a remark."""
         place = setting.value.place
         name = setting.name
+        # The standard lets a set hold more than is used. A misspelt name must not pass silently,
+        # though.
         element, known = self._nearest(setting)
+        # A swapped FMU may lack parameters of the original; they are listed in one remark.
         if element is not None and element in self.tree.swapped:
             self.unused.setdefault(element, []).append(name.removeprefix(f"{element}."))
             return
@@ -202,14 +216,16 @@ class Settings:
             )
 
     def _nearest(self, setting: Setting) -> tuple[str | None, list[str]]:
-        """Element that a name means, by the longest path that exists, and the names that can be set in it."""
+        """Element that a name means, by the longest existing path, and the names inside it."""
         start = "".join(f"{part}." for part in setting.path)
         names = [name.removeprefix(start) for name in self.named if name.startswith(start)]
+        # A set bound to a component: all its names should be known there.
         if setting.near and setting.path in self.tree.components:
             if self.tree.components[setting.path][1] is None:
                 return None, names
             return ".".join(setting.path), self._settable(names, start)
         parts = setting.name.split(".")
+        # Otherwise try the longest prefix first.
         for n in range(len(parts) - 1, 0, -1):
             prefix = ".".join(parts[:n]) + "."
             inside = [name for name in names if name.startswith(prefix)]
@@ -225,7 +241,7 @@ class Settings:
 
 
 def _is_close(one: str, other: str) -> bool:
-    """Whether one part of a name can be meant for another; of very short ones nobody can tell."""
+    """True if a part of a name may stand for another; very short ones always may."""
     if one == other or max(len(one), len(other)) <= SHORT:
         return True
     near = len(one) < LONGEST_NAME and get_close_matches(one, [other], n=1)
@@ -233,7 +249,7 @@ def _is_close(one: str, other: str) -> bool:
 
 
 def _differ_in_number(one: str, other: str) -> bool:
-    """Whether two names are meant to be different: ``thruster_1`` and ``thruster_2``."""
+    """True if two names differ only in a number: ``thruster_1`` and ``thruster_2``."""
     return re.sub(r"\d+", "", one).strip("_") == re.sub(r"\d+", "", other).strip("_")
 
 

@@ -1,4 +1,4 @@
-"""Components that run another FMU than the system says: whether it has the connectors that are wired."""
+"""Components with swapped FMUs: check the connectors that are wired."""
 
 from difflib import get_close_matches
 
@@ -14,7 +14,7 @@ WHERE = "components"
 
 
 def has_connector(fmu: FmuDescription, connector: Connector) -> bool:
-    """Whether an FMU has a connector of a component: a variable of its name, kind and type."""
+    """True if an FMU has a component's connector: a variable of its name, kind and type."""
     variable = fmu.variables.get(connector.name)
     if variable is None or (connector.kind in KIND_NAMES and connector.kind != variable.causality):
         return False
@@ -22,7 +22,7 @@ def has_connector(fmu: FmuDescription, connector: Connector) -> bool:
 
 
 def take_swapped(tree: Hierarchy) -> None:
-    """Check the FMUs that take the place of others; connectors that they lack and nothing is wired to are left out.
+    """Check swapped FMUs; connectors that they lack and that are not wired are left out.
 
     Parameters
     ----------
@@ -44,6 +44,7 @@ def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Ke
     lacking = [
         key for key, port in tree.ports.items() if key.path == path and port.variable is None
     ]
+    # A connector that nothing uses can go; one that is wired makes the FMU unfit.
     missed = [key for key in lacking if key in wired]
     for key in lacking:
         if key not in wired:
@@ -55,6 +56,7 @@ def _take(tree: Hierarchy, path: ElementPath, fmu: FmuDescription, wired: set[Ke
     lacks = ", ".join(key.name for key in shown) + more
     name = ".".join(path)
     found = f"{fmu.path.name} cannot take the place of '{name}': it lacks {lacks}, which are wired."
+    # Offer variables of similar names that are still free.
     close = []
     for key in shown:
         names = [name for name in fmu.named(tree.ports[key].kind) if Key(path, name) not in wired][

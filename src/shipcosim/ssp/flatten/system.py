@@ -1,4 +1,4 @@
-"""A system ready to run: flat, checked, every value in the unit of the FMU that gets it."""
+"""A system ready to run: flat, checked, with values in the units of the FMUs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -143,6 +143,7 @@ class System:
         """
         if any(signal in group for group in (self.inputs, self.outputs, self.parameters)):
             return None, signal
+        # Names of components may contain dots: the longest one that fits wins.
         owners = [name for name in self.components if signal.startswith(f"{name}.")]
         for name in sorted(owners, key=len, reverse=True):
             if signal[len(name) + 1 :] in self.components[name].fmu.variables:
@@ -150,7 +151,7 @@ class System:
         raise ShipcosimError(self._no_signal(signal, owners, where))
 
     def unit_of(self, component: str | None, name: str) -> Unit | None:
-        """Unit of a variable as its FMU defines it, or of a connector of the outermost system; None without one.
+        """Unit of a variable, or of a connector of the outermost system; None without one.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Nested elements of an SSD visited one after the other and collected in a Hierarchy."""
+"""Visit the nested elements of an SSD and collect them in a Hierarchy."""
 
 from dataclasses import replace
 
@@ -62,15 +62,18 @@ def _take_system(
     outer_bindings: OuterBindings,
 ) -> None:
     tree.systems[path] = element
+    # Files that include each other may describe an endless hierarchy.
     if len(tree.systems) > MOST_SYSTEMS:
         too_many = Problem(
             element.place, f"There are more than {MOST_SYSTEMS} systems.", "Take some away."
         )
         raise ShipcosimError([*dict.fromkeys(tree.findings.errors), too_many])
+    # Dictionaries of this system come before those of outer ones.
     place = replace(
         place, dictionaries=(dictionaries_of(tree, element, path, place), *place.dictionaries)
     )
     connectors, tree.arrays[path] = element_connectors(element.connectors, {}, tree.findings)
+    # Ports of the system first, then its elements, then the connections between them.
     for connector in connectors:
         fields = (connector.kind, connector.type, "system", connector.unit, connector.items)
         port = Port(*fields, description=connector.description, place=connector.place)
@@ -85,6 +88,7 @@ def _take_system(
             _take_component(tree, part, inner, place)
     for link in element.links:
         _take_connection(tree, link, element, path)
+    # Bindings from the inside out: outer values are applied later and win.
     take_bindings(tree, element.bindings, path, place)
     for bindings, outer in outer_bindings:
         take_bindings(tree, bindings, path, outer)
@@ -93,7 +97,7 @@ def _take_system(
 def _take_connection(
     tree: Hierarchy, link: Link, element: SystemElement, path: ElementPath
 ) -> None:
-    """Wires of a connection, one for each element where it joins arrays."""
+    """Wires of a connection; one per element for arrays."""
     ends = ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
     owners = [tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in ends]
     start, end = (known.get(name, ()) for known, (_, name) in zip(owners, ends, strict=True))
@@ -120,8 +124,9 @@ def _take_component(
 def _take_other_file(
     tree: Hierarchy, element: ComponentElement, path: ElementPath, place: Surroundings
 ) -> None:
-    """A component that is a system in another file or elsewhere in this one counts as if it stood here."""
+    """Treat a component that is a system elsewhere as if it stood here."""
     found = _system_of(tree, element, place)
+    # A file that contains itself would never end.
     if found is not None and found[1].place in place.around:
         tree.findings.error(
             element.place, f"'{element.source}' contains itself.", "Break the circle."
@@ -131,6 +136,7 @@ def _take_other_file(
         tree.components[path] = element, None
         return
     structure, system, package = found
+    # The inner system keeps its own file for addresses, but sees the outer dictionaries.
     inner = Surroundings(structure, package, place.dictionaries, (*place.around, system.place))
     _take_system(tree, system, path, inner, ((element.bindings, place),))
 
@@ -139,6 +145,7 @@ def _system_of(
     tree: Hierarchy, element: ComponentElement, place: Surroundings
 ) -> tuple[Structure, SystemElement, Package] | None:
     """System that a component stands for, with its SSD and package, or None with an error."""
+    # An address without a file means a system in this SSD, by its id.
     uri, _, fragment = (element.source or "").partition("#")
     if not uri:
         system = _with_id(place.structure.system, fragment)
@@ -151,6 +158,7 @@ def _system_of(
     if file is None:
         return None
     package = place.package
+    # An SSP is an archive of its own with an SSD inside.
     name = file
     if element.type == SSP:
         shown = place.package.show(file)

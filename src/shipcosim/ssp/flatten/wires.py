@@ -1,4 +1,4 @@
-"""Connection elements made into wires: which connectors are meant, and which way the value goes."""
+"""Turn connection elements into wires: find the connectors and the direction of the value."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -27,7 +27,7 @@ FEEDS = {
 
 
 class End(NamedTuple):
-    """One end of a connection: the element (None: the system itself), the connector, and the port that this means."""
+    """One end of a connection: element (None: the system), connector, and its port."""
 
     element: str | None
     name: str
@@ -37,7 +37,7 @@ class End(NamedTuple):
         return signal(self.element, self.name)
 
     def gives(self, kind: str) -> bool:
-        """Whether a connector of this kind gives a value here: an element's output does, and a system's own input."""
+        """True if this kind gives a value: an element's output or the system's input."""
         return (kind in SOURCES_OUTSIDE) == (self.element is not None)
 
 
@@ -66,12 +66,14 @@ def wire_of(link: Link, system: SystemElement, path: ElementPath, tree: Hierarch
             (link.end_element, link.end_connector),
         )
     ]
+    # Both ends are checked before returning, so that both are reported.
     exist = [_exists(end, ends, link, system, tree) for end in ends]
     if not all(exist):
         return None
     kinds = {end: tree.ports[end.key].kind for end in ends}
     if any(kind not in KIND_NAMES for kind in kinds.values()):
         return None  # the schema has said so
+    # SSP lets connections be written either way round: the kinds decide the direction.
     directed = _directed(ends, kinds, link, tree.findings)
     if directed is None:
         return None
@@ -86,6 +88,7 @@ def _directed(
 ) -> tuple[End, End] | None:
     """Source and target, or None with an error."""
     start, end = ends
+    # Try both directions. Kinds without a direction (inout) fit either way.
     for source, target in ((start, end), (end, start)):
         gives = kinds[source] in FREE or source.gives(kinds[source])
         takes = kinds[target] in FREE or not target.gives(kinds[target])
@@ -107,7 +110,7 @@ def _directed(
 
 
 def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: Hierarchy) -> bool:
-    """Whether an end's port exists; an error says what does, unless its FMU is missing anyway."""
+    """True if an end's port exists; else an error, unless its FMU is missing anyway."""
     if end.key in tree.ports:
         return True
     names = [part.name for part in system.elements]
@@ -115,6 +118,7 @@ def _exists(end: End, ends: list[End], link: Link, system: SystemElement, tree: 
         found = f"There is no element '{end.element}' in {system.name}."
         tree.findings.error(link.place, found, suggestion(end.element, names))
         return False
+    # The FMU may have the variable although the SSD declares no connector: accept it.
     component, fmu = tree.components.get(end.key.path, (None, None))
     if fmu is not None and end.name in fmu.variables:
         return _undeclared(end, fmu, link, tree)

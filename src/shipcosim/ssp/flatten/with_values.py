@@ -1,4 +1,4 @@
-"""A system with other start values, each checked against the variable or connector that it is for."""
+"""A system with other start values, each checked against its variable or connector."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -38,7 +38,9 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
     findings = Findings()
     starts = {name: dict(component.start) for name, component in system.components.items()}
     inputs = dict(system.inputs)
+    # A value on a connected input would be overwritten at once, so it is an error.
     feeding = {connection.target: connection.source for connection in system.connections}
+    # Go through all values before raising, to report every problem.
     for signal, value in values.items():
         place = f"{where}: {signal}" if where else signal
         try:
@@ -87,7 +89,7 @@ LARGEST = 2**31  # FMI's integers have 32 bits
 
 
 def _number(value: Value, kind: str | None, unit: Unit | None) -> Value | UnitError:
-    """A value in the unit of what it is for, where it is an amount with a unit; what is wrong where it has another."""
+    """An amount converted to a unit, or the error; other values unchanged."""
     if kind != "Real" or not isinstance(value, str) or amount(value) is None:
         return value
     try:
@@ -99,7 +101,8 @@ def _number(value: Value, kind: str | None, unit: Unit | None) -> Value | UnitEr
 def _set(
     start: dict[str, Value], variable: Variable, value: Value, place: str, findings: Findings
 ) -> None:
-    """Put a value for a variable into `start`, checked and in the variable's type."""
+    """Put a value into `start`, checked and in the variable's type."""
+    # Items of enumerations may be given by name.
     if variable.items and isinstance(value, str):
         value = variable.items.get(value, value)
     if not _fits(value, variable, variable.kind, place, findings):
@@ -114,15 +117,17 @@ def _set(
 def _fits(
     value: Value, owner: Variable | Signal, kind: str | None, place: str, findings: Findings
 ) -> bool:
-    """Whether a value is of a kind, with an error if not; `owner` has the items of an enumeration."""
+    """True if a value is of a kind, else an error; `owner` has the items of an enumeration."""
     if isinstance(value, UnitError):
         findings.error(place, value.found, value.remedy)
         return False
+    # In Python True is an integer; it must not pass as a number.
     right = kind is None or isinstance(value, TYPES_OF.get(kind, (bytes,)))
     if not right or (isinstance(value, bool) and kind not in ("Boolean", None)):
         remedy = f"Items: {', '.join(owner.items)}." if owner.items else _wanted(kind, owner.unit)
         findings.error(place, f"{value!r} is no {kind}.", remedy)
         return False
+    # JSON and TOML can hold NaN and infinity; models cannot start from them.
     if isinstance(value, float) and not isfinite(value):
         findings.error(place, f"{value} is not a finite number.", _wanted("Real", owner.unit))
         return False
