@@ -95,7 +95,7 @@ def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) ->
             turn = wrap_series(lower) - lower
             lower = lower + turn
             upper = upper + turn
-    # An open side ends a little beyond the curve, so that the band reaches out of sight of it.
+    # An open side is drawn to a little beyond the curve: it has no limit of its own.
     least, most = (pick(drawn[np.isfinite(drawn)], initial=0.0) for pick in (np.min, np.max))
     pad = 0.1 * (most - least)
     lower = np.where(np.isfinite(lower), lower, np.fmin(least, upper) - pad)

@@ -35,7 +35,7 @@ SAME = 1e-9  # of a signal's range: a difference below it is rounding
 
 
 class Difference(NamedTuple):
-    """Difference of a signal: rms, largest and its time, in the signal's unit; rms over its range."""
+    """Difference of a signal: rms, largest, its time, in the signal's unit; rms over its range."""
 
     signal: str
     unit: str
@@ -288,8 +288,8 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
             replace(own[0], signal=f"{n}: {own[0].signal}", label=n, colour=c, dash="solid")
             for n, c in pairs
         ]
-    # Several curves keep their colours; the line style tells the runs apart.
     else:
+        # Several curves keep their colours; the line style tells the runs apart.
         both = [
             replace(line, signal=f"{name}: {line.signal}", label=f"{line.label}, {name}", dash=dash)
             for line in own

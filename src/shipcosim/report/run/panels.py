@@ -220,7 +220,7 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
 
 
 def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
-    """Angles of all thrusters in one panel if their forbidden sectors agree, else one panel each."""
+    """Angles of all thrusters in one panel if their sectors agree, else one panel each."""
     # Only thrusters that turn, or are commanded to.
     turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
     # Sectors can be shaded in a common panel only if they are the same.

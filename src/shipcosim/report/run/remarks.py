@@ -118,8 +118,8 @@ def _alarms(shown: Dataset, roles: Roles) -> list[str]:
 
 
 def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
-    """Time at which thrust is at its limit and the error still grows: the ship cannot hold there."""
-    # Look at every stretch of STRETCH seconds.
+    """Remark where thrust is at its limit and the error still grows: the ship cannot hold."""
+    # Flags of everything at its limit, and the start of every stretch of STRETCH seconds.
     limits = {c: shown[s].values > 0.5 for c, s in roles.flagged("saturated").items() if s in shown}
     time = shown["time"].values
     starts = np.flatnonzero(time <= time[-1] - STRETCH)

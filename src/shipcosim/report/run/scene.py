@@ -270,7 +270,7 @@ def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
 
 
 def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
-    """Wind and current as velocity north and east, waves as height and direction, where available."""
+    """Wind and current as velocity north and east, waves as height and direction, if logged."""
     roles = find_roles(table.data_vars)
     found: list[dict[str, Any]] = []
     # Flows that are zero all along are not shown.

@@ -198,7 +198,7 @@ def _beside(north: str, names: list[str]) -> list[str]:
 
 
 def _nearest(north: str, headings: list[str]) -> str | None:
-    """Heading of the same component; for `north` and `east`, a position for sure, the nearest heading."""
+    """Heading of the same component; for `north`, which is always a position, the nearest one."""
     # Nearest in the tree of components: the longest common path.
     path = north.split(".")[:-1]
     shared = {name: _shared(path, name.split(".")[:-1]) for name in headings}
@@ -346,7 +346,7 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
 
 
 def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
-    """Place of a thruster, forward and to starboard; without a lateral place on the centreline. [m, m]"""
+    """Place of a thruster, forward and to starboard; the latter is 0 where missing. [m, m]"""
     forward = _first_number(
         known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x")
     )

@@ -67,7 +67,7 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
 
 
 def _told_apart(values: NDArray) -> list[float | None]:
-    """Numbers with five significant digits, more where they differ by little: times of a long log."""
+    """Numbers with five significant digits, more where they differ by little, as late times."""
     # Additional digits as the size exceeds the span: 100000.1 and 100000.2 must differ.
     known = values[np.isfinite(values)]
     span = float(np.ptp(known)) if known.size else 0.0
