@@ -219,7 +219,7 @@ def _load(thrusts, angles, effect):
 
 
 def _within_limits(tau, available, shares, *, parameters, design):
-    """Forces for a load within limits of thrust; free units take over what the worst cannot give."""
+    """Forces for a load within limits of thrust; free units take over the rest."""
     p = parameters
     # Free units; number 8 on selects the inverses for a ship with a missing thruster.
     free = [where(usable, 1.0, 0.0) for usable in available]
