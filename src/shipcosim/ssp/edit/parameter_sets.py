@@ -212,7 +212,7 @@ class Sets:
         return bool(places)
 
     def rename(self, old: str, new: str | None, *, exact: bool = False) -> None:
-        """Rename or remove (new name None) an element or connector in the surrounding systems' sets.
+        """Rename or remove (new name None) an element or connector in all surrounding sets.
 
         Parameters
         ----------

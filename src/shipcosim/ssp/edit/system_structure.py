@@ -262,7 +262,7 @@ class SystemStructure(SystemContents):
             bindings.unbind(self._draft, source, element)
 
     def bind_to_components(self) -> None:
-        """Give each component one set with all its values, in its FMU's units, instead of system sets.
+        """Give each component one set of all its values, in its FMU's units, for system sets.
 
         The system stays the same. libcosim takes the first set of each component and no others, and converts no units.
         Values for elements that the system does not have are lost.
