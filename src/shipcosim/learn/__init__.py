@@ -1,4 +1,4 @@
-"""Learned components trained from scratch: data, networks, the training loop, weights as arrays, the training report.
+"""Learned components trained from scratch: data, networks, training loop, weights, report.
 
 The only door to torch, which comes with `pip install "shipcosim[learn]"`. What is trained is evaluated without it, by
 `shipcosim.models.core.networks`. A new component is one file here with a function that returns `Trained`, and one line

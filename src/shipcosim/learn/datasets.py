@@ -8,7 +8,7 @@ import numpy as np
 def independent(
     ranges: np.ndarray, sequences: int, samples: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """Commands that know nothing of one another, uniform between -range and +range.
+    """Draw independent commands, uniform between -range and +range.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def independent(
 def random_walks(
     ranges: np.ndarray, steps: np.ndarray, sequences: int, samples: int, rng: np.random.Generator
 ) -> np.ndarray:
-    """Commands that wander: each begins anywhere in its range, moves by uniform steps and turns back at its ends.
+    """Draw random walks of commands with uniform steps, reflected at the ends of their ranges.
 
     Parameters
     ----------
@@ -48,14 +48,16 @@ def random_walks(
     (sequences, samples, n) array
         Commands. [the units of ranges]
     """
+    # Uniform steps; the first sample is uniform over the range, so a walk may start anywhere.
     moves = rng.uniform(-steps, steps, (sequences, samples, len(ranges)))
     moves[:, 0] = rng.uniform(-ranges, ranges, (sequences, len(ranges)))
+    # Reflect the walk into [-range, range]: a triangle wave of period 4 ranges.
     free = np.cumsum(moves, axis=1)
     return ranges - abs((free + ranges) % (4.0 * ranges) - 2.0 * ranges)
 
 
 def digest(array: np.ndarray) -> str:
-    """Hash of an array, by which data made twice are known to be the same.
+    """Hash of an array: equal data give equal hashes, so reports show which data was used.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What can be trained: one line each."""
+"""Components that can be trained: one line each."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -103,6 +103,7 @@ def train(component: str, name: str, folder: Path, progress: Progress) -> list[P
     list of Path
         NAME.npz, NAME.json and NAME.md.
     """
+    # Time by the clock and of the processor: the report states both.
     clock = time.perf_counter()
     processor = time.process_time()
     trained = COMPONENTS[component][name].train(progress)

@@ -56,9 +56,11 @@ def arrays_of(network: Recurrent, name: str) -> dict[str, np.ndarray]:
     """
     found: dict[str, np.ndarray] = {}
     for layer in range(network.lstm.num_layers):
+        # PyTorch keeps separate weights and biases for input and memory; join them for evaluation.
         of = {key: getattr(network.lstm, f"{key}_l{layer}").detach().numpy() for key in KEYS}
         weights = np.concatenate([of["weight_ih"], of["weight_hh"]], axis=1)
         found[f"{name}.lstm.{layer + 1}.weights"] = weights
+        # Both biases enter only as their sum.
         found[f"{name}.lstm.{layer + 1}.bias"] = of["bias_ih"] + of["bias_hh"]
     found[f"{name}.dense.weights"] = network.dense.weight.detach().numpy().copy()
     found[f"{name}.dense.bias"] = network.dense.bias.detach().numpy().copy()

@@ -1,7 +1,7 @@
-"""Our own neural allocator: trained through a model of the thrusters, over sequences of what a controller requests.
+"""Our neural allocator: trained through a model of the thrusters, on requests of a controller.
 
-There is nothing to imitate: the loss is what the commands cost over the sequence, power and missed load, and its
-gradient goes through limits, rates and slipstreams back to the network, which so learns what pays half a minute later.
+The loss is the cost of the commands over the sequence: power and missed load. Its gradient
+passes limits, rates and slipstreams back to the network, which learns effects half a minute later.
 """
 
 import math
@@ -97,8 +97,10 @@ def _four_azimuths() -> Units:
     each = {"thrust_min": -30e3, "thrust_max": 60e3, "thrust_rate": 1000.0, "thrust_least": 1000.0}
     each |= {"azimuth_rate": math.radians(10.0), "diameter": DIAMETER}
     values = {f"{name}_{k}": value for k in range(1, 5) for name, value in each.items()}
+    # Each azimuth may turn away from its neighbour across the centreline.
     for k, (x, y) in enumerate(places, 1):
         middle = math.copysign(0.5 * math.pi, -y)
+        # The forbidden sector is as wide as its slipstream there: the half angle leaves it out.
         half = math.pi - math.atan(0.1 + DIAMETER / (2.0 * abs(y)))
         values |= {
             f"x_{k}": x,
@@ -142,11 +144,14 @@ def train(recipe: NeuralTraining, progress: Progress) -> Trained:
     Trained
         Weights and report.
     """
+    # Train with a fixed seed: the same weights every time on one processor.
     with repeatable(recipe.seed):
         weights, history = fit(recipe, progress)
+    # Weights under the names that the allocator reads.
     arrays = {}
     for number, (matrix, offset) in enumerate(paired(weights), 1):
         arrays |= {f"{number}.weights": matrix, f"{number}.bias": offset}
+    # The report says which recorded requests were used.
     runs, seeds, interval = recorded_requests()
     data = {
         "requests": "of the DP controller in weather of all kinds, docs/generators/write_requests.py",
@@ -183,11 +188,13 @@ def tensors(units: Units) -> Units:
 
 
 def first_weights(recipe: NeuralTraining) -> list[torch.Tensor]:
-    """Weights at the start: small in the last layer, so that units stay where they are."""
+    """Initial weights: small in the last layer, so that thrusters first stay where they are."""
+    # Eight inputs, five more for each thruster; outputs are thrust and angle of each.
     n = len(recipe.units.x)
     sizes = (8 + 5 * n, *recipe.hidden, 2 * n)
     found = []
     for number, (k, m) in enumerate(zip(sizes[:-1], sizes[1:], strict=True), 1):
+        # Weights of variance 1/k keep the signal's size from layer to layer.
         gain = 0.02 if number == len(sizes) - 1 else 1.0
         found += [
             gain * torch.randn(k, m).to(PRECISION) / math.sqrt(k),
@@ -202,7 +209,8 @@ def paired(weights: list) -> tuple:
 
 
 def smoothed(runs: np.ndarray, interval: float) -> np.ndarray:
-    """Requests as the law smooths them, over whole runs."""
+    """Requests with the same smoothing as in the allocator, over whole runs."""
+    # First-order low-pass: share = 1 - exp(-h/T).
     found = np.empty_like(runs)
     share = 1.0 - math.exp(-interval / neural.SMOOTHING)
     found[:, 0] = runs[:, 0]
@@ -224,18 +232,22 @@ class Sequences:
 
     def draw(self) -> tuple[torch.Tensor, torch.Tensor, Commands]:
         """Requests (steps, batch, 3), availability (batch, n) and the state before."""
+        # A random part of a random run for each sequence.
         r = self.random
         size = self.recipe.batch
         steps = self.recipe.steps
         rows = [self._row(*self.runs[r.integers(len(self.runs))], steps) for _ in range(size)]
+        # Scale by e^-0.7 to e^0.7, and mirror half of the sequences (sway and yaw change sign).
         scale = np.exp(r.uniform(-0.7, 0.7, (size, 1, 1)))
         scale = scale * np.where(r.random((size, 1, 1)) < 0.5, [1.0, -1.0, -1.0], 1.0)
+        # Time first, as the cost steps through the requests.
         tau = (
             torch.from_numpy(np.array([tau for tau, _ in rows]) * scale)
             .transpose(0, 1)
             .contiguous()
         )
         smooth = torch.from_numpy(np.array([smooth for _, smooth in rows]) * scale[:, 0])
+        # Missing thrusters and a state before the first request.
         available = torch.from_numpy(self._availability(size))
         return tau, available, self._before(tau[0], smooth, available)
 
@@ -247,12 +259,15 @@ class Sequences:
     def _availability(self, size):
         """All units in half of the sequences; else one is missing, in a tenth two; in a fifth less power for all."""
         r = self.random
+        # Start with all thrusters available.
         n = len(self.recipe.units.x)
         found = np.ones((size, n))
         rows = np.arange(size)
         lost = r.integers(n, size=(2, size))
+        # In half of the sequences one is missing, in a tenth (drawn independently) another one.
         found[rows, lost[0]] = np.where(r.random(size) < 0.5, 0.0, 1.0)
         found[rows, lost[1]] *= np.where(r.random(size) < 0.1, 0.0, 1.0)
+        # In a fifth all have 30 to 100 % of their power.
         less = np.where(r.random(size) < 0.2, r.uniform(0.3, 1.0, size), 1.0)
         return found * less[:, None]
 
@@ -260,14 +275,17 @@ class Sequences:
         """Units at random angles, with thrusts that meet the first request as well as these angles allow."""
         units = self.units
         r = self.random
+        # Draw angles within the allowed sector; thrusters with a fixed angle keep it.
         first = torch.clamp(units.first, min=-np.pi)
         last = torch.clamp(units.last, max=np.pi)
         last = torch.where(torch.isfinite(units.last), units.last, last)
         drawn = torch.from_numpy(r.random((len(tau), len(units.x))))
         angles = first + drawn * (last - first)
         angles = torch.where(units.turn > 0.0, angles, units.azimuth)
+        # Limits of thrust shrink with availability.
         least = units.least * available
         most = units.most * available
+        # Start from little thrust and iterate: effects depend on thrusts through the slipstreams.
         thrusts = torch.clamp(0.05 * most, min=least)
         for _ in range(4):
             effect = neural.effects(thrusts, angles, units=units)
@@ -280,29 +298,35 @@ class Sequences:
 def cost(
     recipe: NeuralTraining, units: Units, weights: tuple, drawn: tuple, interval: float
 ) -> dict[str, torch.Tensor]:
-    """What sequences cost: power, missed load and turning, each over the power that their requests are worth.
+    """Cost of sequences: power, missed load and turning, each over the power for their requests.
 
-    The first requests only bring the units from where they were drawn to where they would be. The objective is the mean
-    of the logarithm of the sum: of each sequence a hundredth less counts the same.
+    The first requests only settle the thrusters. The objective is the mean logarithm of the sum:
+    one percent less counts the same in each sequence.
     """
+    # Settle without gradient: the drawn start must not count.
     tau, available, state = drawn
     with torch.no_grad():
         for request in tau[: recipe.settling]:
             state = neural.propose(
                 state, request, available, interval, units=units, weights=weights
             )
+    # Size of the requests, and the power to give them with the strongest thruster, P ~ T^1.5.
     tau = tau[recipe.settling :]
     size = (neural._scaled(tau, units.lever) ** 2).sum(-1).mean(0).sqrt() + 1e-3 * units.most.max()
     worth = units.full_power.max() * (size / units.most.max()) ** 1.5
     spent, missed, turned = torch.zeros(3, tau.shape[1], dtype=tau.dtype)
+    # Step through the requests: each command depends on the one before.
     for request in tau:
         before = state
         state = neural.propose(state, request, available, interval, units=units, weights=weights)
+        # Missed load relative to the request; 1e-5 keeps its gradient finite at zero.
         left = missing(state, request, units) / size[:, None]
         spent = spent + neural.power(state.thrusts, units=units) / worth
         missed = missed + torch.sqrt((left * left).sum(-1) + 1e-5)
+        # Turning as the square of the share of the full rate; fixed thrusters do not count.
         turn = (state.azimuths - before.azimuths) / (units.turn + 1e-6) / interval
         turned = turned + (turn * turn * (units.turn > 0.0)).mean(-1)
+    # Means over the sequence, with their prices.
     parts = [
         spent / len(tau),
         recipe.missed * missed / len(tau),
@@ -312,11 +336,12 @@ def cost(
         name: part.mean()
         for name, part in zip(("power", "missed load", "turning"), parts, strict=True)
     }
+    # The logarithm makes a percent count the same in weak and in strong sequences.
     return {"objective": torch.log(torch.stack(parts).sum(0)).mean()} | means
 
 
 def missing(state: Commands, request: torch.Tensor, units: Units) -> torch.Tensor:
-    """Load that commands leave unmet, slipstreams considered, the moment over the lever. [N]"""
+    """Load that commands leave unmet, slipstreams included, the moment over the lever. [N]"""
     effect = neural.effects(state.thrusts, state.azimuths, units=units)
     return neural._scaled(request, units.lever) - (effect @ state.thrusts[..., None])[..., 0]
 
@@ -324,18 +349,21 @@ def missing(state: Commands, request: torch.Tensor, units: Units) -> torch.Tenso
 def fit(
     recipe: NeuralTraining, progress: Progress
 ) -> tuple[list[np.ndarray], list[dict[str, float]]]:
-    """Weights of the smallest cost on held-out sequences, and costs on the way."""
+    """Fit the weights; return those with the least held-out cost, and the costs by iteration."""
     weights = first_weights(recipe)
     units = tensors(recipe.units)
+    # Training sequences are drawn anew at each step; the held-out ones are drawn once.
     training = Sequences(recipe, held_out=False)
     checked = Sequences(replace(recipe, batch=256), held_out=True)
     test = checked.draw()
+    # Adam with a learning rate that falls as a cosine.
     optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
     rate = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.iterations, eta_min=1e-4)
     best = math.inf
     kept = []
     history = []
     for number in range(recipe.iterations + 1):
+        # Check on the held-out sequences now and then, and keep the best weights.
         if number % EVERY == 0 or number == recipe.iterations:
             with torch.no_grad():
                 found = cost(recipe, units, paired(weights), test, checked.interval)
@@ -345,6 +373,7 @@ def fit(
             if history[-1]["objective"] < best:
                 best = history[-1]["objective"]
                 kept = [w.detach().numpy().astype(float).copy() for w in weights]
+        # One step of the optimiser; the gradient is clipped, since it passes many requests.
         if number < recipe.iterations:
             parts = cost(recipe, units, paired(weights), training.draw(), training.interval)
             optimiser.zero_grad()

@@ -78,6 +78,7 @@ def read_exercise(path: Path = RECORD) -> tuple[np.ndarray, np.ndarray]:
         Loads and commands. [N, N, N.m; rpm, deg]
     """
     table = read_table(path)
+    # Loads are the inputs, commands the targets: the network inverts the exercise.
     loads = np.stack([table[f"tau_{axis}"].values for axis in "XYN"], axis=-1)
     return loads, np.stack(
         [table[f"command_{unit}"].values for unit in range(1, UNITS + 1)], axis=-1
@@ -104,6 +105,7 @@ def samples(
         Inputs, targets. [N, N, N.m, units of the commands]
     """
     targets = commands[:, :signals]
+    # Allocator 2 also sees the commands of the row before; zero before the first row.
     before = np.vstack([np.zeros(signals), targets[:-1]])
     return (loads if allocator == 1 else np.hstack([loads, before])), targets
 
@@ -132,13 +134,16 @@ def fitted(
     dict of str to array
         `scale`, `hidden`, `bias`, `output`, as `models.allocation.extreme_learning.Network` has them.
     """
+    # Inputs over their largest size, so that sigmoids are not saturated.
     rng = np.random.default_rng(seed)
     scale = np.abs(inputs).max(axis=0)
+    # The hidden layer is random and stays so (Huang et al.).
     found = {
         "scale": scale,
         "hidden": rng.uniform(-1.0, 1.0, (neurons, inputs.shape[1])),
         "bias": rng.random(neurons),
     }
+    # Output weights by least squares: H^+ T, with small singular values left out.
     inverse = np.linalg.pinv(hidden_layer(found, inputs), rcond=cutoff)
     return found | {"output": (inverse @ targets).T}
 
@@ -178,16 +183,20 @@ def train(recipe: PaperITraining, progress: Progress) -> Trained:
     Trained
         Weights and report.
     """
+    # Ranges of the commands in the exercise: the allocator keeps within them.
     loads, commands = read_exercise()
     arrays: dict[str, np.ndarray] = {"least": commands.min(axis=0), "most": commands.max(axis=0)}
     settings: dict = {"hidden neurons": NEURONS, "cutoff of the pseudo-inverse": recipe.cutoff}
+    # Both allocators, each with six and with five signals.
     for done, (allocator, signals) in enumerate(((1, 6), (1, 5), (2, 6), (2, 5))):
         progress(done, 4)
         inputs, targets = samples(loads, commands, allocator, signals)
+        # The paper reports the training time, so it is measured here.
         start = time.perf_counter()
         found = fitted(inputs, targets, cutoff=recipe.cutoff)
         seconds = time.perf_counter() - start
         arrays |= {f"{allocator}.{signals}.{name}": array for name, array in found.items()}
+        # Errors by output, and by number of neurons, as the paper's tables.
         named = f"allocator {allocator}, {signals} signals"
         settings[f"{named}: RMSE on the exercise by output"] = _rounded(
             _rmse(found, inputs, targets)
@@ -206,7 +215,8 @@ def _rmse(network, inputs, targets):
 
 
 def _by_neurons(inputs, targets, cutoff):
-    """Error on held-out rows over the range of the commands, mean of the outputs, for some numbers of neurons."""
+    """Held-out error over the range of the commands, mean over outputs, by number of neurons."""
+    # Hold out 10 % of the rows at random, as in the paper.
     held = np.random.default_rng(SEED).random(len(inputs)) < HELD_OUT
     found = {}
     for neurons in (5, 10, 20, 40, 80):

@@ -123,6 +123,7 @@ def train(recipe: PaperVTraining, progress: Progress) -> Trained:
     Trained
         Weights, data and losses.
     """
+    # Draw the data and train the autoencoder; held-out mini-batches decide when to stop.
     data = data_of(recipe)
     with repeatable(recipe.schedule.seed):
         network = Autoencoder()
@@ -163,6 +164,7 @@ def data_of(recipe: PaperVTraining) -> Data:
     Data
         The first mini-batches are those to train on.
     """
+    # Independent commands as printed, or walks within the rates.
     rng = np.random.default_rng(recipe.seed)
     size = recipe.batches * recipe.sequences, recipe.samples
     drawn = (
@@ -170,6 +172,7 @@ def data_of(recipe: PaperVTraining) -> Data:
         if recipe.walks
         else independent(RANGES, *size, rng)
     )
+    # Standardise forces by the mini-batches for training only.
     trained = round(recipe.share * recipe.batches)
     drawn = drawn.reshape(recipe.batches, recipe.sequences, recipe.samples, len(RANGES))
     forces = generalised_force(torch.from_numpy(drawn)).numpy()
@@ -191,6 +194,7 @@ def generalised_force(commands: torch.Tensor) -> torch.Tensor:
     (..., 3) tensor
         Forward, to starboard, yaw moment. [N, N, N.m]
     """
+    # tau = B(alpha) F with the full configuration matrix.
     f1, f2, a2, f3, a3 = commands.unbind(-1)
     a2 = torch.deg2rad(a2)
     a3 = torch.deg2rad(a3)
@@ -198,6 +202,7 @@ def generalised_force(commands: torch.Tensor) -> torch.Tensor:
     Y2 = f2 * a2.sin()
     X3 = f3 * a3.cos()
     Y3 = f3 * a3.sin()
+    # Moments: the tunnel at TUNNEL_X, azimuths at AZIMUTH_X and to both sides, N = x Y - y X.
     N = TUNNEL_X * f1 + AZIMUTH_X * (Y2 + Y3) + AZIMUTH_Y * (X2 - X3)
     return torch.stack([X2 + X3, f1 + Y2 + Y3, N], -1)
 
@@ -223,18 +228,23 @@ def losses(
     dict of str to tensor
         Means over all samples. [1]
     """
+    # The encoder is the allocator: from force to commands over their ranges.
     code = network.encoder(forces)
     commands = code * _row(RANGES)
+    # Force of these commands, standardised as the request.
     given = (generalised_force(commands) - mean) / std
     size = abs(commands)
+    # Parts that the losses need: thrusts, angles, and changes from sample to sample.
     thrusts = commands[..., [0, 1, 3]]
     angles = commands[..., [2, 4]]
     changes = abs(commands[:, 1:] - commands[:, :-1])
+    # Azimuths within a disallowed sector, counted; this has no gradient.
     inside = (
         torch.stack([(angles > low) & (angles < high) for low, high in SECTORS])
         .to(code.dtype)
         .sum((0, -1))
     )
+    # L0 force, L1 decoder, L2 limits, L3 rates, L4 power, L5 sectors: eqs. 5 to 11 of the paper.
     found = (
         ((forces - given) ** 2).sum(-1),
         ((forces - network.decoder(code)) ** 2).sum(-1),
@@ -243,6 +253,7 @@ def losses(
         (abs(thrusts) ** 1.5).sum(-1),
         inside,
     )
+    # k4 is the weight that the variants change.
     k = (*K[:4], k4, K[5])
     return {name: weight * one.mean() for name, weight, one in zip(NAMES, k, found, strict=True)}
 

@@ -27,6 +27,7 @@ def recorded_requests(every: int = 1) -> tuple[list[np.ndarray], np.ndarray, flo
     float
         Time from one request to the next. [s]
     """
+    # Stored as multiples of a unit to save space; scale them back.
     with np.load(REQUESTS) as found:
         runs = [
             (found[kind][:, ::every] * found["unit"]).astype(np.float32)

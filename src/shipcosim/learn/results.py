@@ -1,4 +1,4 @@
-"""What training leaves: the weights as arrays in NAME.npz, and a report beside them, NAME.json and NAME.md."""
+"""Results of training: weights as arrays in NAME.npz, report in NAME.json and NAME.md."""
 
 import io
 import json
@@ -21,7 +21,7 @@ class Trained:
     Parameters
     ----------
     arrays : mapping of str to array
-        Weights, and what their evaluation needs beside them, by name.
+            Weights, and further numbers that their evaluation needs, by name.
     description : str
         What was trained.
     seed : int
@@ -66,10 +66,12 @@ def write_trained(
     list of Path
         NAME.npz, NAME.json and NAME.md.
     """
+    # The report also states how long training took.
     report = report_of(trained, name) | {
         "time_s": round(time, 1),
         "processor_time_s": round(processor_time, 1),
     }
+    # Make all contents first, so that an error leaves no half-written set.
     contents = {
         ".npz": npz_bytes(trained.arrays),
         ".json": (json.dumps(report, indent=1, ensure_ascii=False) + "\n").encode(),
@@ -95,6 +97,7 @@ def npz_bytes(arrays: Mapping[str, np.ndarray]) -> bytes:
     """
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
+        # A fixed date in the archive: equal weights give equal bytes.
         for name, array in arrays.items():
             file = io.BytesIO()
             np.save(file, array, allow_pickle=False)
@@ -149,15 +152,18 @@ def markdown(report: Mapping[str, Any]) -> str:
         Markdown.
     """
     versions = ", ".join(f"{name} {version}" for name, version in report["versions"].items())
+    # Head: what was trained, with notes, size, seed and time.
     lines = [f"# {report['name']}", "", report["description"], ""]
     lines += [f"{note}\n" for note in report["notes"]]
     times = f"{report['time_s']:.0f} s by the clock, {report['processor_time_s']:.0f} s of one processor core"
     lines += [
         f"{report['weights']} numbers, seed {report['seed']}, trained in {times}, by {versions}."
     ]
+    # Data and settings as tables.
     for title in ("data", "settings"):
         lines += ["", f"## {title.capitalize()}", "", "| | |", "|---|---|"]
         lines += [f"| {name} | {_text(value)} |" for name, value in report[title].items()]
+    # Losses by epoch, where training has epochs.
     if report["epochs"]:
         names = list(report["epochs"][0])
         lines += [

@@ -62,12 +62,14 @@ def repeatable(seed: int) -> Iterator[None]:
     seed : int
         Of torch's generator, which initialises weights.
     """
+    # One thread and no denormals: sums then have one order, and vanishing gradients stay quick.
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     torch.set_flush_denormal(
         True
     )  # gradients that vanish along a sequence are slow to compute with
     try:
+        # The caller's random state is kept; only this block uses the seed.
         with torch.random.fork_rng(devices=[]):
             torch.manual_seed(seed)
             yield
@@ -104,6 +106,7 @@ def fit(
     list of dict
         For each epoch the sum of losses in training, the sum on held-out data, and each of the latter.
     """
+    # The order of mini-batches has its own generator: it does not depend on the network.
     order = np.random.default_rng(schedule.seed)
     optimiser = torch.optim.Adam(network.parameters(), lr=schedule.learning_rate, fused=True)
     epochs: list[dict[str, float]] = []
@@ -111,15 +114,18 @@ def fit(
     weights = copy.deepcopy(network.state_dict())
     total = schedule.most_epochs * len(batches)
     for number in range(schedule.most_epochs):
+        # One epoch: a step for each mini-batch, in random order.
         trained = 0.0
         for done, index in enumerate(order.permutation(len(batches)), number * len(batches) + 1):
             trained += _descend(optimiser, sum(losses(batches[index]).values()))
             progress(done, total)
+        # Judge the epoch on held-out data; keep the best weights.
         found = _held_out(losses, held_out)
         epochs.append({"training": trained / len(batches), "held out": sum(found.values())} | found)
         if epochs[-1]["held out"] < best:
             best = epochs[-1]["held out"]
             weights = copy.deepcopy(network.state_dict())
+        # Stop when none of the last `patience` epochs reached the best loss.
         if best < min(epoch["held out"] for epoch in epochs[-schedule.patience :]):
             break
     network.load_state_dict(weights)

@@ -1,4 +1,4 @@
-"""True ships of simulated records: how far they are from their models, what the models know, many sailed at a time."""
+"""True ships of simulated records: their distance from the models, their parameters, the runs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -49,6 +49,7 @@ class TrueLoads(NamedTuple):
 
     def values(self) -> dict[str, float | str]:
         """Start values of the component `vessel`."""
+        # Close the circle: 360 deg repeats 0 deg, so that the table interpolates across the bow.
         around = np.vstack([self.around, self.around[:1]])
         return {
             "vessel.strip_factors": text(zip(np.linspace(-1.0, 1.0, 5), self.along, strict=True)),
@@ -120,6 +121,7 @@ def sailed(
     progress : callable, optional
         Is told how many are done, and of how many.
     """
+    # Worker processes run the co-simulations; results keep the order of the draws.
     with ProcessPoolExecutor(processes) as pool:
         for done, record in enumerate(pool.map(sail, drawn), 1):
             yield record

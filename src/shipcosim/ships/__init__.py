@@ -1,4 +1,4 @@
-"""Ships as files: what a naval architect writes of one, what formulae add, and the parameter sets made of both."""
+"""Ships as files: particulars that a naval architect writes, estimates, and parameter sets."""
 
 from shipcosim.ships.described import Described, describe, file_of
 from shipcosim.ships.folder import Quantity, Ship, read_ship

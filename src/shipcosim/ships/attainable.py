@@ -1,10 +1,10 @@
-"""Loads that thrusters can give together: how far such a set reaches in a direction.
+"""Loads that thrusters can give together: how far their set reaches in a direction.
 
-Each thruster gives a convex set of loads, which lies in a plane of forces and moment; together they give the sum of
-these sets. A load s w lies in that sum if n.(s w) <= sum_j h_j(n) for every n, with h_j(n) the largest n.f of the set
-j. It is enough to look at the normals of the facets of the sum. They stand on two edges of different sets, or on the
-plane of one. Other n do no harm, so no facet has to be told from what is none. Where the sum is flat, edges along the
-axes take the place of those that are missing.
+Each thruster gives a convex set of loads, which lies in a plane of forces and moment; together
+they give the sum of these sets. A load s w lies in that sum if n.(s w) <= sum_j h_j(n) for every n,
+with h_j(n) the largest n.f of set j. The normals of the facets of the sum suffice: each stands on
+two edges of different sets, or on the plane of one. More normals do no harm, so all candidates are
+used. Where the sum is flat, edges along the axes replace the missing ones.
 
 Reference: Schneider, Convex Bodies: The Brunn-Minkowski Theory, 2nd ed., Cambridge University Press, 2014, sec. 1.7
 and 2.4.
@@ -48,40 +48,50 @@ def largest_multiple(sets: Sequence[NDArray], left: NDArray, loads: NDArray) -> 
     >>> largest_multiple(sets, np.ones((2, 2)), np.array([(1.0, 0.0, 0.0), (4.0, 0.0, 1.0)])).round(12)
     array([3., 1.])
     """
+    # The zero load belongs to every set: a thruster can stop.
     corners = [np.vstack([np.zeros(3), one]) for one in sets]
     normals = _normals([_edges(one) for one in corners])
+    # Support h_j(n) of each set in each direction.
     most = np.stack([(normals @ one.T).max(axis=1) for one in corners], axis=1)
+    # For each load the facet that limits it first: s = min over n of h(n).left / n.w.
     size = np.linalg.norm(loads, axis=1)
     found = np.full(len(loads), np.inf)
     for row in np.flatnonzero(size):
+        # Only facets that face the load limit it.
         along = normals @ (loads[row] / size[row])
         facing = along > ASIDE
+        # A reach that is zero but for rounding means that no load is possible in this direction.
         reach = np.min(most[facing] @ left[row] / along[facing])
         found[row] = reach / size[row] if reach > NOTHING * most.max() else 0.0
     return found
 
 
 def _normals(edges: list[NDArray]) -> NDArray:
-    """Unit vectors, in both directions, on each edge of a set and one of another, or on two of one set."""
+    """Unit normals, in both directions: on edges of two different sets, or on a set's plane."""
+    # Axes stand in for edges where the sum is flat.
     groups = [*edges, np.eye(3)]
     pairs = [
         np.cross(a[:, None], b[None]).reshape(-1, 3)
         for i, a in enumerate(groups)
         for b in groups[:i]
     ]
+    # Normal of the plane of each set.
     pairs += [np.cross(one[:1], one) for one in edges]
     found = np.concatenate([np.eye(3), *pairs])
     length = np.linalg.norm(found, axis=1, keepdims=True)
+    # Parallel edges give no normal.
     found = (found / np.maximum(length, 1e-300))[length[:, 0] > 1e-12]
     return np.concatenate([found, -found])
 
 
 def _edges(corners: NDArray) -> NDArray:
     """Unit vectors along the edges of the convex hull of corners in a plane, (k, 3)."""
+    # Principal plane of the corners, then their hull within it.
     middle = corners - corners.mean(axis=0)
     plane = np.linalg.svd(middle, full_matrices=False)[2][:2]
     hull = corners[_hull(middle @ plane.T)]
     edges = np.roll(hull, -1, axis=0) - hull
+    # Points of zero distance give no edge.
     length = np.linalg.norm(edges, axis=1, keepdims=True)
     return (edges / np.maximum(length, 1e-300))[length[:, 0] > 0.0]
 
@@ -97,6 +107,7 @@ def _hull(points: NDArray) -> list[int]:
             chain.append(row)
         return chain[:-1]
 
+    # Sort by the first coordinate, then lower and upper half of the hull.
     rows = np.lexsort(points.T[::-1]).tolist()
     return half(rows) + half(rows[::-1])
 

@@ -1,4 +1,4 @@
-"""What is impossible of a ship as her file describes her, and what is odd."""
+"""Checks of a described ship: what is impossible, and what is unusual."""
 
 from collections.abc import Iterator
 from math import pi
@@ -31,7 +31,7 @@ DRIVING = ("X_u", "X_uu", "Y_v", "Y_modvv", "N_r", "N_modrr")
 
 
 def check_ship(path: str) -> list[Problem]:
-    """Everything that is missing, cannot be read or cannot be, of a ship file.
+    """Find everything that is missing, unreadable or impossible in a ship file.
 
     Parameters
     ----------
@@ -44,6 +44,7 @@ def check_ship(path: str) -> list[Problem]:
         Errors, and remarks on what is odd.
     """
     file = file_of(path)
+    # Files without particulars describe a ship by parameter files: read these.
     try:
         said = read_file(file)
         if said.particulars is None and not said.thrusters:
@@ -56,7 +57,7 @@ def check_ship(path: str) -> list[Problem]:
 
 
 def check_described(ship: Described) -> list[Problem]:
-    """What cannot be of a ship whose file could be read, and what is odd.
+    """Find what is impossible or unusual in a ship whose file could be read.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ def _mass(kilograms: float) -> str:
 
 
 def estimated(ship: Described) -> list[tuple[str, str, str, str]]:
-    """What is estimated: name, value, tolerance, source.
+    """Estimated parameters: name, value, tolerance, source.
 
     Parameters
     ----------
@@ -98,14 +99,17 @@ def _hull(ship: Described) -> Iterator[Problem]:
     m = ship.file.mass
     assert p is not None
     where = f"{ship.path}: particulars"
+    # Mass against the box of length, breadth and draught: the block coefficient that follows.
     box = form.density * form.hulls * form.length * form.breadth * form.draught
     mass = float(ship.vessel["mass"].value)
     dimensions = f"{form.length:g} m x {form.breadth:g} m x {form.draught:g} m"
     dimensions = f"{form.hulls} hulls of {dimensions}" if form.hulls > 1 else dimensions
+    # Outside the range of ships: mass or a dimension is wrong.
     if not BLOCK[0] <= mass / box <= BLOCK[1]:
         remedy = f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
         remedy += f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
         yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
+    # Mass and a given block coefficient must agree.
     elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
         found = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
         yield Problem(
@@ -113,6 +117,7 @@ def _hull(ship: Described) -> Iterator[Problem]:
             found,
             f"The mass is that of {mass / box:.3f}; leave one of them out.",
         )
+    # Mass and displacement of a floating ship are the same.
     if m.mass and p.displacement and abs(m.mass.value / p.displacement.value - 1.0) > OWN_BLOCK:
         found = (
             f"the mass is {_mass(m.mass.value)}, the displacement {_mass(p.displacement.value)}."
@@ -120,6 +125,7 @@ def _hull(ship: Described) -> Iterator[Problem]:
         yield Problem(
             f"{ship.path}: mass", found, "A ship that floats displaces her mass; give one of them."
         )
+    # Ratios of dimensions outside the usual range point to a wrong unit.
     breadth = number(p.breadth)
     for name, ratio, (low, high) in (
         ("length over breadth", form.length / breadth, SLENDER),
@@ -131,6 +137,7 @@ def _hull(ship: Described) -> Iterator[Problem]:
                 f"{name} is {ratio:.3g}.",
                 f"Ships have {low:g} to {high:g}; is a unit missing?",
             )
+    # Hulls must fit into the breadth of the ship.
     if form.hulls > 1 and form.hulls * form.breadth > breadth:
         found = (
             f"{form.hulls} hulls of {form.breadth:g} m are broader than the ship, {breadth:g} m."
@@ -143,6 +150,7 @@ def _matrix(ship: Described) -> Iterator[Problem]:
     where = f"{ship.path}: mass"
     length = ship.form.length
     mass = value["mass"]
+    # The mass matrix must be positive definite, or the motion is unstable.
     matrix = mass_matrix(ship)
     least = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min())
     diagonal = np.diag(matrix)
@@ -156,6 +164,7 @@ def _matrix(ship: Described) -> Iterator[Problem]:
             f"the mass matrix is not positive: {', '.join(names)}, sway by yaw {matrix[1, 2]:.3g}."
         )
         yield Problem(where, found, remedy)
+    # Gyration radius about the centre of gravity, by Steiner's theorem.
     own = value["inertia_yaw"] - mass * value.get("centre_of_gravity_x", 0.0) ** 2
     gyradius = np.sqrt(max(own, 0.0) / mass) / length
     if not GYRADIUS[0] <= gyradius <= GYRADIUS[1]:
@@ -166,6 +175,7 @@ def _matrix(ship: Described) -> Iterator[Problem]:
             f"the yaw inertia is that of a gyration radius of {gyradius:.2g} lengths.",
             remedy,
         )
+    # A ship with the centre of gravity far from midships would trim.
     if abs(value.get("centre_of_gravity_x", 0.0)) > 0.2 * length:
         found = (
             f"the centre of gravity lies {value['centre_of_gravity_x']:g} m forward of midships."
@@ -173,6 +183,7 @@ def _matrix(ship: Described) -> Iterator[Problem]:
         yield Problem(
             where, found, f"Of {length:g} m of length it lies within a tenth or so of them."
         )
+    # Positive damping would drive the ship.
     for name in DRIVING:
         if value.get(name, 0.0) > 0.0:
             found = f"{name} is {value[name]:g}: the water drives her."
@@ -185,6 +196,7 @@ def _thrusters(ship: Described) -> Iterator[Problem]:
     length = ship.form.length
     breadth = number(p.breadth)
     draught = ship.form.draught
+    # Thrusters outside the hull point to a wrong origin or unit.
     for unit in ship.units:
         where = f"{ship.path}: thruster {unit.name}"
         if abs(unit.x) > BEYOND * length:
@@ -201,10 +213,11 @@ def _thrusters(ship: Described) -> Iterator[Problem]:
 
 
 def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]:
-    """Thrust that no such propeller gives."""
+    """Find thrust that no such propeller gives."""
     screw = unit.screw
     if screw is None:
         return
+    # Momentum theory without losses is the upper bound of thrust for this power and diameter.
     most = most_thrust(screw.kind, screw.diameter, screw.power, screw.density)
     if screw.thrust > 1.02 * most:
         found = (
@@ -215,6 +228,7 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
             found,
             f"No {screw.kind} propeller of that power gives more than {most / 1000:.4g} kN.",
         )
+    # Thrust coefficients above MOST_KT do not occur: speed or diameter is wrong.
     if screw.thrust_coefficient > MOST_KT:
         found = f"{screw.thrust / 1000:.4g} kN at {screw.rpm:.4g} rpm is a thrust coefficient of "
         found += f"{screw.thrust_coefficient:.2g}."
@@ -223,9 +237,11 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
             found,
             f"Propellers have at most {MOST_KT:g}: is the speed, or the diameter, right?",
         )
+    # A propeller larger than the draught points to a wrong unit.
     if screw.diameter > 1.2 * draught:
         found = f"the propeller of {screw.diameter:g} m does not fit under a ship of {draught:g} m of draught."
         yield Problem(where, found, "Diameter and draught are in m; is a unit missing?")
+    # Tip speed: too high if the motor's speed was given.
     tip = pi * screw.diameter * screw.rpm / 60.0
     if tip > 80.0:
         found = f"the tips run at {tip:.0f} m/s."
@@ -250,13 +266,14 @@ def _remarks(ship: Described) -> Iterator[Problem]:
 
 
 def _speed(ship: Described) -> Iterator[Problem]:
-    """Whether she can run at her service speed, and whether the formulae hold there."""
+    """Check that she reaches her service speed, and that the resistance formulae hold there."""
     form = ship.form
     p = ship.file.particulars
     entry = ship.vessel.get("X_uu")
     if entry is None or p is None or p.service_speed is None:
         return
     where = f"{ship.path}: resistance"
+    # Resistance at service speed against the bollard thrust of all thrusters that point ahead.
     drag = -float(entry.value) * form.speed**2
     ahead = sum(
         unit.most for unit in ship.units if unit.kind != "tunnel" and abs(unit.direction) < 0.5 * pi
@@ -265,6 +282,7 @@ def _speed(ship: Described) -> Iterator[Problem]:
         found = f"at {form.speed:.3g} m/s she has a resistance of {drag / 1000:.4g} kN, "
         found += f"more than the {ahead / 1000:.4g} kN that her thrusters give at rest."
         yield Problem(where, found, "She does not reach her service speed.", "remark")
+    # Holtrop and Mennen hold only below MOST_FROUDE.
     if entry.origin.startswith(ESTIMATED) and froude_number(form) > MOST_FROUDE:
         found = f"{form.speed:.3g} m/s is Froude number {froude_number(form):.2g}, beyond the formulae of resistance."
         remedy = "Give a point of her speed trial: resistance.speed and resistance.resistance."

@@ -1,4 +1,4 @@
-"""The DP of a described ship: parameters of its components, or why her thrusters do not allow one."""
+"""The DP of a described ship: parameters of its components, or why there is none."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ WORTH = 1e-3
 
 
 def why_no_dp(ship: Described) -> str:
-    """Why the thrusters allow no DP; empty where they do.
+    """Reason why the thrusters allow no DP; empty where they do.
 
     Parameters
     ----------
@@ -36,6 +36,7 @@ def why_no_dp(ship: Described) -> str:
         return f"the allocator takes {UNITS} thrusters, she has {len(ship.units)}"
     if not (used := units_for_dp(ship)):
         return "no thruster takes a thrust command with known limits"
+    # DP needs a force in surge, in sway and a moment, each without the others.
     X, Y, N = _loop(ship, used).reach
     weak = [name for name, load in (("surge", X), ("sway", Y), ("yaw", N)) if load <= 0.0]
     return f"her thrusters give no force in {' and '.join(weak)} alone" if weak else ""
@@ -62,6 +63,7 @@ def mass_matrix(ship: Described) -> np.ndarray:
         for name, entry in ship.vessel.items()
         if isinstance(entry.value, (int, float))
     }
+    # M = M_RB + M_A with the origin midships; the centre of gravity couples sway and yaw.
     m = value["mass"]
     static = value["mass"] * value.get("centre_of_gravity_x", 0.0)
     return np.array(
@@ -86,18 +88,21 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Entry]]:
     dict of dict of Entry
         By component and parameter.
     """
+    # Loop and components; the file's own values come before the rule.
     used = units_for_dp(ship)
     loop = _loop(ship, used)
     length = ship.form.length
     own = {name: _numbers(fmu, ship.path) for name, fmu in COMPONENTS.items()}
     own["sensors"].estimates(control.sensors(length))
     own["reference"].estimates(control.reference(loop))
+    # Frequencies and limits that the user gives override the rule.
     given = ship.file.control
     for name in ("surge_frequency", "sway_frequency"):
         own["controller"].give(name, given.position_frequency)
     own["controller"].give("yaw_frequency", given.heading_frequency)
     own["controller"].give("position_error_max", given.position_error_max)
     own["controller"].estimates(control.controller(loop) | control.mast(length))
+    # Controller and vessel share the wind table: feedforward then matches the ship's wind load.
     own["controller"].entries["wind_table"] = ship.vessel["wind_table"]
     own["allocator"].estimates(_allocation(used))
     return {name: numbers.entries for name, numbers in own.items()}
@@ -109,9 +114,11 @@ def _numbers(fmu: str, path: Path) -> Numbers:
 
 
 def _loop(ship: Described, used: list[ShipThruster]) -> control.ControlledShip:
+    # Load of one newton of each thruster, and its limits.
     effects = np.array([unit.effect for unit in used]).T
     least = np.array([unit.least for unit in used])
     most = np.array([unit.most for unit in used])
+    # Loads below this floor count as none: the DP cannot hold the ship with them.
     reach = control.reach_of(effects, least, most)
     floor = WORTH * 0.01 * number(ship.file.mass.mass, ship.form.mass)
     X, Y, N = (
@@ -122,7 +129,7 @@ def _loop(ship: Described, used: list[ShipThruster]) -> control.ControlledShip:
 
 
 def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
-    """Places, directions and limits of the thrusters as the allocator knows them."""
+    """Places, directions and limits of the thrusters, as the allocator needs them."""
     found = {}
     for i, unit in enumerate(used, 1):
         places = {"x": unit.x, "y": unit.y, "azimuth": unit.direction, "thrust_rate": unit.rate}
@@ -131,5 +138,6 @@ def _allocation(used: list[ShipThruster]) -> dict[str, EstimatedNumber]:
             f"{name}_{i}": EstimatedNumber(value, 0.0, f"thruster {unit.name}")
             for name, value in places.items()
         }
+    # A missed yaw moment weighs as a missed force at the largest lever.
     lever = max(max(abs(unit.effect[2]) for unit in used), 0.1)
     return found | {"yaw_lever": EstimatedNumber(lever, 0.0, "largest lever of a thruster")}

@@ -1,4 +1,4 @@
-"""A ship file read: its records, its hull, its thrusters; and what cannot be read of it."""
+"""A ship file that was read: records, hull and thrusters, and problems of reading it."""
 
 import re
 import tomllib
@@ -77,7 +77,7 @@ def read_file(path: Path) -> ShipFile:
 
 
 def file_from(text: str, path: Path) -> ShipFile:
-    """Records of the text of a ship file; `path` is for messages. Raises as `read_file`."""
+    """Records from the text of a ship file; `path` is for messages. Raises as `read_file`."""
     said = _toml(text, path)
     try:
         return ShipFile.model_validate(said)
@@ -86,7 +86,7 @@ def file_from(text: str, path: Path) -> ShipFile:
 
 
 def describe(path: str | Path, file: ShipFile | None = None) -> Described:
-    """A ship with all parameters of her hull and her thrusters, what is not given estimated.
+    """Describe a ship by all parameters of hull and thrusters; missing ones are estimated.
 
     Parameters
     ----------
@@ -100,10 +100,13 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     ShipcosimError
         With everything that is missing or cannot be read.
     """
+    # Collect all problems before raising, so that the user sees them at once.
     path = file_of(path)
     said = read_file(path) if file is None else file
     problems = []
     form = form_of(said, str(path), problems)
+    # Names of thrusters become names of components: they must differ, also from those of the
+    # system.
     names = [one.name for one in said.thrusters]
     if twice := sorted(
         {name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}
@@ -123,8 +126,10 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     if not names:
         remedy = f"Add a [[thrusters]] with name, kind ({', '.join(KINDS)}), x and y."
         problems.append(Problem(f"{path}: thrusters", "she has none.", remedy))
+    # Without main dimensions nothing can be estimated.
     if form is None:
         raise ShipcosimError(problems)
+    # Hull first: thrusters use its density and dimensions.
     vessel = vessel_of(said, form, path, problems)
     units = units_of_ship(said.thrusters, form, said.source, path, problems)
     if problems:
@@ -155,6 +160,7 @@ def _toml(text: str, path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
+        # The parser tells the line in its message: put it where our messages have it.
         line = re.search(r" \(at line (\d+), column \d+\)", str(error))
         where = f"{path}, line {line[1]}" if line else str(path)
         said = str(error).replace(line[0], "") if line else "brackets are nested too deep"
@@ -164,9 +170,10 @@ def _toml(text: str, path: Path) -> dict[str, Any]:
 
 
 def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
-    """A finding of pydantic in our words."""
+    """Translate a finding of pydantic into our words."""
     keys = list(finding["loc"])
     kind = finding["type"]
+    # Findings in thrusters are told by the thruster's name.
     if keys[:1] == ["thrusters"] and len(keys) > 1:
         return _of_thruster(path, said, keys, finding)
     last = str(keys[-1])
@@ -176,6 +183,7 @@ def _problem(path: Path, said: dict[str, Any], finding: Any) -> Problem:
             ": "
         )
     )
+    # An unknown key: suggest a similar one of the same section.
     if kind == "extra_forbidden":
         known = record if len(keys) == 1 else type(_default(keys[0])).model_fields
         return Problem(where, f"unknown key '{last}'.", suggestion(last, known))
@@ -192,7 +200,7 @@ def _default(section: Any) -> Any:
 
 
 def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> Problem:
-    """A finding in a thruster, which is called by its name."""
+    """Translate a finding in a thruster, called by its name."""
     listed = said["thrusters"] if isinstance(said.get("thrusters"), list) else []
     one = listed[keys[1]] if isinstance(keys[1], int) and keys[1] < len(listed) else {}
     name = (
@@ -202,6 +210,7 @@ def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> 
     )
     kind = finding["type"]
     where = f"{path}: thruster {name}"
+    # An unknown or missing kind: pydantic cannot choose a record.
     if kind.startswith("union_tag"):
         found = one.get("kind") if isinstance(one, dict) else None
         if found is None:
@@ -222,7 +231,7 @@ def _of_thruster(path: Path, said: dict[str, Any], keys: list, finding: Any) -> 
 
 
 def _words(finding: Any) -> tuple[str, str]:
-    """What was found, and what would be right."""
+    """What was found, and what would be right, for a finding of pydantic."""
     if finding["type"] == "missing":
         return f"nothing says {finding['loc'][-1]}.", ""
     if finding["type"] == "value_error":

@@ -1,4 +1,4 @@
-"""A parameter as a ship's files say it, and tables in CSV files."""
+"""A parameter as the files of a ship give it, and tables in CSV files."""
 
 import csv
 import math
@@ -23,11 +23,12 @@ class Entry(NamedTuple):
 
 
 def table_entry(file: Path, where: str, problems: list[Problem]) -> Entry | None:
-    """A table as text: comments, of which one says the source, a header with units, rows of numbers."""
+    """Read a table as text: comments with the source, a header with units, rows of numbers."""
     if not file.is_file():
         problems.append(Problem(where, f"there is no file {file}."))
         return None
     lines = file.read_text(encoding="utf-8").splitlines()
+    # The source stands in a comment above the table.
     source = next(
         (
             line[1:].partition("source:")[2].strip()
@@ -36,6 +37,7 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Entry | None
         ),
         "",
     )
+    # First row: names and units; all others: numbers.
     header, *rows = list(
         csv.reader(line for line in lines if line.strip() and not line.startswith("#"))
     ) or [[]]
@@ -47,6 +49,7 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Entry | None
                 "Write '# source: ...' above it.",
             )
         )
+    # Each row has a number for each column.
     for number, row in enumerate(rows, 1):
         if len(row) != len(header) or not all(_is_number_text(cell) for cell in row):
             problems.append(

@@ -70,7 +70,7 @@ class Inertia(_Part):
 
 
 class Resistance(_Part):
-    """Resistance ahead: at a speed as measured or computed, or by formulae with what is known of the hull."""
+    """Resistance ahead: measured or computed at a speed, or by formulae with known hull data."""
 
     speed: Speed = None
     resistance: Force = None
@@ -102,7 +102,7 @@ class Waves(_Part):
 
 
 class Control(_Part):
-    """How quick the ship's DP is; what is left out follows from her mass and thrust."""
+    """Natural frequencies of the ship's DP; missing ones follow from her mass and thrust."""
 
     position_frequency: Rate = None
     heading_frequency: Rate = None
@@ -117,7 +117,7 @@ class _Thruster(_Part):
 
 
 class FixedPropeller(_Thruster):
-    """A propeller on a shaft that does not turn, or a thruster told its force."""
+    """A propeller on a fixed shaft, or a thruster with a commanded force."""
 
     kind: Literal["fixed"]
     command: Literal["rpm", "thrust"] = "rpm"
@@ -155,7 +155,7 @@ class Tunnel(_Thruster):
 
 
 class ThrustMap(_Thruster):
-    """A thruster whose thrust over its command was measured."""
+    """A thruster with a measured map of thrust over command."""
 
     kind: Literal["map"]
     direction: Angle = None
@@ -215,7 +215,7 @@ KINDS = {
 
 
 def number(found: Given | None, otherwise: float = 0.0) -> float:
-    """Value of what is given, or another."""
+    """Value of a given number, or a default."""
     return otherwise if found is None else found.value
 
 

@@ -1,4 +1,4 @@
-"""Ships as folders of files: what each component needs of a ship, with unit, origin and tolerance.
+"""Ships as folders of files: parameters of each component with unit, origin and tolerance.
 
 A folder holds a ``ship.toml``, one parameter file a component (``vessel.toml``) and tables as CSV. A ship may be based
 on others, a component like others of the same ship: no number stands twice. See docs/your-own-ship.md.
@@ -70,7 +70,7 @@ class Ship:
     def parameter_set(
         self, components: Mapping[str, Iterable[type]]
     ) -> dict[str, dict[str, Quantity]]:
-        """All parameters of components, checked: nothing missing, nothing unknown, units and bounds as declared.
+        """Check and return all parameters of components: complete, known, with units and bounds.
 
         Parameters
         ----------
@@ -87,6 +87,7 @@ class Ship:
         ShipcosimError
             With everything that is wrong.
         """
+        # Collect the problems of all components before raising.
         problems: list[Problem] = []
         found = {
             name: self._values(name, tuple(kinds), problems) for name, kinds in components.items()
@@ -98,7 +99,7 @@ class Ship:
         return found
 
     def parameters(self, kind: type[Kind], component: str) -> Kind:
-        """The parameters of a component as the dataclass that the models take.
+        """Parameters of a component as the dataclass of the models.
 
         Parameters
         ----------
@@ -125,6 +126,7 @@ class Ship:
     def _values(
         self, component: str, kinds: tuple[type, ...], problems: list[Problem]
     ) -> dict[str, Quantity]:
+        # Parameters without a default must be in the ship's files.
         said = self.entries.get(component, {})
         declared = [field for kind in kinds for field in fields(kind) if field.init]
         missing = [f for f in declared if f.name not in said and f.default is MISSING]
@@ -138,12 +140,14 @@ class Ship:
                     "They describe the ship, so they have no default.",
                 )
             )
+        # All others take the file's value or the default.
         present = [
             field for field in declared if field.name in said or field.default is not MISSING
         ]
         return {field.name: _quantity(field, said.get(field.name), problems) for field in present}
 
     def _find_unknown(self, component: str, kinds: Iterable[type], problems: list[Problem]) -> None:
+        # Inherited entries may be unknown here: a base has them for its own components.
         known = {field.name for kind in kinds for field in fields(kind)}
         for name, entry in self.entries.get(component, {}).items():
             if name not in known and not entry.inherited:
@@ -155,7 +159,7 @@ class Ship:
 
 
 def read_ship(folder: str | Path) -> Ship:
-    """Read a ship's folder, and those of the ships that she is based on beside it.
+    """Read a ship's folder, and the folders of the ships that she is based on.
 
     Parameters
     ----------
@@ -173,6 +177,7 @@ def read_ship(folder: str | Path) -> Ship:
     """
     problems: list[Problem] = []
     folder = Path(folder)
+    # Folders from the most basic to the ship herself: later ones override earlier ones.
     layers = _layers(folder, (), problems)
     names = dict.fromkeys(
         file.stem
@@ -180,20 +185,23 @@ def read_ship(folder: str | Path) -> Ship:
         for file in sorted(layer.glob("*.toml"))
         if file.stem != "ship"
     )
+    # Parameter files of each component in every folder.
     files = {name: [_read(layer / f"{name}.toml", problems) for layer in layers] for name in names}
     entries = {name: _entries(name, files, (), problems) for name in names}
     about = [_about(layer, []) for layer in layers]
+    # A described ship adds estimates; parameter files come before them.
     for layer in layers:
         for name, found in _described(layer, problems).items():
             entries[name] = found | entries.get(name, {})
     if problems:
         raise ShipcosimError(list(dict.fromkeys(problems)))
+    # The last folder that names systems decides.
     systems = next((one["systems"] for one in reversed(about) if "systems" in one), [])
     return Ship(folder.name, about[-1].get("description", ""), folder, tuple(systems), entries)
 
 
 def _described(folder: Path, problems: list[Problem]) -> dict[str, dict[str, Entry]]:
-    """What the ship file of a folder says in a naval architect's words, by component; nothing without particulars."""
+    """Entries of a ship file with particulars, by component; empty without particulars."""
     file = folder / "ship.toml"
     if not {"particulars", "thrusters"} & set(_toml(file, []) if file.is_file() else ()):
         return {}
@@ -205,23 +213,25 @@ def _described(folder: Path, problems: list[Problem]) -> dict[str, dict[str, Ent
 
 
 def _layers(folder: Path, above: tuple[Path, ...], problems: list[Problem]) -> list[Path]:
-    """Folders that say something of a ship, the later over the earlier.
+    """Folders that describe a ship, later ones over earlier ones.
 
-    Of a first base everything counts; of a further one what its own files say otherwise.
+    Of the first base everything counts, its bases included; of a further base only its own files.
     """
     if folder in above:
         circle = " -> ".join(one.name for one in (*above, folder))
         problems.append(Problem(str(folder / "ship.toml"), f"based on itself: {circle}.", ""))
         return []
+    # Bases are neighbours of the folder.
     bases = [folder.parent / name for name in _about(folder, problems).get("based_on", [])]
     if not bases:
         return [folder]
+    # Further bases add only their own files.
     further = [base for base in bases[1:] if _about(base, problems) is not None]
     return [*_layers(bases[0], (*above, folder), problems), *further, folder]
 
 
 def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
-    """What a ``ship.toml`` says, lists in place of single names."""
+    """Head of a ``ship.toml``, with lists for single names."""
     file = folder / "ship.toml"
     if not file.is_file():
         near = [path.parent.name for path in folder.parent.glob("*/ship.toml")]
@@ -229,11 +239,13 @@ def _about(folder: Path, problems: list[Problem]) -> dict[str, Any]:
             Problem(str(file), "there is no such file.", f"Ships: {suggestion(folder.name, near)}")
         )
         return {}
+    # Single names count as lists of one.
     said = _toml(file, problems)
     known = {
         key: [value] if key == "based_on" and isinstance(value, str) else value
         for key, value in said.items()
     }
+    # Sections of a described ship are read elsewhere.
     known = {key: value for key, value in known.items() if key not in _SECTIONS}
     for key, value in known.items():
         if not isinstance(value, _SHIP_KEYS.get(key, ())):
@@ -254,7 +266,7 @@ def _toml(file: Path, problems: list[Problem]) -> dict[str, Any]:
 
 
 def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
-    """Entries of a parameter file by name, and ``like`` as a list; nothing where there is no file."""
+    """Entries of a parameter file by name, and ``like`` as a list; empty without a file."""
     if not file.is_file():
         return {}
     found = {
@@ -262,6 +274,7 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
         for name, said in _toml(file, problems).items()
         if name != "like"
     }
+    # Components that this one is like.
     said = _toml(file, []).get("like", [])
     like = [said] if isinstance(said, str) else said
     if not isinstance(like, list) or not all(isinstance(one, str) for one in like):
@@ -275,7 +288,7 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
 
 
 def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry | None:
-    """What a file says of a parameter: a value, or where its table is."""
+    """An entry of a file: a value, or a table in a CSV file."""
     where = f"{file}: {name}"
     is_table = isinstance(said, dict) and "table" in said
     if wrong := _wrong_keys(said, _TABLE_KEYS if is_table else _VALUE_KEYS):
@@ -297,7 +310,7 @@ def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry |
 
 
 def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
-    """What is wrong with the keys of an entry, and with what stands under them."""
+    """Problems with the keys of an entry and their values."""
     if not isinstance(said, dict):
         return [f"found {said!r}"]
     wrong = [f"'{key}' is no key" for key in said if key not in keys]
@@ -313,10 +326,12 @@ def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
 def _entries(
     name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
 ) -> dict[str, Entry]:
-    """What a ship's files say of a component: of those that it is like, the first before the next, then of itself."""
+    """Entries of a component: its own, over those of the components that it is like."""
     layers = files.get(name, [])
     found = {}
+    # The last folder that says what the component is like decides.
     likes = next((layer["like"] for layer in reversed(layers) if layer.get("like")), [])
+    # In reverse order, so that the first of them wins.
     for like in reversed(likes):
         if like in (*above, name) or like not in files:
             wrong = (
@@ -327,7 +342,9 @@ def _entries(
             )
             continue
         taken = _entries(like, files, (*above, name), problems)
+        # Inherited entries need not exist in this component.
         found |= {key: entry._replace(inherited=True) for key, entry in taken.items()}
+    # Entries of the folders in turn; only the ship's own files must be known exactly.
     for layer in layers:
         own = {key: entry for key, entry in layer.items() if key != "like"}
         found |= (
@@ -340,10 +357,12 @@ def _entries(
 
 def _quantity(field: Field, entry: Entry | None, problems: list[Problem]) -> Quantity:
     about = field.metadata
+    # No entry: the default of the model.
     if entry is None:
         return Quantity(
             field.default, about["unit"], about["description"], about["origin"], about["tolerance"]
         )
+    # Whole numbers are fine for a float.
     value = (
         float(entry.value) if about["kind"] is float and _is_number(entry.value) else entry.value
     )
@@ -356,10 +375,11 @@ def _quantity(field: Field, entry: Entry | None, problems: list[Problem]) -> Qua
 
 
 def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str]:
-    """What is wrong with a value, and what would be right; both empty where it is right."""
+    """Problem of a value and its remedy; both empty where it is right."""
     kind = about["kind"]
     low = about["minimum"]
     high = about["maximum"]
+    # Type, and a table where a table is needed.
     if type(value) is not kind or (entry.columns and not about["columns"]):
         wanted = (
             f"a table with the columns {', '.join(about['columns'])}"
@@ -367,6 +387,7 @@ def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str
             else kind.__name__
         )
         return f"found {str(value)[:60]!r}.", f"Give {wanted}."
+    # Columns and unit must be those that the model declares.
     if entry.columns != about["columns"]:
         return (
             f"the columns are {', '.join(entry.columns)}.",
@@ -374,8 +395,10 @@ def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str
         )
     if entry.unit != about["unit"]:
         return f"the unit is '{entry.unit}'.", f"It must be '{about['unit']}'."
+    # NaN and infinity would spread through the simulation.
     if kind is float and not math.isfinite(value):
         return f"found {value}.", "Give a finite number."
+    # Bounds of the model.
     if kind is not str and (low is not None and value < low or high is not None and value > high):
         bounds = [
             f"at least {low:g}" if low is not None else "",
@@ -385,6 +408,7 @@ def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str
             f"found {value!r}.",
             f"It must be {' and '.join(filter(None, bounds))} {about['unit']}.",
         )
+    # The value must lie within its own uncertainty.
     if (
         kind is float
         and entry.uncertainty

@@ -1,4 +1,4 @@
-"""A number as a ship file gives it: plain, as a text with a unit, or as a table with tolerance and origin."""
+"""A number in a ship file: plain, a text with a unit, or a table with tolerance and origin."""
 
 import math
 import re
@@ -56,6 +56,7 @@ def reader(
         if found is None or isinstance(found, Given):
             return found
         given = given_in_unit(found, unit)
+        # Zero as a bound means positive: a length of 0 m is missing, not short.
         if least is not None and not (
             given.value > least if least == 0.0 else given.value >= least
         ):
@@ -98,6 +99,7 @@ def number_in(found: Any, unit: str) -> float:
     >>> number_in(2650, "kg")
     2650.0
     """
+    # A text with a unit is converted; a plain number has the unit of the key.
     if isinstance(found, str) and not _PLAIN.fullmatch(found):
         value = units.number_in(found, units.spelled_unit(unit))
     elif isinstance(found, (int, float, str)) and not isinstance(found, bool):
@@ -106,19 +108,21 @@ def number_in(found: Any, unit: str) -> float:
         raise ValueError(
             f"found {_text(found)}. Write a number in {unit}, or a text such as '12.5 {unit}'."
         )
+    # Values of this size are typing errors.
     if not math.isfinite(value) or abs(value) > 1e20:
         raise ValueError(f"found {_text(found)}. Give a finite number.")
     return value
 
 
 def given_in_unit(found: Any, unit: str) -> Given:
-    """A number, a text with a unit or a table of a file, in a unit.
+    """Read a number, a text with a unit or a table of a file, in a given unit.
 
     Raises
     ------
     ValueError
         With what would be right.
     """
+    # Plain numbers and texts.
     if not isinstance(found, dict):
         return Given(number_in(found, unit))
     if wrong := [key for key in found if key not in _KEYS]:
@@ -127,6 +131,7 @@ def given_in_unit(found: Any, unit: str) -> Given:
         raise ValueError(
             "'value' is missing. Write { value = 1.0, tolerance = 0.1, origin = \"drawing\" }."
         )
+    # The table may have a unit of its own, for value, tolerance and uncertainty.
     own = found.get("unit", unit)
     origin = found.get("origin", "")
     if not isinstance(own, str) or not isinstance(origin, str):
@@ -135,10 +140,12 @@ def given_in_unit(found: Any, unit: str) -> Given:
     def number(one: Any) -> float:
         return number_in(one if isinstance(one, str) else f"{number_in(one, own)!r} {own}", unit)
 
+    # Convert the standard deviation by the same unit.
     tolerance = None if "tolerance" not in found else number(found["tolerance"])
     if tolerance is not None and tolerance < 0.0:
         raise ValueError(f"the tolerance is {tolerance:g}. It is a standard deviation, at least 0.")
     value = number(found["value"])
+    # Least and largest value of several sources.
     both = found.get("uncertainty", [])
     if not isinstance(both, list) or len(both) not in (0, 2):
         raise ValueError("uncertainty is the least and the largest value, [0.6, 1.5].")

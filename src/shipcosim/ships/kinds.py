@@ -1,4 +1,4 @@
-"""Which classes of parameters an FMU of a ship has, and which FMU a kind of thruster is."""
+"""Parameter classes of each FMU of a ship, and the FMU of each kind of thruster."""
 
 from dataclasses import fields
 

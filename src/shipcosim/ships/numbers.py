@@ -1,4 +1,4 @@
-"""Parameters of one component, put together: what the ship file gives, else what a formula estimates."""
+"""Parameters of one component: given by the ship file, else estimated by formulae."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -42,9 +42,10 @@ class Numbers:
     entries: dict[str, Entry] = field(default_factory=dict)
 
     def give(self, name: str, given: Given | None) -> bool:
-        """Take a number that the file gives; says whether it does."""
+        """Take a number from the file; return whether there is one."""
         if given is None:
             return False
+        # Origin: the number's own, else that of the file.
         origin = given.origin or self.source or PLAIN
         unit = units_of(self.fmu)[name]
         more = given.tolerance or 0.0, origin, (), f"{self.where}: {name}", given.uncertainty
@@ -52,7 +53,7 @@ class Numbers:
         return True
 
     def estimate(self, name: str, estimate: EstimatedNumber) -> None:
-        """Take what a formula gives, where nothing is known yet."""
+        """Take an estimate where no value is given."""
         if name in self.entries:
             return
         unit = units_of(self.fmu)[name]
@@ -62,18 +63,18 @@ class Numbers:
         self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
 
     def estimates(self, found: dict[str, EstimatedNumber]) -> None:
-        """Take all of these where nothing is known yet."""
+        """Take all estimates for which no value is given."""
         for name, estimate in found.items():
             self.estimate(name, estimate)
 
     def table(self, name: str, file: str) -> None:
-        """Take a table in a CSV file beside the ship file."""
+        """Take a table from a CSV file next to the ship file."""
         entry = table_entry(self.folder / file, f"{self.where}: {name}", self.problems)
         if entry is not None:
             self.entries[name] = entry
 
     def coefficients(self, found: dict[str, Any]) -> None:
-        """Take parameters that the file gives by the names that the FMU has for them."""
+        """Take parameters that the file gives under the FMU's own names."""
         units = units_of(self.fmu)
         for name, value in found.items():
             if name not in units:

@@ -1,4 +1,4 @@
-"""Parameters of a ship as they stand in an SSV."""
+"""Parameters of a ship as in an SSV."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -23,6 +23,7 @@ def parameter_values(ship: Ship, components: Mapping[str, tuple[type, ...]]) -> 
     """
     for component, quantities in ship.parameter_set(components).items():
         for name, q in quantities.items():
+            # Dimensionless and text values have no unit; the description carries the origin.
             unit = q.unit if isinstance(q.value, float) and q.unit != "1" else None
             text = f"{q.description}; {q.origin}"
             if q.uncertainty:

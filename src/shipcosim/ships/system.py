@@ -76,13 +76,16 @@ def make_systems(
     known = ship if isinstance(ship, Described) else describe(Path(ship))
     folders = [Path(folder) for folder in fmus]
     made = []
+    # Every ship gets an open system; a DP system only if her thrusters allow it.
     kinds = ["open"] if why_no_dp(known) else ["open", "dp"]
     for kind in kinds:
         name = f"{known.name}_{kind}"
         entries = known.entries | (dp_entries(known) if kind == "dp" else {})
         system = structure(known, kind, folders)
         folder = Path(out) / name
+        # Values of all components; estimates included.
         values = list(parameter_values(_as_ship(known, entries), _kinds(known, kind)))
+        # In an open system thrusters follow measured inputs instead of commands.
         if kind == "open":
             follow = "follows the inputs of the system, not a command"
             values += [
@@ -90,6 +93,7 @@ def make_systems(
                 for u in known.units
                 if u.fmu in REPLAYED
             ]
+        # Write the structure, then the values, then bind them: the check needs both.
         system.write(folder, fmus=False)
         write_ssv(folder / "resources" / f"{known.name}.ssv", known.name, values)
         bound = read(folder, fmus=folders)
@@ -100,7 +104,7 @@ def make_systems(
 
 
 def check_numbers(ship: Described) -> list[Problem]:
-    """What the parameters of a ship's components object to: missing, out of bounds, of another unit.
+    """Problems of a ship's parameters: missing, out of bounds, wrong unit.
 
     Parameters
     ----------
@@ -130,6 +134,7 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
         If an FMU is missing.
     """
     folders = list(fmus)
+    # Components first, then connections: each block is checked at its end.
     system = new(f"{ship.name}_{kind}")
     components = {"environment": "environment", "vessel": "vessel"} | {
         unit.name: unit.fmu for unit in ship.units
@@ -138,13 +143,16 @@ def structure(ship: Described, kind: str, fmus: Iterable[Path]) -> SystemStructu
     with system.changes():
         for name, fmu in components.items():
             system.add_component(name, _fmu(fmu, folders))
+    # Wires of ship and weather, and those of the loop.
     wires = [*_around(ship.units), *(_loop_wires(ship) if kind == "dp" else ())]
     with system.changes():
         for source, target in wires:
             system.connect(source, target)
+        # Commands and weather come from outside in an open system.
         if kind == "open":
             _open_to_outside(system, ship)
     system.description = f"{ship.file.description or ship.name}: {SAID[kind]}"
+    # Default experiment of the system.
     system.start_time = 0.0
     system.stop_time = LONG_RUN
     system.step_size = STEP
@@ -161,8 +169,10 @@ def _fmu(name: str, folders: list[Path]) -> Path:
 
 
 def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:
-    """Wires between weather, hull and thrusters."""
+    """Connections between weather, hull and thrusters."""
+    # The environment acts on the hull.
     yield from ((f"environment.{name}", f"vessel.{name}") for name in (*WEATHER, *SEA))
+    # Each thruster gives its load to the hull, and gets the flow at the hull.
     for number, unit in enumerate(units, 1):
         yield from ((f"{unit.name}.tau_{axis}", f"vessel.tau_{axis}_{number}") for axis in "XYN")
         flow = ("u_r",) if unit.fmu == "tunnel_thruster" else ("u_r", "v_r", "r")
@@ -170,7 +180,7 @@ def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:
 
 
 def _open_to_outside(system: SystemStructure, ship: Described) -> None:
-    """Inputs of an open system."""
+    """Inputs of an open system: commands of thrusters, wind and current."""
     for unit in ship.units:
         for name, unit_of, target, said in _commands(unit, ship):
             system.add_connector(name, "input", unit=unit_of, description=said)
@@ -181,7 +191,8 @@ def _open_to_outside(system: SystemStructure, ship: Described) -> None:
 
 
 def _commands(unit: ShipThruster, ship: Described) -> Iterable[tuple[str, str | None, str, str]]:
-    """Inputs of a thruster from outside: name, unit, input of the FMU, meaning."""
+    """Inputs of a thruster from outside: name, unit, FMU input, description."""
+    # The command is a force, a map's command, or a speed.
     by_thrust = any(
         one.name == unit.name and getattr(one, "command", "") == "thrust"
         for one in ship.file.thrusters
@@ -197,6 +208,7 @@ def _commands(unit: ShipThruster, ship: Described) -> Iterable[tuple[str, str | 
         )
     else:
         yield f"{unit.name}_rpm", "rpm", "rpm_in", f"speed of thruster {unit.name}"
+    # Azimuths and rudders also have an angle.
     if unit.kind == "azimuth":
         yield (
             f"{unit.name}_azimuth",
@@ -214,13 +226,16 @@ def _commands(unit: ShipThruster, ship: Described) -> Iterable[tuple[str, str | 
 
 
 def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
-    """Wires of the DP."""
+    """Connections of the DP loop."""
+    # Ship to sensors, sensors and reference to controller.
     yield from ((f"vessel.{name}", f"sensors.{name}") for name in (*TRUTH, *APPARENT))
     yield from ((f"sensors.{name}", f"controller.{name}") for name in MEASURED)
     yield from ((f"reference.{name}", f"controller.{name}") for name in DESIRED)
+    # Requested load to the allocator, allocated load back to the observer.
     for axis in "XYN":
         yield f"controller.tau_{axis}_cmd", f"allocator.tau_{axis}_cmd"
         yield f"allocator.tau_{axis}", f"controller.tau_{axis}_allocated"
+    # Commands to each thruster, and its availability back.
     for number, unit in enumerate(units_for_dp(ship), 1):
         given = "thrust_in" if unit.fmu == "fixed_thruster" else "thrust_cmd"
         yield f"allocator.thrust_cmd_{number}", f"{unit.name}.{given}"
@@ -231,7 +246,7 @@ def _loop_wires(ship: Described) -> Iterable[tuple[str, str]]:
 
 
 def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:
-    """Classes of parameters by component."""
+    """Parameter classes by component."""
     found = {"vessel": PARAMETERS["vessel"]} | {
         unit.name: PARAMETERS[FMU_OF[unit.kind]] for unit in ship.units
     }

@@ -40,7 +40,7 @@ HALF_TURN = 0.25 * pi
 
 @dataclass(frozen=True, kw_only=True)
 class ShipThruster:
-    """A thruster with its parameters, and what the DP may ask of it.
+    """A thruster with its parameters, and its limits for the DP.
 
     Attributes
     ----------
@@ -71,6 +71,7 @@ class ShipThruster:
     @property
     def effect(self) -> tuple[float, float, float]:
         """Load of one newton: X, Y, N. [1, 1, m]"""
+        # Effect of one newton at its place: (cos a, sin a, x sin a - y cos a).
         c = cos(self.direction)
         s = sin(self.direction)
         return c, s, self.x * s - self.y * c
@@ -83,7 +84,7 @@ def units_of_ship(
     file: Path,
     problems: list[Problem],
 ) -> list[ShipThruster]:
-    """Thrusters with all their parameters.
+    """Make all thrusters with all their parameters.
 
     Parameters
     ----------
@@ -103,7 +104,9 @@ def units_of_ship(
         own = Numbers(
             FMU_OF[one.kind], f"{file}: thruster {one.name}", file.parent, source, problems
         )
+        # Coefficients with the FMU's names come first.
         own.coefficients(one.coefficients)
+        # A tunnel lies on the centreline; all others need both coordinates.
         needed = ("x",) if isinstance(one, Tunnel) else ("x", "y")
         if missing := [name for name in needed if getattr(one, name) is None]:
             found = f"nothing says {' and '.join(missing)}."
@@ -111,6 +114,7 @@ def units_of_ship(
                 Problem(own.where, found, 'x is forward of midships, y to starboard: x = "-12 m".')
             )
             continue
+        # For a rudder, x is the place of the propeller.
         if one.kind == "rudder":
             own.give("propeller_x", one.x)
         else:
@@ -163,7 +167,8 @@ def _unit(
 def _screw(
     one: FixedPropeller | Azimuth | Tunnel, own: Numbers, form: HullDimensions, kind: str
 ) -> Screw | None:
-    """Propeller of a thruster, what is missing estimated; None, and a problem, where too little is known."""
+    """Propeller of a thruster, missing data estimated; None and a problem if that fails."""
+    # Diameter, and power or thrust, are the least that an estimate needs.
     if one.diameter is None or (one.power is None and one.thrust is None):
         missing = "diameter" if one.diameter is None else "power or thrust"
         remedy = 'Give diameter and power, power = "500 kW"; thrust at the bollard and rpm where they are known.'
@@ -171,9 +176,11 @@ def _screw(
         return None
     D = one.diameter.value
     density = form.density
+    # Missing thrust from power by DNV-ST-0111, or missing power from thrust by its inverse.
     usual = bollard_thrust(kind, D, number(one.power)) if one.power else None
     thrust = one.thrust.value if one.thrust else float(usual.value if usual else 0.0)
     power = one.power.value if one.power else 1000.0 / D / 0.95 * (thrust / _dnv(kind)) ** 1.5
+    # Missing speed from a usual thrust coefficient.
     rpm = one.rpm.value if one.rpm else float(shaft_speed(kind, D, thrust, density).value)
     return Screw(kind=kind, diameter=D, power=power, thrust=thrust, rpm=rpm, density=density)
 
@@ -183,7 +190,7 @@ def _dnv(kind: str) -> float:
 
 
 def _said(one: FixedPropeller | Azimuth | Tunnel) -> str:
-    """What of a propeller's thrust and speed is estimated."""
+    """Names the parts of a propeller's thrust and speed that are estimated."""
     parts = [] if one.thrust else ["thrust by DNV-ST-0111"]
     parts += [] if one.rpm else ["speed by a usual thrust coefficient"]
     parts += [] if one.power else ["power by DNV-ST-0111"]
@@ -191,22 +198,26 @@ def _said(one: FixedPropeller | Azimuth | Tunnel) -> str:
 
 
 def _share(one: FixedPropeller | Azimuth | Tunnel) -> float:
-    """Tolerance of the thrust at a shaft speed."""
+    """Relative tolerance of the thrust at a shaft speed, larger for estimates."""
     return 0.05 + (0.0 if one.thrust else 0.15) + (0.0 if one.rpm else 0.15)
 
 
 def _fixed(one: FixedPropeller, own: Numbers, form: HullDimensions) -> ShipThruster | None:
+    # Limits of thrust ahead and astern, as given or usual.
     own.give("direction", one.direction)
     direction = number(one.direction)
     most = number(one.thrust)
     least = -number(one.thrust_astern, ASTERN["open"] * most)
+    # With given coefficients, thrust is their value times the squared speed.
     if "coefficient_ahead" in own.entries and one.rpm is not None:
         square = (one.rpm.value * pi / 30.0) ** 2
         astern = own.entries.get("coefficient_astern")
         most = float(own.entries["coefficient_ahead"].value) * square
         least = -(float(astern.value) * square if astern else 0.0)
+    # No propeller is needed where the thrust is commanded or its coefficients are known.
     if one.command == "thrust" or "coefficient_ahead" in own.entries:
         return _unit(one, own, least, most, most / RISE, direction)
+    # Else estimate coefficients from the propeller: thrust over squared shaft speed.
     screw = _screw(one, own, form, "open")
     if screw is None:
         return None
@@ -218,6 +229,7 @@ def _fixed(one: FixedPropeller, own: Numbers, form: HullDimensions) -> ShipThrus
     own.estimate("coefficient_ahead", within(screw.thrust / speed**2, _share(one), source))
     astern = source if one.thrust_astern else f"0.7 of ahead; {source}"
     own.estimate("coefficient_astern", within(-least / speed**2, 0.1 + _share(one), astern))
+    # Advance speed at which thrust vanishes at full shaft speed.
     zero = ZERO_THRUST["open"] * screw.thrust_coefficient * screw.rpm / 60.0 * screw.diameter
     own.estimate(
         "speed_loss", within(1.0 / zero, 0.3, "no thrust at the advance ratio 2.4 KT of full speed")
@@ -226,10 +238,12 @@ def _fixed(one: FixedPropeller, own: Numbers, form: HullDimensions) -> ShipThrus
 
 
 def _azimuth(one: Azimuth, own: Numbers, form: HullDimensions) -> ShipThruster | None:
+    # A duct changes thrust and losses.
     kind = "ducted" if one.ducted else "open"
     screw = _screw(one, own, form, kind)
     if screw is None:
         return None
+    # Diameter and thrust from the file, else by DNV-ST-0111.
     own.give("diameter", one.diameter)
     own.estimate("water_density", EstimatedNumber(form.density, 0.0, "that of the ship's water"))
     least = -number(one.thrust_astern, ASTERN[kind] * screw.thrust)
@@ -239,7 +253,9 @@ def _azimuth(one: Azimuth, own: Numbers, form: HullDimensions) -> ShipThruster |
         "thrust_min",
         within(least, 0.15, "as given" if one.thrust_astern else f"{ASTERN[kind]} of ahead"),
     )
+    # Open-water curves, motor and drive.
     own.estimates(curves(screw) | drive(screw, number(one.rise_time, RISE)))
+    # A factor 1 on the thrust carries its tolerance for the diagnosis.
     own.estimate(
         "thrust_scale",
         EstimatedNumber(
@@ -252,6 +268,7 @@ def _azimuth(one: Azimuth, own: Numbers, form: HullDimensions) -> ShipThruster |
         "side_force_coefficient",
         EstimatedNumber(0.8, 0.3, "momentum drag of a ducted unit; assumed for others"),
     )
+    # The DP holds azimuths outwards, so that they can give sway force and yaw moment.
     outwards = HALF_TURN if number(one.y) > 0.0 else -HALF_TURN
     return _unit(
         one, own, least, screw.thrust, screw.thrust / number(one.rise_time, RISE), outwards, screw
@@ -262,15 +279,18 @@ def _tunnel(one: Tunnel, own: Numbers, form: HullDimensions) -> ShipThruster | N
     screw = _screw(one, own, form, "tunnel")
     if screw is None:
         return None
+    # Thrust and torque over squared speed.
     source = f"{screw.thrust:.4g} N at {screw.rpm:.4g} rpm; {_said(one)}".rstrip("; ")
     own.estimate("thrust_coefficient", within(screw.thrust / screw.rpm**2, _share(one), source))
     own.estimate(
         "torque_coefficient",
         within(screw.torque / screw.rpm**2, 0.1, f"{screw.power:.4g} W at that speed"),
     )
+    # Tunnels lose thrust with forward speed.
     own.estimate(
         "speed_loss", EstimatedNumber(0.207, 0.1, "1/e left at 2.2 m/s, typical of bow tunnels")
     )
+    # The same limits to both sides.
     own.estimate("thrust_max", within(screw.thrust, 0.1, source))
     own.estimate("thrust_min", within(-screw.thrust, 0.1, source))
     own.estimates(drive(screw, number(one.rise_time, RISE)))
@@ -279,6 +299,7 @@ def _tunnel(one: Tunnel, own: Numbers, form: HullDimensions) -> ShipThruster | N
 
 
 def _mapped(one: ThrustMap, own: Numbers) -> ShipThruster | None:
+    # Map from a CSV file, or rows in the ship file.
     if isinstance(one.table, str):
         own.table("thrust_table", one.table)
     else:
@@ -290,6 +311,7 @@ def _mapped(one: ThrustMap, own: Numbers) -> ShipThruster | None:
         own.give(name, getattr(one, name))
     if "thrust_table" not in own.entries:
         return None
+    # Limits for the DP: both ends of the map.
     try:
         made = MapParameters(x=0.0, y=0.0, thrust_table=str(own.entries["thrust_table"].value))
         least = within_map(-LARGE, thruster=made)
@@ -298,6 +320,7 @@ def _mapped(one: ThrustMap, own: Numbers) -> ShipThruster | None:
         remedy = "Rows of command and thrust in N, at least two, both increasing."
         own.problems.append(Problem(own.where, f"{error}", remedy))
         return None
+    # A map that gives thrust only to one side has 0 as its other limit.
     least = min(float(least), 0.0)
     most = max(float(most), 0.0)
     return _unit(one, own, least, most, max(most, -least) / RISE, number(one.direction))
@@ -311,6 +334,7 @@ def _rudder(
             Problem(own.where, "nothing says diameter.", 'Give that of the propeller: "5.8 m".')
         )
         return None
+    # Propeller: KT from thrust and speed, else a usual value behind a ship.
     D = one.diameter.value
     density = form.density
     x = number(one.x)
@@ -319,6 +343,7 @@ def _rudder(
     KT = USUAL_KT["open"] - 0.05
     if one.thrust is not None and one.rpm is not None:
         KT = one.thrust.value / (density * (one.rpm.value / 60.0) ** 2 * D**4)
+    # KT = KT0 (1 - 0.75 J/J0 - 0.25 J^2/J0^2), as for other open propellers.
     zero = ZERO_THRUST["open"] * KT
     for name, value in (("k0", KT), ("k1", -0.75 * KT / zero), ("k2", -0.25 * KT / zero**2)):
         own.estimate(
@@ -327,6 +352,7 @@ def _rudder(
                 value, 0.2, "form of the Wageningen B series, KT 0.30 unless thrust and rpm say it"
             ),
         )
+    # Area by DNV's rule; span from a usual aspect ratio of 1.8.
     area = (
         rudder_area(form)
         if one.rudder_area is None
@@ -335,14 +361,17 @@ def _rudder(
     if not own.give("rudder_area", one.rudder_area):
         own.estimate("rudder_area", area)
     span = number(one.rudder_span, sqrt(1.8 * float(area.value)))
+    # The rudder stands half a diameter behind the propeller.
     if not own.give("rudder_x", one.rudder_x):
         own.estimate(
             "rudder_x",
             EstimatedNumber(x - 0.5 * D, 0.1 * D, "half a diameter behind the propeller"),
         )
+    # Wake, deduction and interaction with the hull, by regressions.
     own.estimates(
         propeller_and_rudder(
             form, single=alone, span=span, area=float(area.value), covered=D / span
         )
     )
+    # The DP does not use it: there is no thrust command.
     return _unit(one, own, 0.0, 0.0, 0.0, 0.0)

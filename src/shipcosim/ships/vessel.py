@@ -46,6 +46,7 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
     problems : list of Problem
         Gets what is missing.
     """
+    # Dimensions that nothing can replace.
     p = ship.particulars or Particulars()
     m = ship.mass
     needed = ["length", "breadth", "draught"] + (["hull_breadth"] if p.hulls > 1 else [])
@@ -55,20 +56,24 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
         problems.append(
             Problem(f"{where}: particulars", found, 'Write, for example, length = "28.9 m".')
         )
+    # Mass, displacement or block coefficient: one of them is needed.
     heavy = m.mass or p.displacement
     if heavy is None and p.block_coefficient is None:
         remedy = "Give mass.mass, particulars.displacement or particulars.block_coefficient."
         problems.append(Problem(f"{where}: mass", "nothing says how heavy she is.", remedy))
     if missing or (heavy is None and p.block_coefficient is None):
         return None
+    # Dimensions of one hull.
     L = number(p.length)
     T = number(p.draught)
     B = number(p.hull_breadth if p.hulls > 1 else p.breadth)
     density = number(p.water_density, SEA_WATER)
+    # Block coefficient from the mass, where it is not given.
     filled = number(heavy) / (density * p.hulls * L * B * T)
     block = min(
         max(number(p.block_coefficient, filled), 0.05), 1.0
     )  # what cannot be is said by the check
+    # Usual service speed at Froude number 0.2.
     speed = number(p.service_speed, USUAL_FROUDE * sqrt(GRAVITY * L))
     return HullDimensions(
         length=L, breadth=B, draught=T, block=block, hulls=p.hulls, density=density, speed=speed
@@ -90,6 +95,7 @@ def vessel_of(
     problems : list of Problem
         Gets what is wrong.
     """
+    # Coefficients of the file first; each step fills in what is still missing.
     own = Numbers("vessel", f"{file}: hull", file.parent, ship.source, problems)
     own.coefficients(ship.hull)
     p = ship.particulars or Particulars()
@@ -104,23 +110,28 @@ def vessel_of(
 
 def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> None:
     """Mass, inertia, added mass."""
+    # Mass: given, or from the displaced volume.
     if not own.give("mass", m.mass or p.displacement):
         own.estimate("mass", EstimatedNumber(form.mass, 0.05 * form.mass, "rho C_B L B T"))
     mass = float(own.entries["mass"].value)
     own.give("centre_of_gravity_x", m.centre_of_gravity_x)
     centre = number(m.centre_of_gravity_x)
+    # Inertia: given, from a gyration radius, or by the rule of a quarter length.
     if not own.give("inertia_yaw", m.inertia_yaw):
         gyradius = m.yaw_gyradius
         if gyradius is not None:
+            # Tolerance of m k^2: 2 m k times that of k.
             tolerance = (
                 None
                 if gyradius.tolerance is None
                 else 2.0 * mass * gyradius.value * gyradius.tolerance
             )
+            # Steiner's theorem moves it from the centre of gravity to midships.
             value = mass * (gyradius.value**2 + centre**2)
             own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
         else:
             own.estimate("inertia_yaw", inertia_yaw(mass, form.length, centre))
+    # Added mass: as given, else by formulae.
     own.give("A11", m.added_surge)
     own.give("A22", m.added_sway)
     for name in ("A26", "A62"):
@@ -130,23 +141,27 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> 
 
 
 def _resistance(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+    # Damping coefficients of the file replace an estimate.
     known = ship.resistance
     if any(name in own.entries for name in ALONG):
         return
+    # One point of a speed trial gives the quadratic damping.
     if known.resistance is not None and known.speed is not None:
         tolerance = known.resistance.tolerance
         square = known.speed.value**2
         share = None if tolerance is None else tolerance / square
         own.give("X_uu", Given(-known.resistance.value / square, share, known.resistance.origin))
         return
+    # Else Holtrop and Mennen, with any data of the hull that the file has.
     surface = known.wetted_surface.value if known.wetted_surface else None
     factor = known.form_factor.value if known.form_factor else None
     own.estimate("X_uu", drag_coefficient(form, surface, factor))
 
 
 def _across(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
-    """Drag across and manoeuvring derivatives, estimated where the file gives no coefficients at all across."""
+    """Cross-flow drag and manoeuvring derivatives, estimated if the file has none of them."""
     own.give("cross_flow_drag", ship.drag.cross_flow)
+    # The coefficients of a hull belong together: mixing given and estimated ones would be wrong.
     across = {name for _, names in CONTRIBUTIONS.values() for name in names} - {
         *ALONG,
         "added_mass_coriolis",
@@ -154,11 +169,13 @@ def _across(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     if across & set(ship.hull):
         return
     own.estimate("cross_flow_drag", cross_flow_drag(form))
+    # The derivatives hold for single hulls only.
     if form.hulls == 1:
         own.estimates(manoeuvring_derivatives(form, float(own.entries["A22"].value)))
 
 
 def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+    # Wind: a table, none, or Blendermann's formulae.
     w = ship.wind
     own.give("wind_load_scale", w.scale)
     if w.table is not None and w.table != NONE:
@@ -169,6 +186,7 @@ def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
         )
     else:
         _wind(own, ship, form)
+    # Waves: a table, none, or reflection at the hull.
     if ship.waves.table is not None and ship.waves.table != NONE:
         own.table("drift_table", ship.waves.table)
     elif ship.waves.table == NONE:
@@ -179,15 +197,17 @@ def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
 
 
 def _wind(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
-    """Blendermann's loads of areas that are given or estimated."""
+    """Blendermann's wind loads with given or estimated areas."""
     w = ship.wind
     breadth = number((ship.particulars or Particulars()).breadth)
+    # Areas: given, or usual for her dimensions.
     both = (w.front_area, front_area(breadth)), (w.side_area, side_area(form.length))
     front, side = (float(one.value) if given is None else given.value for given, one in both)
     found = wind_table(w.kind or USUAL_KIND, front, side, number(w.side_centre_x), form.length)
     unknown = [one for given, one in both if given is None]
     source = found.source + "".join(f"; {one.source}" for one in unknown)
     own.estimate("wind_table", found._replace(source=source))
+    # Estimated areas make the load less certain.
     share = 0.2 if not unknown else 0.45
     own.estimate(
         "wind_load_scale",

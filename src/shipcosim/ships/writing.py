@@ -1,4 +1,4 @@
-"""A new ship file from a few particulars: its text, and what is usual where nothing is said."""
+"""A new ship file from a few particulars: its text, and usual values for the rest."""
 
 from dataclasses import dataclass, field
 from math import sqrt
@@ -22,7 +22,7 @@ GRAVITY = 9.81
 
 
 class Usual(str):
-    """An answer that nobody gave: what is usual."""
+    """An answer that is a usual value, not given by the user."""
 
 
 @dataclass
@@ -55,7 +55,7 @@ class Answers:
 
 
 def usual(answers: Answers, key: str) -> str:
-    """What is usual of a ship of which this much is known.
+    """Usual value for a ship of which so much is known.
 
     Parameters
     ----------
@@ -75,11 +75,13 @@ def usual(answers: Answers, key: str) -> str:
     """
     if not answers.length:
         return Usual("30 m") if key == "length" else ""
+    # Usual proportions: breadth from length, draught from breadth.
     L = number_in(answers.length, "m")
     B = number_in(answers.breadth, "m") if answers.breadth else 1.55 * L**0.54
     T = number_in(answers.draught, "m") if answers.draught else B / 3.0
     if key in ("breadth", "draught"):
         return Usual(f"{B if key == 'breadth' else T:.2g} m")
+    # Displacement by a usual block coefficient, speed by Froude number 0.25.
     mass = (
         number_in(answers.displacement, "kg")
         if answers.displacement
@@ -90,6 +92,7 @@ def usual(answers: Answers, key: str) -> str:
         return Usual(f"{_round(mass / 1000.0)} t")
     if key == "speed":
         return Usual(f"{speed * 3600.0 / 1852.0:.2g} kn")
+    # Power from the resistance at service speed and a usual efficiency.
     block = min(max(mass / 1025.0 / (L * B * T), 0.2), 1.0)
     form = HullDimensions(
         length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed
@@ -114,6 +117,7 @@ def ship_text(answers: Answers) -> str:
     ShipcosimError
         With everything that is missing.
     """
+    # Dimensions have no usual value without each other.
     missing = [key for key in ("length", "breadth", "draught") if not getattr(answers, key)]
     if missing:
         found = f"nothing says {', '.join(missing)}."
@@ -122,6 +126,7 @@ def ship_text(answers: Answers) -> str:
                 "new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'
             )
         )
+    # Given thrusters, else usual ones for the layout.
     try:
         thrusters = answers.thrusters or _thrusters(answers)
     except ValueError as error:
@@ -162,19 +167,22 @@ def thruster_from(text: str) -> dict[str, str]:
 
 
 def _thrusters(answers: Answers) -> list[dict[str, str]]:
-    """Usual thrusters of a ship of this size."""
+    """Usual thrusters for a ship of this size."""
     if answers.layout not in LAYOUTS:
         raise ValueError(f"propulsion is {answers.layout!r}. {suggestion(answers.layout, LAYOUTS)}")
+    # Places and diameters in proportion to the dimensions.
     L, B, T = (number_in(getattr(answers, key), "m") for key in ("length", "breadth", "draught"))
     power = number_in(answers.power or usual(answers, "power"), "W") / 1000.0
     aft = _m(-0.45 * L)
     side = 0.25 * B
     wheel = _m(0.55 * T)
+    # Bow thruster with a third of the propulsion power.
     bow = {"kind": "tunnel", "x": _m(0.4 * L), "diameter": _m(0.35 * T), "power": _kW(0.35 * power)}
     if answers.layout == "rudder":
         return [
             {"name": "propeller", "kind": "rudder", "x": aft, "y": "0 m", "diameter": _m(0.65 * T)}
         ]
+    # Two equal propellers share the power.
     half = {"x": aft, "diameter": wheel, "power": _kW(0.5 * power)}
     pair = {"port": _m(-side), "starboard": _m(side)}
     if answers.layout == "screws":
@@ -196,7 +204,7 @@ def _kW(value: float) -> str:
 
 
 def _round(value: float) -> str:
-    """Two digits and a half."""
+    """Three significant digits, without trailing zeros."""
     return f"{float(f'{value:.3g}'):g}"
 
 

@@ -45,7 +45,7 @@ def check_system(
 
 
 def problems_of(system: System | None, findings: Findings) -> list[Problem]:
-    """Findings about a system, each once, with remarks on what its FMUs lack and on algebraic loops.
+    """Findings about a system, each once, with remarks on platforms and algebraic loops.
 
     Parameters
     ----------
@@ -58,11 +58,13 @@ def problems_of(system: System | None, findings: Findings) -> list[Problem]:
     -------
     list of Problem
     """
+    # Each FMU once, however many components use it.
     described = (
         {} if system is None else {part.fmu.path: part.fmu for part in system.components.values()}
     )
     for fmu in described.values():
         _remark_platform(fmu, fmu.path.name, findings)
+    # Loops can only be found in a system that can be read.
     loops = [] if system is None or findings.errors else loop_problems(system)
     return list(dict.fromkeys([*findings.problems, *loops]))
 
@@ -83,10 +85,12 @@ def check_file(
     -------
     list of Problem
     """
+    # A variant may be named after '#': the ending before it decides.
     suffix = Path(str(path).partition("#")[0]).suffix.lower()
     if suffix in (".ssp", ".ssd", ".xml") or Path(path).is_dir():
         return check_system(path, fmus=fmus)
     findings = Findings()
+    # An FMU is described, not run; other files are read by their kind.
     if suffix == ".fmu":
         fmu = describe_fmu(path, findings)
         if fmu is not None:
@@ -116,7 +120,7 @@ def _remark_platform(fmu: FmuDescription, where: str, findings: Findings) -> Non
 
 
 def this_platform() -> tuple[str, str]:
-    """Names that FMI 2.0 and FMI 3.0 have for the platform that Python runs on."""
+    """Names of this platform in FMI 2.0 and FMI 3.0."""
     system = {"win32": "windows", "darwin": "darwin"}.get(sys.platform, "linux")
     machine = {"AMD64": "x86_64", "arm64": "aarch64"}.get(platform.machine(), platform.machine())
     bits = 64 if sys.maxsize > 2**32 else 32

@@ -1,4 +1,4 @@
-"""Values of a parameter set that fit another system than the one it was made for; and what of it does not."""
+"""Values of a parameter set that fit another system, and remarks on those that do not."""
 
 from __future__ import annotations
 
@@ -41,6 +41,7 @@ def fitting_values(
     """
     values = {}
     remarks = []
+    # Try each value alone: one that does not fit must not spoil the others.
     for one in _read(path).values:
         signal = _signal(one.name, system)
         converted = _converted(one, signal, system)
@@ -51,6 +52,7 @@ def fitting_values(
             remarks += [
                 Problem(p.where, f"Left out: {p.found}", p.remedy, "remark") for p in error.problems
             ]
+    # A set of which nothing fits is for another system.
     if not values:
         found = f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
         raise ShipcosimError(
@@ -69,9 +71,11 @@ def _read(path: str | PathLike[str]) -> ParameterSet:
 
 
 def _signal(name: str, system: System) -> str:
-    """The signal that a value of a parameter set is for: of an input that the system lacks, the one it would feed."""
+    """Signal that a value is for; for an input that the system lacks, the one it would feed."""
+    # Full names and existing inputs stand for themselves.
     if "." in name or name in system.inputs:
         return name
+    # Else the only unconnected input of this name, if there is exactly one.
     fed = {connection.target for connection in system.connections}
     owners = [
         component
@@ -84,7 +88,7 @@ def _signal(name: str, system: System) -> str:
 
 
 def _converted(one: ParameterValue, signal: str, system: System) -> Value:
-    """A value in the unit of what it is for."""
+    """A value in the unit of its signal."""
     if one.unit is None or not isinstance(one.value, float):
         return one.value
     component, _, variable = signal.rpartition(".")

@@ -1,4 +1,4 @@
-"""One FMU as a system: a component of the file's name, its inputs as inputs of the system."""
+"""One FMU as a system: one component with the file's name; its inputs are system inputs."""
 
 from collections.abc import Iterable, Mapping
 from os import PathLike
@@ -27,7 +27,7 @@ STEPS = 500
 
 
 def single_fmu(path: str | PathLike[str]) -> Path | None:
-    """Path of one FMU that is to be a system, or None."""
+    """Path of an FMU that is used as a system, or None."""
     path = Path(path)
     return path if path.suffix.lower() == ".fmu" and path.is_file() else None
 
@@ -54,6 +54,7 @@ def assemble_fmu(
     swapped : mapping of str to Path, optional
         FMU that runs in place of this one, with its inputs.
     """
+    # Build an SSD around the FMU in memory, and read it as any other.
     fmu = describe_fmu(path, findings)
     if fmu is None:
         return None
@@ -64,7 +65,7 @@ def assemble_fmu(
 
 
 def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, Value]:
-    """Start values under the names that a system of one FMU has for them, where they are given by the FMU's own.
+    """Start values by the names of a system of one FMU, where given by the FMU's own names.
 
     Parameters
     ----------
@@ -73,10 +74,12 @@ def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, 
     settings : mapping of str to value
         By the variable's name, with or without that of the component before it.
     """
+    # Systems of other files keep their names.
     if not system.file.lower().endswith(".fmu"):
         return dict(settings)
     ((name, component),) = system.components.items()
     named = {}
+    # Inputs belong to the system, all other variables to the component.
     for signal, value in settings.items():
         variable = signal.removeprefix(f"{name}.")
         known = variable in component.fmu.variables
@@ -85,11 +88,12 @@ def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, 
 
 
 def _structure(path: Path, fmu: FmuDescription) -> etree._Element:
-    """A system structure of one component, with a connector of its own for each input of the FMU."""
+    """System structure of one component, with a connector for each input of the FMU."""
     root = etree.Element(
         qualified("ssd:SystemStructureDescription"), {"version": "2.0", "name": path.stem}
     )
     system = add(root, "ssd:System", name=path.stem)
+    # Inputs that a table can feed become inputs of the system.
     inputs = [
         fmu.variables[name] for name in fmu.named("input") if fmu.variables[name].kind in IN_TABLES
     ]
@@ -100,6 +104,7 @@ def _structure(path: Path, fmu: FmuDescription) -> etree._Element:
     if connectors is not None:
         owners = (connectors, add(component, "ssd:Connectors"))
         connections = add(system, "ssd:Connections")
+        # The same connector on the system and on the component, and a connection between them.
         for variable in inputs:
             for owner in owners:
                 connector = add(owner, "ssd:Connector", name=variable.name, kind="input")
@@ -116,10 +121,11 @@ def _structure(path: Path, fmu: FmuDescription) -> etree._Element:
 
 
 def _add_experiment(root: etree._Element, given: Mapping[str, float]) -> None:
-    """Times of a run as the FMU proposes them."""
+    """Times of a run as the FMU suggests them."""
     start = given.get("startTime", 0.0)
     stop = given.get("stopTime")
     step = given.get("stepSize")
+    # A step that divides the run evenly; without one as many steps as other tools take.
     if stop is not None and stop > start:
         element = add(root, "ssd:DefaultExperiment", startTime=repr(start), stopTime=repr(stop))
         annotation = add(

@@ -1,4 +1,4 @@
-"""A system read from any file that describes one: an SSP in its three forms, or an OspSystemStructure.xml."""
+"""Read a system from any file: an SSP in its three forms, an OspSystemStructure.xml, or an FMU."""
 
 from collections.abc import Iterable, Mapping
 from os import PathLike
@@ -22,7 +22,7 @@ def read_system(
     components: Mapping[str, Path] | None = None,
     strict: bool = False,
 ) -> System:
-    """Read a system structure and everything it refers to, checked completely.
+    """Read a system structure and everything it refers to, with all checks.
 
     Parameters
     ----------
@@ -48,6 +48,7 @@ def read_system(
     ShipcosimError
         With everything that is wrong.
     """
+    # Flaws have one possible meaning: they are errors only in strict reading.
     system, findings = assemble(path, parameters, fmus, components)
     refused = [p for p in findings.problems if p.severity == "error" or (strict and p.flaw)]
     if system is None or refused:
@@ -61,7 +62,7 @@ def assemble(
     fmus: Iterable[str | PathLike[str]] = (),
     components: Mapping[str, Path] | None = None,
 ) -> tuple[System | None, Findings]:
-    """Like `read_system`, but collecting what is wrong.
+    """Like `read_system`, but collects the problems.
 
     Parameters
     ----------
@@ -74,6 +75,7 @@ def assemble(
         The system is None or incomplete where there are errors.
     """
     findings = Findings()
+    # The kind of file decides who reads it.
     osp = osp_file(path)
     if osp is not None:
         return assemble_osp(osp, parameters, fmus, findings, components), findings

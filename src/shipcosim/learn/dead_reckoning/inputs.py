@@ -1,4 +1,4 @@
-"""Which measurements tell most about a velocity: mutual information, by the distances to nearest neighbours."""
+"""Mutual information of measurements with a velocity, by distances to nearest neighbours."""
 
 import numpy as np
 
@@ -36,17 +36,23 @@ def mutual_information(x: np.ndarray, y: np.ndarray) -> float:
     Kraskov, Stögbauer, Grassberger, Estimating mutual information, Physical Review E 69, 2004, first estimator. Paper
     II uses another one, by density ratios.
     """
+    # At most MOST samples, evenly spaced: the distance matrices grow with the square of their
+    # number.
     rng = np.random.default_rng(1)
     taken = slice(None, None, max(1, -(-len(x) // MOST)))
     spread = [one[taken] / (one.std() or 1.0) for one in (x, y)]
+    # Distances within each signal. Tiny noise separates equal values, which the estimator excludes.
     apart = [
         abs(one[:, None] - one[None])
         for one in (v + 1e-8 * rng.normal(size=v.shape) for v in spread)
     ]
+    # Distance to the k-th neighbour in the joint space, in the maximum norm (Kraskov et al.).
     farther = np.maximum(*apart)
     np.fill_diagonal(farther, np.inf)
     radius = np.partition(farther, NEIGHBOURS - 1, axis=1)[:, NEIGHBOURS - 1]
+    # Number of samples closer than that in each signal alone, n_x + 1 and n_y + 1.
     near = [(one < radius[:, None]).sum(axis=1) for one in apart]  # itself among them
+    # I = psi(k) + psi(n) - <psi(n_x + 1) + psi(n_y + 1)>; noise may make it slightly negative.
     n = len(radius)
     return max(
         0.0, float(_digamma(NEIGHBOURS) + _digamma(n) - sum(np.mean(_digamma(k)) for k in near))
@@ -54,7 +60,7 @@ def mutual_information(x: np.ndarray, y: np.ndarray) -> float:
 
 
 def _digamma(n):
-    """Of whole numbers."""
+    """Digamma function of whole numbers: psi(n) = H(n-1) - gamma."""
     sums = np.concatenate([[0.0], np.cumsum(1.0 / np.arange(1, MOST + 1))])
     return sums[np.asarray(n) - 1] - np.euler_gamma
 
@@ -74,11 +80,13 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
     dict of str to dict of str to float
         By velocity and input: the mean over the history, less the least of all inputs, over the largest. [1]
     """
+    # All signals that Table III names: features of the networks, and requests to the thrusters.
     m = record.measured
     signals = {name: features[..., number] for number, name in enumerate(FEATURES)}
     for place, unit in zip(("bow", "stern", "main"), UNITS, strict=True):
         signals[f"{place} command"] = m[f"asked_{unit + 1}"]
     found = {}
+    # Mean information over the shortest, middle and longest lag that a network sees.
     for axis, velocity in (("surge", m["u"]), ("sway", m["v"])):
         lagged = {
             name: np.mean(
@@ -86,6 +94,7 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
             )
             for name in OF_AXIS[axis]
         }
+        # Scale to 0 to 1 over the inputs of this axis, as the table has it.
         least = min(lagged.values())
         most = max(lagged.values())
         found[axis] = {name: float((one - least) / (most - least)) for name, one in lagged.items()}

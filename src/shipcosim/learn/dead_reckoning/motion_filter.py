@@ -1,11 +1,12 @@
-"""Our filter: the ship's equations of motion, with numbers learned through whole outages of her own records.
+"""Our motion filter: the ship's equations of motion, learned through outages in her records.
 
-The cost is what matters in the end: how far off the reckoned place is in each second of an outage. The records are
-drills: GNSS is masked for a minute, DP rides on dead reckoning, and a second receiver is logged. Records with GNSS do
-not do: there DP answers each disturbance, so thrust tells of loads that the filter does not know, and it learns that
-thrust does little. The gradient goes through the filter before the loss as well, so the observer is learned together
-with the model. Few numbers, so Levenberg and Marquardt's method needs no torch: it runs all changed
-numbers side by side.
+The cost is the position error in each second of an outage. The records are drills: GNSS is
+masked for a minute, DP uses dead reckoning, and a second receiver is logged. Records with GNSS
+are unsuitable: there DP answers each disturbance, so thrust follows loads that the filter does
+not know, and the estimated thrust is too small.
+The gradient also passes the filter before the loss, so observer and model are learned together.
+There are few parameters: Levenberg-Marquardt with finite differences, all changes in one call,
+needs no torch.
 """
 
 from collections.abc import Callable
@@ -50,7 +51,7 @@ WEIGHT = {**dict.fromkeys(KNOWN, 0.3), **dict.fromkeys(GAINS, 1.5)}
 
 
 def measured_at(record: Record, k: int, valid: np.ndarray) -> Measured:
-    """What is aboard at a sample.
+    """Measurements aboard at one sample.
 
     Parameters
     ----------
@@ -81,7 +82,7 @@ def measured_at(record: Record, k: int, valid: np.ndarray) -> Measured:
 
 
 def reckoned(record: Record, law: Any, design: Any, valid: np.ndarray | None = None) -> list:
-    """States of a law over records, sample by sample.
+    """States of a predictor over records, sample by sample.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ def reckoned(record: Record, law: Any, design: Any, valid: np.ndarray | None = N
 
 
 def design_of(change: np.ndarray) -> FilterNumbers:
-    """Numbers of the filter, from how far each is from where it starts.
+    """Parameters of the filter from their changes since the start.
 
     Parameters
     ----------
@@ -121,6 +122,8 @@ def design_of(change: np.ndarray) -> FilterNumbers:
     """
     found = {}
     for position, name in enumerate(FilterNumbers._fields):
+        # Parameters that may change sign move linearly; all others by a factor exp(change), so they
+        # stay positive.
         one = change[..., position]
         at_start = (KNOWN | GAINS)[name]
         found[name] = at_start + one * abs(at_start) if name in SIGNED else at_start * np.exp(one)
@@ -128,7 +131,7 @@ def design_of(change: np.ndarray) -> FilterNumbers:
 
 
 def residuals(record: Record, change: np.ndarray) -> np.ndarray:
-    """Errors of all reckoned places, and of the numbers against where they start.
+    """Position errors in the outages, and changes of the parameters, as residuals.
 
     Parameters
     ----------
@@ -143,17 +146,22 @@ def residuals(record: Record, change: np.ndarray) -> np.ndarray:
         Errors north and east, compressed beyond some metres, over the root of how many there are, then the changes
         over their standard deviations. [m, 1]
     """
+    # Run the filter for all sets of parameters at once.
     design = design_of(change[..., None, :])
     m = record.measured
     errors = []
     for k, state in enumerate(reckoned(record, motion_filter, design)):
+        # Only seconds without GNSS count, measured by the second receiver, which DP does not see.
         if m["valid"][0, k] < 0.5:
             north = state.x - m["second_x"][:, k]
             east = state.y - m["second_y"][:, k]
+            # Weight so that the squared residual grows as the distance: large errors do not
+            # dominate.
             shrunk = (
                 1.0 + (north * north + east * east) / ROBUST**2
             ) ** -0.25  # the cost grows as the distance
             errors += [shrunk * north, shrunk * east]
+    # Prior: each parameter stays near its start by its assumed standard deviation.
     found = np.concatenate(errors, axis=1)
     spread = np.array([WEIGHT[name] for name in FilterNumbers._fields])
     return np.concatenate([found / np.sqrt(found.shape[1] / 2), PRIOR * change / spread], axis=1)
@@ -194,24 +202,29 @@ def fitted(
 def _descended(
     of: Callable[[np.ndarray], np.ndarray], size: int, progress: Progress, iterations: int
 ) -> tuple[FilterNumbers, list[dict[str, float]]]:
-    """Levenberg and Marquardt's method with slopes by finite differences, all in one call."""
+    """Levenberg-Marquardt with finite differences, all in one call."""
     change = np.zeros(size)
     damping = 1e-2
     history = []
     for number in range(1, iterations + 1):
+        # Residuals at the present point and at one small change of each parameter: the Jacobian.
         found = of(np.concatenate([change[None], change + 1e-4 * np.eye(size)]))
         now = found[0]
         slopes = (found[1:] - found[0]) / 1e-4
+        # Cost and normal equations of Gauss-Newton: J^T J and J^T r.
         cost = float(now @ now)
         gradient = slopes @ now
         normal = slopes @ slopes.T
         history.append({"cost": cost})
+        # Try five dampings at once, scaled by the diagonal as Marquardt does.
         dampings = damping * np.array([0.1, 1.0, 10.0, 100.0, 1000.0])
         steps = [
             np.linalg.solve(normal + one * np.diag(np.diag(normal)), gradient) for one in dampings
         ]
+        # Limit a change to a factor e^4: beyond that the filter is far from any ship.
         tried = np.clip(change - np.array(steps), -4.0, 4.0)
         costs = (of(tried) ** 2).sum(axis=1)
+        # Keep the best trial; stop when it lowers the cost by less than 1e-4.
         best = int(np.argmin(costs))
         progress(number, iterations)
         if not costs[best] < cost * (1.0 - 1e-4):

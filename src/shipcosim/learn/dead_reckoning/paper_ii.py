@@ -99,6 +99,7 @@ def features_of(record: Record) -> np.ndarray:
         By `velocity_network.FEATURES`.
     """
     samples = [measured_at(record, k, record.measured["valid"]) for k in range(record.x.shape[1])]
+    # One sample at a time, as the predictor computes its features aboard.
     return np.stack([law.features(one, FULL_POWER, FULL_COMMAND) for one in samples], axis=1)
 
 
@@ -121,6 +122,7 @@ def trained(
     tuple of dict of str to array, and list of dict
         Weights as `velocity_network.design` reads them; losses by epoch, of surge and then of sway.
     """
+    # Train surge and sway one after the other; each uses the inputs that paper II selects.
     features = features_of(record)
     found = {"full_power": FULL_POWER, "full_command": FULL_COMMAND}
     epochs = []
@@ -138,21 +140,25 @@ def trained(
 
 def _one(recipe, number, features, velocity, names, progress):
     """Network of one velocity: its arrays by name, and its losses."""
+    # Standardise inputs and velocity; the scales are stored with the weights.
     inputs = np.array([law.FEATURES.index(name) for name in names])
     mean = features[..., inputs].mean((0, 1))
     std = features[..., inputs].std((0, 1))
     scale = float(velocity.mean()), float(velocity.std())
+    # Each sample sees the HISTORY samples before it; the velocity is the one after them.
     x = np.lib.stride_tricks.sliding_window_view(
         (features[..., inputs] - mean) / std, law.HISTORY, axis=1
     )
     x = x[:, :-1].swapaxes(2, 3)
     y = ((velocity - scale[0]) / scale[1])[:, law.HISTORY :]
+    # Hold out the last tenth of each world, in time order: neighbours must not leak into training.
     kept = round((1.0 - HELD_OUT) * y.shape[1])
     rng = np.random.default_rng(recipe.seed)
     batches = _batches(x[:, :kept], y[:, :kept], rng)
     held_out = _batches(x[:, kept:], y[:, kept:], rng)
     width = recipe.width[number]
     rate = recipe.learning_rate[number]
+    # Train on the squared error of the velocity after the last sample.
     with repeatable(recipe.seed):
         network = (
             Recurrent(len(names), width, 1, 1)
@@ -165,13 +171,15 @@ def _one(recipe, number, features, velocity, names, progress):
             return {"squared error": ((network(batch[0])[:, -1, 0] - batch[1]) ** 2).mean()}
 
         epochs = fit(network, losses, batches, held_out, schedule, progress)
+    # Weights together with the scales, as the predictor needs them.
     plain = {"inputs": inputs, "mean": mean, "std": std}
     plain |= {"velocity_mean": np.array(scale[0]), "velocity_std": np.array(scale[1])}
     return plain | _weights(network), epochs
 
 
 def _batches(x, y, rng):
-    """Mini-batches of samples in random order."""
+    """Mini-batches in random order."""
+    # One long list of samples over all worlds, then shuffled.
     x = x.reshape(-1, *x.shape[2:])
     y = y.reshape(-1)
     order = rng.permutation(len(y))
@@ -186,6 +194,7 @@ def _weights(network):
         return {
             name.removeprefix("net."): array for name, array in arrays_of(network, "net").items()
         }
+    # Weights of the single layer, under the names that the predictor reads.
     layers = {"hidden": network.hidden, "dense": network.dense}
     return {
         f"{name}.{key}": getattr(layer, kind).detach().numpy().copy()

@@ -67,6 +67,7 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
         Weights, data and losses.
     """
     size = size or Size()
+    # Kinds without training: assumed numbers, and an assumed region that grows with time.
     if name in UNLEARNED:
         progress(1, 1)
         region = {"region.times": np.array([0.0, 60.0]), "region.radii": np.array([0.5, 3.0])}
@@ -108,13 +109,16 @@ STILL = {
 
 
 def _filter(progress, size):
-    """Drills, numbers, region."""
+    """Train the filter on drills and calibrate its region."""
+    # Sail the drills, then fit the filter to them.
     record = _recorded(size.training, size.duration, _share(progress, 0, 35), worlds.DRILLS)
     design, epochs = motion_filter.fitted(record, _share(progress, 35, 45))
+    # Calibrate the region in other worlds than those of the training.
     apart = _recorded(
         size.calibration, size.calibrated_for, _share(progress, 45, 100), worlds.DRILLS
     )
     arrays = _arrays(design) | _region(apart, reckoned(apart, filter_law, design))
+    # The report shows each parameter before and after the fit.
     settings = {"numbers": len(design), "robust beyond (m)": motion_filter.ROBUST}
     settings |= {"weight of the start": motion_filter.PRIOR}
     for name, at_start in (KNOWN | GAINS).items():
@@ -123,19 +127,23 @@ def _filter(progress, size):
 
 
 def _networks(name, progress, size):
-    """Records with GNSS, mutual information, both networks, region."""
+    """Train the networks on records with GNSS and calibrate their region."""
+    # The paper trains with GNSS available: no losses in the records.
     recipe = paper_ii.RECIPES[name]
     record = _recorded(size.training, size.duration, _share(progress, 0, 40), ())
     arrays, epochs = paper_ii.trained(recipe, record, _share(progress, 40, 60))
+    # The region is calibrated in drills of other worlds, as for the filter.
     apart = _recorded(
         size.calibration, size.calibrated_for, _share(progress, 60, 100), worlds.DRILLS
     )
     arrays |= _region(apart, reckoned(apart, network_law, network_law.design(arrays)))
+    # Mutual information by input, to compare with Table III of the paper.
     table = inputs.table(record, paper_ii.features_of(record))
     told = {
         f"mutual information with {axis} velocity": {key: round(one, 2) for key, one in row.items()}
         for axis, row in table.items()
     }
+    # What the report says of the network and its training.
     settings = {
         "network": "LSTM and a dense layer"
         if recipe.recurrent
@@ -156,12 +164,14 @@ def _recorded(seeds, duration, progress, losses):
 
 
 def _region(record: Record, states: list) -> dict[str, np.ndarray]:
-    """Region by all samples without GNSS."""
+    """Calibrate the region on all samples without GNSS."""
+    # Distance between estimated and true position.
     names = ("x", "y", "lost_for", "sea")
     x, y, lost_for, sea = (
         np.stack([getattr(state, name) for state in states], axis=-1) for name in names
     )
     error = np.hypot(x - record.x, y - record.y)
+    # Only outages count: with GNSS the region is not used.
     lost = record.measured["valid"] < 0.5
     return calibrated(lost_for[lost], sea[lost], error[lost])
 

@@ -1,4 +1,4 @@
-"""Regions: how far off the reckoned place is, by the time since the loss, as worlds apart from training show it."""
+"""Position regions by time since the loss of GNSS, calibrated in worlds of their own."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ SEA_SHARES = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0)  # s/m, tried
 
 
 def calibrated(lost_for: np.ndarray, sea: np.ndarray, error: np.ndarray) -> dict[str, np.ndarray]:
-    """A region that has the true place in nine of ten cases at each time.
+    """Calibrate a region that contains the true position in nine of ten cases at each time.
 
     Parameters
     ----------
@@ -25,8 +25,10 @@ def calibrated(lost_for: np.ndarray, sea: np.ndarray, error: np.ndarray) -> dict
     Split conformal prediction at each time, over errors divided by 1 + share times the root of the sea's variance; the
     share is the one with the smallest mean radius. Radii never fall with time.
     """
+    # Choose how much the sea widens the region: the share with the smallest mean radius.
     tried = [(_mean_radius(lost_for, sea, error, share), share) for share in SEA_SHARES]
     share = min(tried)[1]
+    # Radii never fall with time, though their samples scatter.
     radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
     return {
         "region.times": np.array(TIMES, dtype=float),
@@ -36,16 +38,18 @@ def calibrated(lost_for: np.ndarray, sea: np.ndarray, error: np.ndarray) -> dict
 
 
 def _radii(lost_for, sea, error, share):
-    """At each time the quantile of the errors within 2.5 s of it, over what the sea makes of them."""
+    """Quantile of the scaled errors within 2.5 s of each time."""
+    # Scaled errors: the sea widens all radii by the same factor.
     scaled = error / (1.0 + share * np.sqrt(sea))
     found = []
     for time in TIMES:
+        # Conformal quantile, rank ceil(0.9 (n + 1)): it covers 90 % of new cases.
         near = np.sort(scaled[abs(lost_for - time) < 2.5])
         found.append(near[min(len(near) - 1, int(np.ceil(COVERED * (len(near) + 1))) - 1)])
     return np.array(found)
 
 
 def _mean_radius(lost_for, sea, error, share):
-    """Mean radius over all cases, by which shares are compared."""
+    """Mean radius over all cases, to compare sea shares."""
     radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
     return float(np.mean(np.interp(lost_for, TIMES, radii) * (1.0 + share * np.sqrt(sea))))

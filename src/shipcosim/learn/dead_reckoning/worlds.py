@@ -1,8 +1,8 @@
-"""Worlds in which the 82.7 m vessel holds her place, and their records: what she measures, and apart from it the truth.
+"""Worlds in which the 82.7 m vessel holds her position, and records of measurements and truth.
 
-The true ship is not the one that models know: less linear damping and some that is quadratic, other wind loads, weaker
-thrusters. She is the same in all worlds, as a ship that learns from her own data is. Weather, current and the errors
-of sensors belong to a world. Nobody aboard knows any of it.
+The true ship differs from the model: less linear damping and some quadratic damping, other
+wind loads, weaker thrusters. She is the same in all worlds: a ship learns from her own data.
+Weather, current and sensor errors differ by world. The predictor knows none of these.
 
 References
 ----------
@@ -137,10 +137,13 @@ def drawn(seed: int) -> World:
     -------
     World
     """
+    # Severity in steps of the sea state table: now, and before the wind changes.
     rng = np.random.default_rng([26, seed])
     severity, before = rng.uniform(0.0, 3.0, 2)
+    # Wave height and wind speed rise together, interpolated in Table IV.
     heights, speeds = zip(*SEA_STATES, strict=True)
     wind = tuple(float(np.interp(one, range(4), speeds)) for one in (before, severity))
+    # Any direction before, and any after.
     towards = rng.uniform(-math.pi, math.pi, 2)
     return _world(
         seed, float(np.interp(severity, range(4), heights)), wind, tuple(map(float, towards)), rng
@@ -148,7 +151,7 @@ def drawn(seed: int) -> World:
 
 
 def tested(seed: int, sea_state: int, direction: float) -> World:
-    """A world of paper II's test: one sea state from one direction, after the one before it in the sequence.
+    """A world of paper II's test: one sea state and direction, after the previous one.
 
     Parameters
     ----------
@@ -163,11 +166,13 @@ def tested(seed: int, sea_state: int, direction: float) -> World:
     -------
     World
     """
+    # The wind before the change is that of the previous sea state in the sequence.
     first = sea_state == 0
     wind = (
         SEA_STATES[sea_state - 1][1],
         SEA_STATES[sea_state][1],
     )  # -1: the last of the direction before
+    # The first sea state of a direction comes from 30 deg before it; then the direction holds.
     towards = direction - math.radians(30.0) if first else direction, direction
     return _world(seed, SEA_STATES[sea_state][0], wind, towards, np.random.default_rng([26, seed]))
 
@@ -178,6 +183,7 @@ def worlds_of_test(seeds: Sequence[int]) -> list[World]:
 
 
 def _world(seed, height, wind, towards, rng):
+    # Current, position bias and compass error: constant in a world, unknown aboard.
     current = rng.uniform([0.0, -math.pi], [0.4, math.pi])
     bias = rng.uniform(-0.2, 0.2, 2)
     return World(
@@ -217,7 +223,9 @@ def scenario_of(
     Scenario
         Of the system `SYSTEM`.
     """
+    # The wind changes from its first to its second value at constant rates over TRANSITION.
     turn = abs(wrap_series(world.wind_from[1] - world.wind_from[0], TURN))
+    # Weather at the start, and sensor errors that stay.
     values = {
         "environment.wind_speed": world.wind_speed[0],
         "environment.wind_from": world.wind_from[0],
@@ -235,11 +243,13 @@ def scenario_of(
         "sensors.compass_1_offset": world.compass_error,
         "reckoning.variant": variant,
     }
+    # Targets of speed and direction, given at time 0 and reached at these rates.
     wind = {
         "environment.wind_speed": world.wind_speed[1],
         "environment.wind_from": world.wind_from[1],
     }
     events = [Event(time=0.0, override=wind)]
+    # Masking GNSS hands DP over to dead reckoning; it returns at the end of the drill.
     for lost, found in losses:
         events.append(Event(time=lost, override={"sensors.position_1_lost": True}))
         events.append(Event(time=found, reset=["sensors.position_1_lost"]))
@@ -280,6 +290,7 @@ def recorded(
     Record
         With (worlds, duration + 1) arrays.
     """
+    # The system is the same in all worlds: read it once, then run each scenario.
     tables = []
     system = system_of(scenario_of(worlds[0], duration))
     for number, world in enumerate(worlds, 1):
@@ -289,6 +300,7 @@ def recorded(
     def stacked(signal):
         return np.stack([table[signal].values.astype(float) for table in tables])
 
+    # True position with wave motion: that is where the antenna is.
     measured, reckoned = (
         {name: stacked(signal) for name, signal in names.items()} for names in (MEASURED, RECKONED)
     )

@@ -1,4 +1,4 @@
-"""Our docking predictor's ensemble: trained on the distances by which the equations of motion miss, in metres."""
+"""Ensemble of our docking predictor: it learns the position errors of the equations of motion."""
 
 from dataclasses import dataclass
 
@@ -71,25 +71,28 @@ def features(replay: Replay, hull: HullParameters) -> np.ndarray:
 
 
 def targets(replay: Replay) -> np.ndarray:
-    """By how much the equations of motion miss: (m, n, 3, `LONGEST`) array, forward, to starboard [m], heading [rad].
+    """Errors of the equations of motion: (m, n, 3, `LONGEST`) array, ahead, starboard [m], heading
+    [rad].
 
-    No numbers where the record ends before.
+    NaN beyond the end of the record.
     """
+    # Error = measured later - predicted, at each horizon.
     ahead = np.stack([np.stack(motion[:3]) for motion in replay.ours])
     true = np.stack([replay.later[name][1:] for name in ("x", "y", "psi")], axis=1)
     north, east, turn = np.moveaxis(true - ahead, 1, 0)
+    # In body axes at the start: the error then does not depend on the course.
     found = np.stack([*to_body(replay.own.ship.psi, north, east), wrap(turn)])
     return np.moveaxis(found, (0, 1), (2, 3))
 
 
 def basis() -> torch.Tensor:
-    """Polynomials of the corrections over the seconds."""
+    """Polynomials in time by which the outputs correct the path."""
     share = np.arange(1, LONGEST + 1) / LONGEST
     return torch.tensor(np.stack([share**power for power in docking.POWERS]), dtype=torch.float32)
 
 
 def distance(given: torch.Tensor, target: torch.Tensor, polynomials: torch.Tensor) -> torch.Tensor:
-    """Mean distance that is left, and mean heading with its weight. [m]
+    """Mean remaining position error plus weighted heading error. [m]
 
     Parameters
     ----------
@@ -100,9 +103,12 @@ def distance(given: torch.Tensor, target: torch.Tensor, polynomials: torch.Tenso
     polynomials : (k, LONGEST) tensor
         As `basis`.
     """
+    # Error that remains after the correction, a polynomial in the horizon.
     left = target - given.unflatten(-1, (3, len(docking.POWERS))) @ polynomials
+    # Horizons beyond the end of a record are NaN and do not count.
     there = torch.isfinite(left).all(dim=2)
     left = torch.nan_to_num(left)
+    # Distance; 1e-2 m2 keeps its gradient finite at zero.
     place = torch.sqrt(left[:, :, 0] ** 2 + left[:, :, 1] ** 2 + 1e-2)
     return ((place + HEADING * abs(left[:, :, 2])) * there).sum() / there.sum()
 
@@ -119,7 +125,7 @@ def fit(
     recipe: DockingTraining,
     progress: Progress,
 ) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
-    """Train the ensemble, also on every docking as in a mirror.
+    """Train the ensemble on every docking and on its mirror image.
 
     Parameters
     ----------
@@ -135,17 +141,20 @@ def fit(
     dict of str to array, and list of dict
         As `docking.trained_of` takes them; losses by member and epoch.
     """
+    # Standardise features; clip outliers as the predictor does.
     mean, std = standard(found[0])
     x, held = (tensor(np.clip((one[0] - mean) / std, -CUT, CUT)) for one in (found, choice))
     y = tensor(found[1])
     sizes = tensor(scale())
     polynomials = basis()
+    # Add the mirror image of every docking: port and starboard then give mirrored corrections.
     x = torch.cat((x, (x * tensor(MIRROR_SIGNS))[..., torch.tensor(MIRROR_ORDER)]))
     y = torch.cat((y, y * tensor(np.array([1.0, -1.0, -1.0])).reshape(1, 1, 3, 1)))
 
     def loss(given, target):
         return distance(sizes * given, target, polynomials)
 
+    # Train the members; the error is counted in metres, after the outputs are scaled.
     with repeatable(recipe.seed):
         networks, epochs = fitting.fit(
             (x, y), (held, tensor(choice[1])), loss, len(sizes), recipe, progress
@@ -153,20 +162,22 @@ def fit(
     arrays = {"mean": mean, "std": std, "scale": scale()}
     for number, network in enumerate(networks, 1):
         arrays |= arrays_of(network, f"member{number}")
+    # Largest features seen in training: beyond these the predictor trusts its ensemble less.
     limits = np.append(abs((found[0] - mean) / std).reshape(-1, len(mean)).max(axis=0), np.inf)
+    # The same for the spread between members, which needs the trained members.
     trained = docking.trained_of(arrays | {"limits": limits})
     spread = docking.spread(given_by(trained, found[0]))
     return arrays | {"limits": np.append(limits[:-1], max(float(spread.max()), 1e-6))}, epochs
 
 
 def standard(found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and standard deviation of features, alike for both sides of the ship."""
+    """Mean and standard deviation of features, equal for both sides of the ship."""
     both = np.concatenate((found, (found * MIRROR_SIGNS)[..., MIRROR_ORDER]))
     return both.mean(axis=(0, 1)), both.std(axis=(0, 1)) + 1e-9
 
 
 def given_by(trained: docking.Trained, found: np.ndarray) -> np.ndarray:
-    """Outputs of the members over (m, n) features, each docking from an empty memory: (members, m, n, 3 k) array."""
+    """Outputs of members over (m, n) features, from empty memories: (members, m, n, 3 k) array."""
     memory = docking.empty(trained, found.shape[:1])
     rows = []
     inputs = docking.standardised(found, trained)

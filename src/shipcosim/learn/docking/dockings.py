@@ -1,7 +1,8 @@
-"""Dockings: a seed gives weather, the manner of a helmsman and a harbour; co-simulation gives the record.
+"""Dockings: a seed gives weather, helmsman and harbour; co-simulation gives the record.
 
-The ship is always the same one, as a ship that learns from her own data is, and she is not what her model says: numbers
-within their tolerances, another form, and a load that is new each time. The predictor is not told of any of it.
+The ship is always the same: a ship learns from her own data. She differs from her model in
+numbers (within tolerances), in form, and by a load that is new each time. The predictor knows
+none of this.
 """
 
 from collections.abc import Callable, Iterable
@@ -87,10 +88,12 @@ def draw(seed: int, distance: float = 1.0) -> Docking:
     Docking
         To be sailed.
     """
+    # Harbour, helmsman and weather, all from one seed.
     rng = np.random.default_rng([26, 3, 2, seed])
     port = harbour(_number(seed, rng))
     manner, length = _manner(rng, seed)
     values = _weather(rng, port, seed) | manner
+    # She starts at the first waypoint, on the course to the second, at transit speed.
     first, *others = port.waypoints(manner["helmsman.stand_off"], length)
     values |= {
         "helmsman.waypoints": text([first, *others]),
@@ -102,6 +105,7 @@ def draw(seed: int, distance: float = 1.0) -> Docking:
         "vessel.u_start": manner["helmsman.transit_speed"],
         "vessel.mass_scale": 1.0 + distance * LOADING * rng.uniform(-1.0, 1.0),
     }
+    # Differences of the ship from her model come last: they are the same at every docking.
     return Docking(seed, port.number, values | true_ship(distance))
 
 
@@ -152,12 +156,15 @@ def sail(docking: Docking, *, step_size: float = STEP) -> Record:
     RuntimeError
         She is not there after `STOP`, or too early.
     """
+    # The predictor acts on nothing, so the run leaves it out.
     table = simulate(_without_predictor(), scenario(docking, step_size=step_size))
+    # Stage 3 of the helmsman: she lies at the berth.
     moored = np.flatnonzero(np.asarray(table["helmsman.stage"]) == 3)
     if not len(moored) or moored[0] < SAMPLES:
         raise RuntimeError(
             f"docking {docking.seed}: lies at the berth too early or never: after {moored[:1]} s"
         )
+    # Keep the last 1000 s before that; measurements and truth stay apart.
     last = slice(moored[0] + 1 - SAMPLES, moored[0] + 1)
     known = {name: np.asarray(table[signal], float)[last] for name, signal in KNOWN.items()}
     truth = {name: np.asarray(table[f"vessel.{name}"], float)[last] for name in TRUTH}
@@ -197,7 +204,7 @@ def _sailed(docking: Docking) -> Record | None:
 
 
 def true_ship(distance: float = 1.0) -> dict[str, float | str]:
-    """What the ship differs by from her model; the same at every docking.
+    """Differences of the ship from her model; the same at every docking.
 
     Parameters
     ----------
@@ -209,17 +216,22 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
     dict of str to float or str
         Start values, by component and variable.
     """
+    # Numbers within their tolerances, as standard deviations.
     rng = np.random.default_rng([26, 3, 1])
     values = {
         name: value + distance * off * rng.standard_normal() for name, value, off in _tolerated()
     }
+    # The coupling of added mass is symmetric: A62 = A26.
     values["vessel.A62"] = values["vessel.A26"]
+    # Form errors: drag along the hull, wind around her, powers of speed, memory of added mass.
     along = factors(rng, 5, STRIPS, distance)
     around = factors(rng, (8, 3), WIND, distance)
     powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
     memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
+    # Linear damping, in proportion to the quadratic damping at low speed.
     quadratic = [values[f"vessel.{name}"] for name in ("X_uu", "Y_modvv", "N_modrr")]
     damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
+    # Half of the quadratic damping in sway and yaw is replaced by cross-flow drag.
     half = 0.5 * distance
     form = TrueLoads(along, around, powers, damping, memory)
     return values | {
@@ -241,6 +253,7 @@ def _without_predictor() -> System:
             system=SYSTEM, parameters=[PARAMETERS], components=TRUE, stop_time=1.0, step_size=STEP
         )
     )
+    # Remove the component and all connections into it.
     components = {name: one for name, one in system.components.items() if name != PREDICTOR}
     connections = tuple(one for one in system.connections if one.target[0] != PREDICTOR)
     return replace(system, components=components, connections=connections)
@@ -248,7 +261,7 @@ def _without_predictor() -> System:
 
 @lru_cache(maxsize=1)
 def _tolerated() -> tuple[tuple[str, float, float], ...]:
-    """Name, value and tolerance of each number of ship and thrusters that has one."""
+    """Name, value and tolerance of each parameter of ship and thrusters with a tolerance."""
     system = system_of(
         Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
     )
@@ -266,18 +279,22 @@ def _number(seed, rng):
     """Number of the harbour: the home port most often."""
     if seed in HELD_OUT_UNSEEN:
         return UNSEEN[seed % len(UNSEEN)]
+    # The lower the number of a harbour, the more often it is called at, as 1/number.
     often = 1.0 / np.array(FAMILIAR)
     drawn = int(rng.choice(FAMILIAR, p=often / often.sum()))
+    # The first seeds call at each familiar harbour once.
     return seed if seed in FAMILIAR else drawn
 
 
 def _manner(rng, seed):
-    """How this helmsman does it, and the length of the way, which takes some 1100 s. [as the fields say, m]"""
+    """Manner of this helmsman, and the length of the way, some 1100 s. [as the fields say, m]"""
+    # Closing speed follows from distance and time constant, so that he can stop.
     closing = rng.uniform(35.0, 70.0)
     place_time = rng.uniform(45.0, 80.0)
     fast = rng.uniform(4.0, 5.6)
     slow = min(closing / place_time * rng.uniform(0.9, 1.4), 1.5)
     slowing = rng.uniform(500.0, 1300.0)
+    # Time constant of yaw: longer for a helmsman who looks seldom and reacts late.
     look = rng.uniform(2.0, 6.0)
     reaction = rng.uniform(0.7, 2.0)
     yaw_time = 4.0 + look + reaction
@@ -301,14 +318,17 @@ def _manner(rng, seed):
         "lurch": rng.uniform(0.0, 0.25),
         "seed": seed,
     }
+    # Length so that transit, slowing and closing take some 1100 s together.
     length = closing + slowing + fast * max(800.0 - 2.0 * slowing / (fast + slow), 60.0)
     return {f"helmsman.{name}": value for name, value in manner.items()}, length
 
 
 def _weather(rng, port: Harbour, seed):
     """Wind, tide, river and sea, and the errors of the sensors of this day."""
+    # Tide along the first leg: ebb is the same current in the opposite direction.
     wind_from = rng.uniform(-pi, pi)
     tide = port.tide * rng.uniform(-1.0, 1.0)
+    # The sea comes with the wind; sensors have a seed of their own.
     values = {
         "environment.wind_speed": rng.uniform(0.0, 10.0),
         "environment.wind_from": wind_from,
@@ -323,6 +343,7 @@ def _weather(rng, port: Harbour, seed):
         "environment.seed": seed,
         "sensors.seed": 20000 + seed,
     }
+    # Land and river of the harbour; the river's flow varies by day.
     values |= {f"harbour.{name}": value for name, value in port.land.items()}
     values["harbour.river_speed"] *= rng.uniform(0.5, 1.4)
     return values

@@ -41,6 +41,7 @@ def fit(
     list of Recurrent, and list of dict
         Networks; losses by member and epoch.
     """
+    # Members differ by their initial weights and the order of mini-batches.
     networks = []
     history = []
     for member in range(recipe.members):
@@ -60,10 +61,11 @@ def fit(
 
 
 def _fit_one(network, found, choice, loss, recipe, progress):
-    """Losses of each epoch; the network is left with the weights of the best one."""
+    """Fit one member; return losses by epoch. The network keeps the weights of the best epoch."""
     x, y = found
     batches = len(x) // recipe.batch
     steps = recipe.epochs * batches
+    # AdamW with a learning rate that falls as a cosine over all steps.
     optimiser = torch.optim.AdamW(
         network.parameters(), recipe.learning_rate, weight_decay=recipe.decay
     )
@@ -73,17 +75,20 @@ def _fit_one(network, found, choice, loss, recipe, progress):
     history = []
     for epoch in range(recipe.epochs):
         total = 0.0
+        # Whole dockings in random order; noise on the inputs is a regularisation.
         for number, rows in enumerate(torch.randperm(len(x)).split(recipe.batch)[:batches]):
             network.train()
             given = network(x[rows] + recipe.noise * torch.randn(x[rows].shape))
             total += _descend(network, optimiser, loss(given, y[rows]))
             schedule.step()
             progress(epoch * batches + number + 1, steps)
+        # Judge the epoch on other dockings, and remember the best weights.
         left = left_over(network, choice, loss)
         history.append({"training": total / batches, "choices": left})
         if left < best:
             best = left
             kept = {name: value.clone() for name, value in network.state_dict().items()}
+    # Early stopping: return to the best epoch.
     network.load_state_dict(kept)
     network.eval()
     return history
@@ -93,6 +98,7 @@ def _descend(network, optimiser, loss):
     """One step of the optimiser; the loss before it."""
     optimiser.zero_grad()
     loss.backward()
+    # Clip the gradient: a recurrent network over 1000 s can have very large ones.
     torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
     optimiser.step()
     return float(loss.detach())

@@ -64,8 +64,10 @@ class Harbour:
         list of tuples of two floats
             North and east of each waypoint. [m]
         """
+        # The place off the berth: stand-off at a right angle to the quay.
         off = self.berth_heading - self.berth_side * 0.5 * pi
         points = [(stand_off * cos(off), stand_off * sin(off))]
+        # Follow the legs backwards from the berth until the way is as long as asked for.
         left = length
         for course, leg in zip(self.courses[::-1], self.lengths[::-1], strict=True):
             leg = min(leg, left)
@@ -89,13 +91,17 @@ def harbour(number: int) -> Harbour:
     -------
     Harbour
     """
+    # Berth: any heading, either side.
     rng = np.random.default_rng([26, 3, 0, number])
     heading = rng.uniform(-pi, pi)
     side = float(rng.choice((-1.0, 1.0)))
+    # Courses of the legs: the last one approaches the quay, the others bend before it.
     last = heading + side * rng.uniform(0.15, 0.8)  # towards the quay
     before = last + rng.choice((-1.0, 1.0)) * rng.uniform(0.3, 1.1)
     first = before + rng.uniform(-0.7, 0.7)
+    # The leg at sea is long enough for any way.
     lengths = float(rng.uniform(*_LAST)), float(rng.uniform(*_BEFORE)), _SEA
+    # Shelter from wind and tide near land; the channel guides the tide along the last leg.
     land = {
         "wind_shelter": rng.uniform(0.2, 0.8),
         "land_towards": heading + side * 0.5 * pi + rng.uniform(-0.5, 0.5),
@@ -111,8 +117,10 @@ def harbour(number: int) -> Harbour:
 
 def _river(rng, number, heading, side):
     """Every third harbour lies in the outlet of a river, which flows past the berth or across the way to it."""
+    # Direction along the quay, either way, turned away from it.
     speed = rng.uniform(0.2, 0.45) if number % 3 == 1 else 0.0
     to = heading + rng.choice((0.0, pi)) - side * rng.uniform(0.0, 0.8)  # along the quay and off it
+    # The mouth lies upstream of the berth, shifted across the flow.
     mouth = rng.uniform(50.0, 250.0)
     beside = rng.uniform(-40.0, 80.0)
     off = heading - side * 0.5 * pi

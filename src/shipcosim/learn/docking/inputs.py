@@ -17,7 +17,7 @@ from shipcosim.models.ship.mast import MastParameters
 
 @dataclass(frozen=True)
 class ShipModel:
-    """The ship as a predictor knows her: what its FMU has as parameters."""
+    """The ship as the predictor models her: the parameters of its FMU."""
 
     hull: HullParameters
     wind: WindParameters
@@ -72,10 +72,14 @@ def replay(records: Sequence[Record], model: ShipModel) -> Replay:
     -------
     Replay
     """
+    # Measurements of all dockings as (m, n) arrays, as the predictor reads them.
     known = {name: np.stack([record.known[name] for record in records]) for name in helm.KNOWN}
     aboard = helm.aboard_of(known, model.mast)
+    # Measured positions, moved on by their age: these are the targets.
     place = helm.moved_on(aboard.ship, model.helm.position_age)
+    # The state that the predictor estimates at each second.
     start, own = _followed(aboard, model)
+    # Predict from the averaged start, and from the estimated state with its estimated load.
     laws = {"hull": model.hull, "wind": model.wind, "helm": model.helm}
     return Replay(
         np.array([record.harbour for record in records]),
@@ -100,22 +104,26 @@ def at_second(aboard: Aboard, k: int) -> Aboard:
 
 
 def _followed(aboard, model):
-    """Averages and record at every second."""
+    """Averaged starts and estimated states at every second."""
     now = at_second(aboard, 0)
     latest: helm.Start = ()
     own = docking.begin(now, model.helm.position_age)
     starts = []
     owns = []
+    # Step through the records as the FMU does: each estimate uses only the past.
     for k in range(aboard.wind_speed.shape[1]):
         before = now
         now = at_second(aboard, k)
+        # Update the estimated load from the last second's motion.
         if k:
             own = docking.follow(
                 own, before, now, hull=model.hull, wind=model.wind, helm_=model.helm
             )
+        # Average heading and velocity over three seconds: noise matters over 30 s.
         latest = helm.remembered(latest, now.ship)
         starts.append(helm.smoothed(latest, now.ship))
         owns.append((*own.ship, *own.load))
+    # Stack the seconds; the first six columns are motion, the last three load.
     records = [np.stack(values, axis=1) for values in zip(*owns, strict=True)]
     start = Motion(*(np.stack(values, axis=1) for values in zip(*starts, strict=True)))
     X, Y, N = records[6:]
@@ -125,6 +133,7 @@ def _followed(aboard, model):
 def ahead(values: np.ndarray) -> np.ndarray:
     """Values in 0 to `LONGEST` seconds from each second, (`LONGEST` + 1, m, n) array from (m, n); else no numbers."""
     m, n = values.shape
+    # NaN where the record ends before the horizon.
     found = np.full((LONGEST + 1, m, n), np.nan)
     for horizon in range(LONGEST + 1):
         found[horizon, :, : n - horizon] = values[:, horizon:]

@@ -71,6 +71,7 @@ def inputs_of(replay: Replay) -> np.ndarray:
 
 def targets(replay: Replay) -> np.ndarray:
     """Errors of the kinetic model: (m, n, 60) array, north in 1 to 30 s, then east. [m]"""
+    # Error = measured later - predicted; time last, as outputs of the networks.
     found = [
         replay.later[name][1:] - np.stack([motion[k] for motion in replay.kinetic])
         for k, name in enumerate(("x", "y"))
@@ -79,19 +80,21 @@ def targets(replay: Replay) -> np.ndarray:
 
 
 def squares(given: torch.Tensor, target: torch.Tensor) -> torch.Tensor:
-    """Mean square over what is known."""
+    """Mean square over the finite targets."""
     there = torch.isfinite(target)
     return ((given - torch.nan_to_num(target)) ** 2 * there).sum() / there.sum()
 
 
 def draws(recipe: PaperIIITraining) -> list[PaperIIITraining]:
-    """Sets of numbers that the search tries: uniform in the logarithms of learning rate and nodes."""
+    """Settings that the search tries: uniform in the logarithms of learning rate and width."""
     rng = np.random.default_rng(recipe.seed)
     found = []
     for _ in range(recipe.trials):
+        # Logarithmic draws: both ranges span orders of magnitude.
         bounds = RATES, (LEAST_NODES, recipe.most_nodes)
         rate, nodes = (float(np.exp(rng.uniform(*np.log(one)))) for one in bounds)
         layers = int(rng.integers(LAYERS[0], LAYERS[1] + 1))
+        # Two digits of the learning rate are enough, and readable in the report.
         found.append(
             replace(recipe, learning_rate=float(f"{rate:.2g}"), width=round(nodes), layers=layers)
         )
@@ -120,16 +123,19 @@ def fit(
     dict of str to array, list of dict, list of tuples
         As `paper_iii.ensemble_of` takes them; losses by member and epoch; what was tried, with its loss.
     """
+    # Standardise inputs and targets; errors beyond the end of a record are NaN.
     mean = found[0].mean(axis=(0, 1))
     std = found[0].std(axis=(0, 1)) + 1e-9
     target_mean = np.nanmean(found[1], axis=(0, 1))
     target_std = np.nanstd(found[1], axis=(0, 1))
+    # The same scales for data to train on and data to choose by.
     trained, held = (
         (tensor((x - mean) / std), tensor((y - target_mean) / target_std))
         for x, y in (found, choice)
     )
     outputs = len(target_mean)
     tried = []
+    # Random search: train one member briefly with each setting, keep the one with the least loss.
     with repeatable(recipe.seed):
         for number, one in enumerate(draws(recipe)):
             short = replace(one, members=1, epochs=recipe.trial_epochs)
@@ -143,6 +149,7 @@ def fit(
         def tell(done, total):
             progress(total + done, 2 * total)
 
+        # Train the full ensemble with the best settings.
         networks, epochs = fitting.fit(trained, held, squares, outputs, best, tell)
     arrays = {"mean": mean, "std": std, "target_mean": target_mean, "target_std": target_std}
     for number, network in enumerate(networks, 1):
@@ -151,7 +158,11 @@ def fit(
 
 
 def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:
-    """Errors that the ensemble expects over (m, n) inputs, each docking from an empty memory: (m, n, 60) array. [m]"""
+    """Errors that the ensemble predicts over (m, n) inputs: (m, n, 60) array. [m]
+
+    Each docking starts from an empty memory.
+    """
+    # Second by second with its memory, as the predictor runs aboard.
     ensemble = paper_iii.ensemble_of(arrays)
     memory = paper_iii.empty(ensemble, found.shape[:1])
     rows = []

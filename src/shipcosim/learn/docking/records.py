@@ -1,4 +1,4 @@
-"""What one docking leaves: the ship's own measurements and levers, and apart from them what became of her."""
+"""Record of one docking: the ship's measurements and levers, and apart from these the truth."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

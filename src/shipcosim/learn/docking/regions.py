@@ -1,4 +1,4 @@
-"""Regions about predictions of dockings that have the ship in 90 % of cases: conformal, by horizon.
+"""Regions around docking predictions that hold the ship in 90 % of cases: conformal, by horizon.
 
 References
 ----------
@@ -37,6 +37,7 @@ def measured_later(replay: Replay) -> dict[str, np.ndarray]:
     A single place is 0.2 m off north and east, as much as a prediction of 10 s; three leave 0.1 m, which stands for the
     slow error of the receiver, that no comparison with itself shows.
     """
+    # Average the targets over three seconds; both ends keep their single measurement.
     found = dict(replay.later)
     for name in ("x", "y"):
         values = found[name][0]
@@ -52,13 +53,17 @@ def calibrated(predicted: Predicted, replay: Replay) -> np.ndarray:
     dockings the share of other dockings scatters about 0.9; the level 0.9 (1 + 1/m) of m independent cases was too much
     on the dockings of the choices, where regions had 96 to 98 %. Misses are those against `measured_later`.
     """
+    # The predictor's recent errors widen its regions; here by a factor relative to ordinary errors.
     errors = own_record(predicted.places, replay)
     after = measured_later(replay)
+    # Ordinary errors: the medians over all starts.
     ordinary = [float(np.median(one)) for one in errors]
     factors = [row[0] for row in docking.regions(np.array([*np.ones(6), *ordinary]), errors)]
     widths = []
+    # Score = error over factor. Its quantile at rank ceil(0.9 n) is the width (split conformal).
     for found, factor in zip(misses(predicted.places, after), factors, strict=True):
         for one in found:
+            # Starts whose horizon lies beyond the record have no error.
             scores = np.sort((one / factor)[np.isfinite(one)])
             widths.append(scores[min(len(scores), ceil(SHARE * len(scores))) - 1])
     return np.array([*widths, *ordinary])

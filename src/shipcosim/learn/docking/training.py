@@ -1,4 +1,4 @@
-"""What `shipcosim train docking` does: dockings sailed, what is learned from them, weights and report."""
+"""Steps of `shipcosim train docking`: sail dockings, learn from them, calibrate, report."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -47,6 +47,7 @@ def ship() -> ShipModel:
 
 def sail(progress: Progress) -> dict[str, list[Record]]:
     """Records of all dockings to learn from, by what they are for."""
+    # Sail all dockings in one pool, then sort the records by purpose.
     seeds = [seed for some in SETS.values() for seed in some]
     records = {
         record.seed: record
@@ -102,12 +103,15 @@ def learn_ours(
     Trained
         Weights, regions of this predictor and of the kinetic one, and report.
     """
+    # Replay the records once; features and targets come from the same replay.
     replayed = {name: replay(some, model) for name, some in records.items()}
     pairs = {
         name: (distance_ensemble.features(one, model.hull), distance_ensemble.targets(one))
         for name, one in replayed.items()
     }
+    # Train on some dockings; others decide which epoch to keep.
     arrays, epochs = distance_ensemble.fit(pairs["training"], pairs["choices"], recipe, progress)
+    # Calibrate regions on dockings of their own: errors on training data are too small.
     calibration = replayed["calibration"]
     predicted = predictions.by_ours(calibration, arrays, model.hull)
     arrays["widths"] = regions.calibrated(predicted, calibration)
@@ -138,11 +142,14 @@ def learn_paper_iii(
     Trained
         Weights, regions and report.
     """
+    # Replay the records once; inputs and targets come from the same replay.
     replayed = {name: replay(some, model) for name, some in records.items()}
     pairs = {
         name: (paper_iii.inputs_of(one), paper_iii.targets(one)) for name, one in replayed.items()
     }
+    # Search settings and train; other dockings decide.
     arrays, epochs, tried = paper_iii.fit(pairs["training"], pairs["choices"], recipe, progress)
+    # Calibrate regions on dockings of their own: errors on training data are too small.
     calibration = replayed["calibration"]
     predicted = predictions.by_paper_iii(calibration, arrays)
     arrays["widths"] = regions.calibrated(predicted, calibration)
@@ -150,6 +157,7 @@ def learn_paper_iii(
     settings = {name: getattr(recipe, name) for name in names} | {
         "optimiser": "Adam, cosine schedule"
     }
+    # The report lists every setting that the search tried, with its loss.
     for one, loss in tried:
         settings[
             f"tried: {one.layers} layers of {one.width}, learning rate {one.learning_rate:g}"
@@ -159,7 +167,7 @@ def learn_paper_iii(
 
 
 def about(records: dict[str, list[Record]], inputs: np.ndarray) -> dict[str, Any]:
-    """What a report says of the data."""
+    """Describe the data for the report."""
     found = {name: _seeds([record.seed for record in some]) for name, some in records.items()}
     return found | {"SHA-256 of the inputs to train on, rounded": digest(np.round(inputs, 3) + 0.0)}
 

@@ -1,8 +1,8 @@
-"""Our drift predictor: what is believed of ships before their own record, trained through estimator and equations.
+"""Our drift predictor: prior beliefs about ships, trained through estimator and equations.
 
-The loss is what predictions miss after a loss of thrust, 10, 30 and 60 s ahead. Its gradient goes back through the
-whole prediction, and through the Kalman filter over the minutes before, to the beliefs with which the filter begins.
-The targets are the ship's own later estimates of place and heading: nothing that a real ship has not.
+The loss is the prediction error 10, 30 and 60 s ahead, after a loss of thrust. Its gradient
+passes the prediction and the Kalman filter over the minutes before, back to the filter's priors.
+The targets are the ship's later estimates of position and heading: a real ship has these too.
 """
 
 from dataclasses import dataclass
@@ -102,10 +102,13 @@ def learned_of(numbers: Arithmetic, library: ModuleType = np) -> Learned:
     Learned
         (...) arrays or tensors.
     """
+    # The numbers in order: means, standard deviations, other parameters.
     first = len(COEFFICIENTS)
     second = len(COEFFICIENTS) + len(STATES)
     std, rest = (library.asarray(one, dtype=numbers.dtype) for one in (STD, REST))
+    # Logarithms keep standard deviations and rates positive.
     rest = rest * library.exp(numbers[..., second:])
+    # Means in standard deviations, so that all numbers have one scale.
     mean = numbers[..., :first] * std[COEFFICIENT]
     std = std * library.exp(numbers[..., first:second])
     return Learned(mean, std, rest[..., 0:2], rest[..., 2:6], *(rest[..., k] for k in range(6, 16)))
@@ -115,7 +118,7 @@ SIZE = len(COEFFICIENTS) + len(STATES) + len(REST)
 
 
 def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTraining) -> torch.Tensor:
-    """What predictions miss, nearly in proportion where it is much.
+    """Prediction error, nearly proportional where it is large, plus a pull to the start.
 
     Parameters
     ----------
@@ -133,9 +136,13 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTrainin
     () tensor
         [1]
     """
+    # Run the filter up to each start, then predict; the coarse grid before the loss saves time.
     learned = learned_of(numbers, torch)
     motions = ahead(learned, *followed(learned, sailed, STARTS, ship, torch, grid=2), ship)
+    # Errors over the size that counts equally at each horizon.
     missed = errors(motions, sailed, STARTS) / torch.from_numpy(SCALES)[:, None, None, :]
+    # Pseudo-Huber loss sqrt(1 + e^2) - 1, so that single worlds do not dominate; ridge on the
+    # numbers.
     return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (
         numbers * numbers
     ).sum()
@@ -144,7 +151,7 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTrainin
 def fit(
     sailed: Sailed, ship: Ship, recipe: DriftTraining, progress: Progress
 ) -> tuple[np.ndarray, list[dict[str, float]]]:
-    """Steps of Adam down the loss.
+    """Minimise the loss by Adam.
 
     Parameters
     ----------
@@ -162,14 +169,17 @@ def fit(
     (61,) array, list of dict
         Numbers as `learned_of` takes them; loss before each step.
     """
+    # Zero is the assumed belief; training moves from there.
     at = torch.zeros(SIZE, dtype=torch.float64, requires_grad=True)
     history = []
+    # All worlds in each step; the rate falls as a cosine.
     optimiser = torch.optim.Adam([at], lr=recipe.learning_rate)
     schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.steps)
     for done in range(1, recipe.steps + 1):
         optimiser.zero_grad()
         value = loss(at, sailed, ship, recipe)
         value.backward()
+        # Clip the gradient: it passes minutes of filter and prediction.
         torch.nn.utils.clip_grad_norm_([at], 1.0)
         optimiser.step()
         schedule.step()

@@ -76,6 +76,7 @@ def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np
     (n, 9) and (n, 3) array
         [m/s, rad/s, m/s2, rad/s2]
     """
+    # Everything the ship knows at each second, in all worlds at once.
     everything = known_of(sailed.known, ship)
     now = mapped(lambda array: array[0], everything)
     past = paper_iv.begin(now)
@@ -83,12 +84,15 @@ def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np
     targets = []
     for row in range(1, sailed.lost):
         now = mapped(lambda array, row=row: array[row], everything)
+        # Inputs: velocity, model acceleration and last residual, before the step.
         psi, *nu = past.states[-1]
         dot = paper_iv.model_acceleration(
             psi, tuple(nu), past.wind, past.thrusters, hull=ship.hull, wind=ship.wind
         )
         before = [np.broadcast_to(one, np.shape(psi)) for one in (*nu, *dot, *past.residual)]
+        # After the step the residual is known: it is the target.
         past = paper_iv.step(past, now, hull=ship.hull, wind=ship.wind)
+        # Leave out the first rows, where averages and residual are not yet settled.
         if row >= first:
             inputs.append(np.stack(before, axis=-1))
             targets.append(np.stack(past.residual, axis=-1))
@@ -114,10 +118,12 @@ def fit(
     dict of str to array, list of dict
         Arrays as `models.prediction.paper_iv.ensemble_of` reads them; losses of each epoch.
     """
+    # Draw as many samples as the paper has.
     rng = np.random.default_rng(recipe.seed)
     chosen = rng.permutation(len(inputs))[: recipe.samples]
     x = inputs[chosen]
     y = targets[chosen]
+    # Scales from these samples; they are stored with the weights.
     scales = {
         "input_mean": x.mean(0),
         "input_std": x.std(0),
@@ -126,8 +132,10 @@ def fit(
     }
     x = torch.from_numpy((x - scales["input_mean"]) / scales["input_std"])
     y = torch.from_numpy((y - scales["output_mean"]) / scales["output_std"])
+    # The first tenth of the shuffled samples is held out.
     held = len(x) // 10
     order = np.random.default_rng(recipe.seed)
+    # All members in one tensor: they train side by side.
     with repeatable(recipe.seed):
         weights = first_weights(
             (x.shape[1], recipe.width, recipe.width, y.shape[1]), recipe.members
@@ -138,12 +146,14 @@ def fit(
     kept = [one.detach().clone() for one in weights]
     since = 0
     for number in range(recipe.most_epochs):
+        # One epoch of mini-batches in random order.
         for rows in np.array_split(
             held + order.permutation(len(x) - held), (len(x) - held) // recipe.batch or 1
         ):
             optimiser.zero_grad()
             squares(weights, x[rows], y[rows]).backward()
             optimiser.step()
+        # Error on training and held-out samples after the epoch.
         with torch.no_grad():
             found = {
                 name: float(squares(weights, x[part], y[part]))
@@ -151,6 +161,7 @@ def fit(
             }
         epochs.append(found)
         progress(number + 1, recipe.most_epochs)
+        # Keep the best weights; stop after `patience` epochs without gain.
         since += 1
         if found["held out"] < best:
             best = found["held out"]
@@ -162,9 +173,10 @@ def fit(
 
 
 def first_weights(sizes: Sequence[int], members: int) -> list[torch.Tensor]:
-    """Weights at the start, uniform as Glorot and Bengio have them, and biases 0."""
+    """Initial weights: uniform as by Glorot and Bengio, biases 0."""
     found = []
     for n, m in zip(sizes[:-1], sizes[1:], strict=True):
+        # Glorot limit sqrt(6/(n + m)): keeps the variance from layer to layer.
         limit = (6.0 / (n + m)) ** 0.5
         found += [limit * (2.0 * torch.rand(members, n, m, dtype=torch.float64) - 1.0)]
         found += [torch.zeros(members, 1, m, dtype=torch.float64)]
@@ -172,7 +184,8 @@ def first_weights(sizes: Sequence[int], members: int) -> list[torch.Tensor]:
 
 
 def squares(weights: list[torch.Tensor], x: torch.Tensor, y: torch.Tensor) -> torch.Tensor:
-    """Mean square error of all networks."""
+    """Mean square error over all members."""
+    # Hidden layers with tanh, the output layer linear.
     for k in range(0, len(weights) - 2, 2):
         x = torch.tanh(x @ weights[k] + weights[k + 1])
     return ((x @ weights[-2] + weights[-1] - y) ** 2).mean()

@@ -1,7 +1,8 @@
-"""Regions about predictions, calibrated in worlds of their own: by horizon, and by what a predictor knows of itself.
+"""Prediction regions, calibrated in worlds of their own: by horizon and by the predictor's factors.
 
-A predictor is an FMU. It is run alone over the records of worlds, with regions of width 1: its outputs are then the
-factors by which it widens regions. The errors over those factors are the scores, whose quantile is the width.
+A predictor is an FMU. It runs alone over the records of worlds, with regions of width 1: its
+outputs are then the factors by which it widens regions. The score is error over factor; the width
+is its quantile.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -59,7 +60,7 @@ def scores(
     by_truth: bool = False,
     settings: Mapping[str, float | str | bool] | None = None,
 ) -> Scores:
-    """Run a predictor over a record, and score what it says from the loss of thrust on.
+    """Run a predictor over a record, and score its predictions after the loss of thrust.
 
     Parameters
     ----------
@@ -77,13 +78,16 @@ def scores(
     Scores
         One row a second.
     """
+    # Run the FMU, and keep the first row of each new prediction after the loss.
     table = _predictions(record, fmu, settings or {})
     made = np.rint(np.asarray(table[f"{fmu}.predicted_at"])).astype(int)
     kept = np.flatnonzero((made > record.lost_at) & (np.diff(made, prepend=-1) > 0))
     made = made[kept]
+    # Regions are calibrated by the ship's later estimates; tests may use the truth.
     reached = record.truth if by_truth else record.known
     position = np.full((len(kept), 3), np.nan)
     heading = np.full((len(kept), 3), np.nan)
+    # Errors at each horizon; NaN where the record ends before it.
     for i, horizon in enumerate(int(h) for h in HORIZONS):
         inside = made + horizon < len(record.time)
         then = reached[made[inside] + horizon]
@@ -94,21 +98,24 @@ def scores(
             np.hypot(x - then[:, 0], y - then[:, 1]),
             abs(wrap(psi - then[:, 2])),
         )
+    # Regions of width 1: the output is the factor itself. It is 0 while thrust is available.
     names = f"{fmu}.position_region_10", f"{fmu}.heading_region_10"
     factors = np.column_stack([np.asarray(table[name])[kept] for name in names])
     without = factors[:, 0] > 0.0
+    # One prediction a second, so the count is the time since the loss.
     lost_for = np.cumsum(without).astype(float)
     made_in = [values[without] for values in (lost_for, position, heading, factors)]
+    # Score = error over factor.
     return Scores(
         made_in[0], made_in[1] / made_in[3][:, :1], made_in[2] / made_in[3][:, 1:], made_in[3]
     )
 
 
 def calibrated(found: Sequence[Scores]) -> dict[str, float]:
-    """Widths that have the share of the cases inside, from worlds that nothing else was chosen by.
+    """Widths that contain the wanted share of the cases, from worlds used for nothing else.
 
-    Starts within a world are no independent cases, worlds are: the quantile is that of all starts at the level
-    0.9 (1 + 1/n) with n worlds.
+    Starts within a world are dependent, worlds are independent: the quantile is over all starts, at
+    the level 0.9 (1 + 1/n) with n worlds.
 
     Parameters
     ----------
@@ -121,14 +128,17 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
         Parameters of `models.prediction.regions.RegionParameters`. The shares of a long drift are the largest of the
         horizons.
     """
+    # Level for n independent worlds (split conformal).
     level = min(1.0, SHARE * (1.0 + 1.0 / len(found)))
     widths = {}
     for kind in ("position", "heading"):
         later = []
+        # Width soon after the loss, and how much wider it is later.
         for i, horizon in enumerate(HORIZONS):
             early, rest = (_quantile(found, kind, i, level, late=late) for late in (False, True))
             widths[f"{kind}_half_width_{horizon:.0f}"] = early
             later.append(rest / early)
+        # One share serves all horizons, so the largest.
         widths[f"later_{kind}_share"] = max(later)
     return widths
 
@@ -155,10 +165,12 @@ def coverage(
     shares = {}
     for column, kind in enumerate(("position", "heading")):
         shares[kind] = []
+        # Width as the predictor applies it, wider late in the drift.
         for i, horizon in enumerate(HORIZONS):
             width = widths[f"{kind}_half_width_{horizon:.0f}"] * (
                 widths[f"later_{kind}_share"] if late else 1.0
             )
+            # Only predictions of this phase of the drift.
             chosen = [(one.lost_for >= JUST_LOST) == late for one in found]
             values = np.concatenate(
                 [getattr(one, kind)[rows, i] for one, rows in zip(found, chosen, strict=True)]
@@ -166,6 +178,7 @@ def coverage(
             factors = np.concatenate(
                 [one.factors[rows, column] for one, rows in zip(found, chosen, strict=True)]
             )
+            # Horizons beyond the record have no error; count those within the region.
             there = np.isfinite(values)
             shares[kind].append(
                 (float(np.mean(values[there] <= width)), float(np.mean(width * factors[there])))
@@ -176,16 +189,18 @@ def coverage(
 def _quantile(
     found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool
 ) -> float:
-    """Quantile of the scores of all starts early or late in the drift."""
+    """Quantile of the scores of all starts, early or late in the drift."""
     values = np.concatenate(
         [getattr(one, kind)[(one.lost_for >= JUST_LOST) == late, horizon] for one in found]
     )
+    # Conformal rank ceil(level n), at most the largest score.
     values = np.sort(values[np.isfinite(values)])
     return float(values[min(len(values), ceil(level * len(values))) - 1])
 
 
 def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | bool]):
     """Table of a predictor's outputs over a record, one row a second."""
+    # The predictor gets the parameters of the system's predictor that it has too.
     nominal = system_of(
         Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
     )
@@ -196,8 +211,10 @@ def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | 
         for name, value in nominal.components["predictor"].start.items()
         if name in known
     }
+    # Width 1 everywhere: outputs are then the bare factors.
     values |= {**UNCALIBRATED, **settings}
     system = with_values(system, {f"{fmu}.{name}": value for name, value in values.items()})
+    # Feed the recorded estimates as inputs, and run the FMU alone.
     columns = [
         (name, record.known[:, i], known[name].unit or "1", name) for i, name in enumerate(KNOWN)
     ]

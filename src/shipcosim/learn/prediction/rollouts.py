@@ -1,4 +1,4 @@
-"""Records of many ships beside one another, and predictions of all of them through the models in torch or NumPy."""
+"""Records of many ships in one array, and predictions for all of them in torch or NumPy."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -32,7 +32,7 @@ class Ship(NamedTuple):
 
 
 class Sailed(NamedTuple):
-    """Records of many worlds at 1 Hz, with their losses of thrust in one row.
+    """Records of many worlds at 1 Hz, aligned at their loss of thrust.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class Sailed(NamedTuple):
 
 
 def known_of(rows: np.ndarray, ship: Ship) -> Known:
-    """What is known, from the columns of records.
+    """Inputs of the predictor, from the columns of records.
 
     Parameters
     ----------
@@ -62,25 +62,29 @@ def known_of(rows: np.ndarray, ship: Ship) -> Known:
         With (...) arrays.
     """
     c = np.moveaxis(rows, -1, 0)
+    # Apparent wind at 10 m above the origin, from the apparent wind at the mast.
     wind = wind_from_mast(c[12], c[13], *c[3:6], mast=ship.mast)
+    # The last column says that wind is rejected; its complement is its validity.
     return Known(Motion(*c[:6]), tuple(c[6:9]), tuple(c[9:12]), *wind, 1.0 - c[14])
 
 
 def tensors(record: Any) -> Any:
-    """The same nested tuples with tensors instead of arrays."""
+    """The same nested tuples with tensors in place of arrays."""
     return mapped(lambda array: torch.from_numpy(np.ascontiguousarray(array, dtype=float)), record)
 
 
 def mapped(function: Any, record: Any) -> Any:
-    """Nested tuples with a function of each array in them; what is not known stays so."""
+    """Apply a function to each array in nested tuples; None stays None."""
     if not isinstance(record, tuple):
+        # Leaves: arrays, or None for what is not known.
         return None if record is None else function(record)
     parts = [mapped(function, part) for part in record]
+    # Named tuples keep their type.
     return type(record)(*parts) if hasattr(record, "_fields") else tuple(parts)
 
 
 def stacked(records: Sequence[Any], library: Any) -> Any:
-    """Nested tuples of one form as one, their arrays stacked along a new first axis."""
+    """Join nested tuples of one form, their arrays stacked along a new first axis."""
     first = records[0]
     if not isinstance(first, tuple):
         return None if first is None else library.stack(list(records))
@@ -96,7 +100,7 @@ def followed(
     library: Any,
     grid: int = 1,
 ) -> tuple[own_record.Record, Known]:
-    """What the records of all worlds say at some rows after the loss.
+    """States of the filter in all worlds, at some rows after the loss.
 
     Parameters
     ----------
@@ -118,12 +122,14 @@ def followed(
     tuple of Record and Known
         With starts along their first axis, of what filters have along the second.
     """
+    # Coarse grid before the loss, every row after it, as predictions start there.
     lost = sailed.lost
     last = sailed.lost + max(starts)
     rows = [*range(lost % grid, lost, grid), *range(lost, last + 1)]
     everything = known_of(sailed.known, ship)
     if library is torch:
         everything = tensors(everything)
+    # The filter begins with the learned priors and follows the records row by row.
     now = mapped(lambda array: array[rows[0]], everything)
     record = own_record.begin(now, learned=learned, hull=ship.hull)
     found = []
@@ -132,8 +138,10 @@ def followed(
         record = own_record.step(
             record, now, float(row - before), learned=learned, hull=ship.hull, wind=ship.wind
         )
+        # Keep the state at each start.
         if row - lost in starts:
             found.append((record, now))
+    # Starts become the first axis; quantities per filter keep their axis in front.
     record = stacked([one for one, _ in found], library)
     first = {
         name: library.moveaxis(getattr(record, name), 1, 0)
@@ -161,6 +169,7 @@ def ahead(
     tuple of Motion
         One per horizon.
     """
+    # Predict with each filter of the bank, then average by their weights.
     motions = own_record.predict(
         record,
         known,
@@ -174,7 +183,7 @@ def ahead(
 
 
 def errors(motions: Sequence[Motion], sailed: Sailed, starts: Sequence[int]) -> torch.Tensor:
-    """What predictions miss of the ship's own later record: her estimated place and heading.
+    """Prediction errors against the ship's later estimates of position and heading.
 
     Parameters
     ----------
@@ -190,12 +199,14 @@ def errors(motions: Sequence[Motion], sailed: Sailed, starts: Sequence[int]) -> 
     (horizons, starts, worlds, 3) tensor
         North, east, heading. [m, m, rad]
     """
+    # Compare with the record at each start plus horizon.
     rows = sailed.lost + np.array(starts)
     found = []
     for horizon, motion in zip(HORIZONS, motions, strict=True):
         x, y, psi = torch.from_numpy(
             np.moveaxis(sailed.known[rows + int(horizon), :, :3], -1, 0).copy()
         )
+        # Heading error wrapped by atan2, which has a gradient everywhere.
         turned = motion.psi - psi
         found.append(
             torch.stack([motion.x - x, motion.y - y, torch.atan2(turned.sin(), turned.cos())], -1)

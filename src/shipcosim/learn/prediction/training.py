@@ -1,4 +1,4 @@
-"""What `shipcosim train drift` does: worlds sailed, what is learned from them, weights and report."""
+"""Steps of `shipcosim train drift`: sail worlds, learn from their records, report."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -42,7 +42,7 @@ def ship() -> Ship:
 
 
 def aligned(records: Sequence[worlds.Record], before: int, after: int = 81) -> Sailed:
-    """Records beside one another, with their losses in one row.
+    """Records in one array, cut so that their losses fall in the same row.
 
     Parameters
     ----------
@@ -56,6 +56,7 @@ def aligned(records: Sequence[worlds.Record], before: int, after: int = 81) -> S
     Sailed
         Of `before + 1 + after` rows.
     """
+    # Cut the same number of rows around each loss.
     cut = []
     for record in records:
         lost = int(np.searchsorted(record.time, record.lost_at - 1e-6))
@@ -78,6 +79,7 @@ def sail(seeds: Sequence[int], progress: Progress) -> list[worlds.Record]:
     list of Record
         In their order.
     """
+    # Other worlds calibrate or test: training on them would make the results look too good.
     if outside := [seed for seed in seeds if seed not in worlds.TRAINING]:
         raise ValueError(f"seeds {outside} are not of worlds to train on, {worlds.TRAINING}")
     return worlds.sail_all([worlds.draw(seed) for seed in seeds], progress=progress)
@@ -125,12 +127,15 @@ def ours(
     Trained
         Weights and report.
     """
+    # Train on all worlds at once.
     sailed = aligned(records, recipe.before)
     about = ship()
     with repeatable(recipe.seed):
         numbers, epochs = drift.fit(sailed, about, recipe, progress)
+    # Keep only a share of the way from the assumed beliefs: few worlds are learned by heart.
     learned = drift.learned_of(recipe.kept * numbers)
     arrays = {name: np.asarray(getattr(learned, name)) for name in Learned._fields}
+    # Beyond these limits the predictor does not trust what was learned.
     arrays["limits"] = recipe.margin * limits(learned, sailed, about)
     settings = {name: getattr(recipe, name) for name in SETTINGS}
     settings |= {
@@ -165,9 +170,11 @@ def limits(learned: Learned, sailed: Sailed, about: Ship) -> np.ndarray:
     (9,) array
         [units of `MEASURES`]
     """
+    # Follow the records to 60 s after the loss, and predict from each second.
     record, known = followed(learned, sailed, range(1, 61), about, np)
     options = {"horizons": HORIZONS, "steps": drift_off.STEPS, "learned": learned}
     last = own_record.predict(record, known, **options, hull=about.hull, wind=about.wind)[-1]
+    # The largest of each measure over all starts and worlds.
     found = drift_off.measures(record, known, last, learned)
     return found.reshape(len(drift_off.MEASURES), -1).max(axis=1)
 
@@ -191,6 +198,7 @@ def as_paper_iv(
     Trained
         Weights and report.
     """
+    # Samples of all worlds before their loss: the paper trains in DP and manoeuvring.
     inputs, targets = paper_iv.samples(aligned(records, OURS.before), ship())
     arrays, epochs = paper_iv.fit(inputs, targets, recipe, progress)
     names = ("samples", "members", "width", "batch", "most_epochs", "patience", "learning_rate")

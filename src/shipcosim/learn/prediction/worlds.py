@@ -160,16 +160,20 @@ def draw(seed: int, distance: float = 1.0) -> World:
     World
         To be sailed.
     """
+    # All draws in a fixed order, so that distance changes sizes only.
     rng = np.random.default_rng([26, seed])
     lost_at = float(rng.integers(180, 301))
     values, weather = _weather(rng, distance, lost_at)
     values |= _parameters(rng, distance)
+    # Form errors have a generator of their own: other draws stay as they are.
     values |= _form(np.random.default_rng([26, seed, 1]), distance, values)
+    # The predictor does not act here, so it predicts only once: this saves time.
     values |= {
         "environment.seed": seed,
         "sensors.seed": 20000 + seed,
         "predictor.prediction_period": 1e6,
     }
+    # All thrusters fail at once; setpoints and weather events before and after.
     lost = Event(time=lost_at, override={f"{name}.failed": True for name in _THRUSTERS})
     events = sorted([*_setpoints(rng, lost_at), *weather, lost], key=lambda event: event.time)
     return World(seed, distance, lost_at, values, tuple(events))
@@ -220,6 +224,7 @@ def sail(world: World, *, step_size: float = STEP) -> Record:
     Record
         At 1 Hz from the start on.
     """
+    # Signals that the predictor sees, and apart from these the truth.
     table = simulate(system_of(scenario(world)), scenario(world, step_size=step_size))
     known = [np.asarray(table[_source(name)], float) for name in KNOWN]
     truth = [np.asarray(table[f"vessel.{name}"], float) for name in TRUTH]
@@ -262,10 +267,12 @@ def _source(name: str) -> str:
 @lru_cache(maxsize=1)
 def _nominal() -> dict[str, tuple[float, float]]:
     """Value and tolerance of each number of `TOLERATED`, `NOISY` and `HULL`."""
+    # Read the nominal system once; worlds differ from it.
     system = system_of(
         Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
     )
     found = {}
+    # Numbers without a tolerance keep their value.
     for signal in (*TOLERATED, *NOISY, *HULL):
         name, variable = signal.split(".")
         component = system.components[name]
@@ -276,6 +283,7 @@ def _nominal() -> dict[str, tuple[float, float]]:
 def _parameters(rng: np.random.Generator, distance: float) -> dict[str, float]:
     """Numbers of hull, wind and thrusters off by their tolerances, errors of sensors by their share."""
     nominal = _nominal()
+    # Parameters: normal, tolerance as standard deviation. Sensor errors: uniform share.
     found = {
         name: nominal[name][0] + distance * nominal[name][1] * rng.standard_normal()
         for name in TOLERATED
@@ -288,12 +296,18 @@ def _parameters(rng: np.random.Generator, distance: float) -> dict[str, float]:
 def _form(
     rng: np.random.Generator, distance: float, values: dict[str, float]
 ) -> dict[str, float | str]:
-    """Drag along the hull, wind round her, powers of speed, linear damping and memory; `values` are her own numbers."""
+    """Form errors: drag along the hull, wind around her, powers of speed, damping and memory.
+
+    `values` are her own parameters.
+    """
     density, length, draught = (_nominal()[name][0] for name in HULL)
+    # Cross-flow drag as quadratic coefficients: 1/2 rho T C_d L, in yaw over L^4/32.
     cross = 0.5 * density * draught * values["vessel.cross_flow_drag"]
     quadratic = np.array([values["vessel.X_uu"], -cross * length, -cross * length**4 / 32.0])
+    # Linear damping as a share of the quadratic damping at low speed.
     damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
     memory = distance * MEMORY * rng.uniform(0.0, 1.0, 3)
+    # Factors along the hull and around the wind rose; powers of speed about 2.
     along = factors(rng, 5, STRIPS, distance)
     powers = 2.0 + distance * POWER * rng.uniform(-1.0, 1.0, 2)
     around = factors(rng, (8, 3), WIND, distance)
@@ -305,7 +319,8 @@ def _form(
 def _weather(
     rng: np.random.Generator, distance: float, lost_at: float
 ) -> tuple[dict[str, float], list[Event]]:
-    """Weather in which DP holds her, and how current and wind change: at most some tens of degrees."""
+    """Weather during DP, and changes of current and wind: at most some tens of degrees."""
+    # Constant wind and current; waves come roughly from the wind.
     wind = rng.uniform(3.0, 9.0)
     wind_from = rng.uniform(-pi, pi)
     current = rng.uniform(0.0, 0.5)
@@ -320,6 +335,7 @@ def _weather(
         "environment.waves_from": wind_from + rng.normal(0.0, 0.4),
         "environment.gust_scale": 1.0 + distance * rng.uniform(-0.3, 0.3),
     }
+    # Current and wind change around the loss; both changes grow with distance.
     turned = {
         "environment.current_speed": abs(current + distance * rng.normal(0.0, 0.05)),
         "environment.current_to": current_to + distance * rng.normal(0.0, 0.4),
@@ -328,6 +344,7 @@ def _weather(
         "environment.wind_speed": wind * (1.0 + distance * rng.uniform(-0.1, 0.1)),
         "environment.wind_from": wind_from + distance * rng.normal(0.0, 0.15),
     }
+    # From a minute before the loss to two minutes after it.
     times = rng.integers(-60, 120, 2) + int(lost_at)
     return values, [
         Event(time=float(t), override=new) for t, new in zip(times, (turned, veered), strict=True)
@@ -336,6 +353,7 @@ def _weather(
 
 def _setpoints(rng: np.random.Generator, lost_at: float) -> list[Event]:
     """Low-speed manoeuvres: two changes of place and heading, the second up to the loss of thrust."""
+    # The second change may last up to the loss.
     times = 40.0, float(rng.integers(110, int(lost_at) + 1))
     return [
         Event(

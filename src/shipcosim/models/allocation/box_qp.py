@@ -3,10 +3,10 @@
     minimise over x:  Σ (x_i - wanted_i)² / (2 ease_i) + Σ s_j² / (2 slack_j),   s = request - Σ effect_i x_i,
     low_i ≤ x_i ≤ high_i
 
-Commands that are not at a bound are x_i = wanted_i + ease_i effect_i·λ with three multipliers λ, so every step of the
-active-set method is one linear system of three equations, however many commands there are.
+Commands that are not at a bound are x_i = wanted_i + ease_i effect_i·λ with three multipliers λ:
+every step of the active-set method solves three equations, for any number of commands.
 
-Plain floats take a way of their own, some ten times as fast; a test holds the two ways together.
+Plain floats have an implementation of their own, some ten times as fast; a test compares both.
 """
 
 from typing import NamedTuple
@@ -86,13 +86,15 @@ def solve(
     >>> [round(x, 6) for x in solve((6.0, 0.0, 0.0), pair, (1e-9, 1e-9, 1e-9))[0]]
     [2.0, 4.0]
     """
+    # One number each: the plain implementation is some ten times as fast.
     if isinstance(sum(map(sum, commands), request[0]), float):
         return _solve_floats(request, commands, slack, start or [0.0] * len(commands))
     return _solve_many(request, commands, slack, start or [0.0] * len(commands))
 
 
 def _solve_floats(request, commands, slack, start):
-    """`solve` of plain floats."""
+    """`solve` for plain floats."""
+    # Start within the bounds; side is 1 at the upper bound, -1 at the lower, 0 for a free command.
     x = [
         clip(value, command[5], command[6]) for value, command in zip(start, commands, strict=True)
     ]
@@ -101,25 +103,31 @@ def _solve_floats(request, commands, slack, start):
     best = list(x)
     multipliers = (0.0, 0.0, 0.0)
     freed = -1
+    # Each round moves to the optimum of the free commands, or to the first bound on the way there.
     for _ in range(ROUNDS):
         multipliers = p, q, r = _multipliers_floats(request, commands, slack, x, side)
+        # share is the part of the way that the bounds allow; hit is the command that stops it.
         share = 1.0
         hit = -1
         worst = 0.0
         dropped = -1
         for i, (X, Y, N, ease, wanted, low, high) in enumerate(commands):
+            # Pull of the multipliers along this command, effect_i . lambda.
             pull = X * p + Y * q + N * r
+            # A command at its bound: a positive loss means that the price falls if it is freed.
             if side[i]:
                 loss = side[i] * ((x[i] - wanted) / ease - pull) if low < high else 0.0
                 if loss > worst and loss > _EDGE * abs(pull):
                     worst = loss
                     dropped = i
                 continue
+            # A free command: its optimum, and the bound that it would cross first.
             best[i] = new = wanted + ease * pull
             bound = high if new > high else low
             if (new > high or new < low) and (bound - x[i]) / (new - x[i]) < share:
                 share = (bound - x[i]) / (new - x[i])
                 hit = i
+        # Move the free commands by the common share; commands at a bound stay.
         x = [
             old if at else old + share * (new - old)
             for old, new, at in zip(x, best, side, strict=True)
@@ -128,6 +136,7 @@ def _solve_floats(request, commands, slack, start):
             hit >= 0 and hit == freed and share <= 0.0
         ):  # by rounding alone: the bound it was freed from is kept
             break
+        # Add the bound that was hit; at the optimum free the command with the largest loss.
         if hit >= 0:
             side[hit] = 1.0 if best[hit] > commands[hit][6] else -1.0
             x[hit] = commands[hit][6] if side[hit] > 0.0 else commands[hit][5]
@@ -140,11 +149,14 @@ def _solve_floats(request, commands, slack, start):
 
 
 def _multipliers_floats(request, commands, slack, x, side):
-    """Multipliers at the optimum of the commands that are free."""
+    """Multipliers at the optimum of the free commands."""
     X0, Y0, N0 = request
     a, d, f = slack
+    # Remaining load: request minus commands at bounds, and minus the free ones at their wanted
+    # value.
     b = c = e = 0.0
     for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
+        # A command at its bound gives a fixed load.
         if at:
             X0 = X0 - X * value
             Y0 = Y0 - Y * value
@@ -153,6 +165,7 @@ def _multipliers_floats(request, commands, slack, x, side):
             X0 = X0 - X * wanted
             Y0 = Y0 - Y * wanted
             N0 = N0 - N * wanted
+            # Normal matrix of the free commands, sum of ease_i effect_i effect_i^T, plus the slack.
             p = ease * X
             q = ease * Y
             a = a + p * X
@@ -165,7 +178,8 @@ def _multipliers_floats(request, commands, slack, x, side):
 
 
 def _solve_many(request, commands, slack, start):
-    """`solve` of arrays or tensors, each element by itself."""
+    """`solve` for arrays or tensors, each element separately."""
+    # A zero of the common shape and type: bounds and flags broadcast with it.
     zero = sum(0.0 * value for command in commands for value in command) + 0.0 * request[0]
     x = [
         clip(zero + at, zero + c.low, zero + c.high) for at, c in zip(start, commands, strict=True)
@@ -173,6 +187,7 @@ def _solve_many(request, commands, slack, start):
     ends = zip(x, commands, strict=True)
     side = [where(at == c.high, zero + 1.0, where(at == c.low, zero - 1.0, zero)) for at, c in ends]
     multipliers = (zero, zero, zero)
+    # Elements that are done keep their multipliers; the others go on.
     done = zero > 1.0
     freed = [zero > 1.0] * len(x)
     for _ in range(ROUNDS):
@@ -180,36 +195,43 @@ def _solve_many(request, commands, slack, start):
         multipliers = tuple(
             where(done, old, new) for old, new in zip(multipliers, found, strict=True)
         )
+        # Optimum of the free commands, loss of each bound, and how far each command may go.
         best, loss, steps = _towards(commands, found, x, side)
+        # Smallest allowed step and largest loss, over all commands.
         share = zero + 1.0
         worst = zero
         for step, lost in zip(steps, loss, strict=True):
             share = minimum(share, step)
             worst = maximum(worst, lost)
+        # A whole step without a loss is the optimum: the element is done.
         whole = share >= 1.0
         done = done | (whole & (worst <= 0.0))
+        # Add the bounds that were hit, or free the command with the largest loss.
         for i, (command, new, old, step, lost) in enumerate(
             zip(commands, best, x, steps, loss, strict=True)
         ):
             over = new > command.high
             hit = (step <= share) & ~whole
             drop = whole & (worst > 0.0) & (lost >= worst)
+            # A command that was freed hits its bound again by rounding alone: stop here.
             done = done | (hit & freed[i] & (share <= 0.0))
             bound = where(over, zero + command.high, zero + command.low)
             x[i] = where(hit, bound, old + share * (new - old))
             side[i] = where(hit, where(over, zero + 1.0, zero - 1.0), where(drop, zero, side[i]))
             freed[i] = drop
+        # Stop as soon as every element is done.
         if bool(done.all()):
             break
     return x, multipliers
 
 
 def _multipliers(request, commands, slack, x, side):
-    """As `_multipliers_floats`."""
+    """`_multipliers_floats` for arrays or tensors."""
     X0, Y0, N0 = request
     a, d, f = slack
     b = c = e = 0.0
     for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
+        # Free commands count with their wanted value and their ease; those at a bound have ease 0.
         free = at == 0.0
         value, ease = (
             where(free, 0.0 * value + wanted, value),
@@ -218,6 +240,7 @@ def _multipliers(request, commands, slack, x, side):
         X0 = X0 - X * value
         Y0 = Y0 - Y * value
         N0 = N0 - N * value
+        # Normal matrix of the free commands, sum of ease_i effect_i effect_i^T, plus the slack.
         p = ease * X
         q = ease * Y
         a = a + p * X
@@ -230,16 +253,19 @@ def _multipliers(request, commands, slack, x, side):
 
 
 def _towards(commands, multipliers, x, side):
-    """Optimum of the free commands, what keeping each bound costs, and the share of the way to the bound of each."""
+    """Optimum of free commands, loss of each bound, and share of the way to each bound."""
     p, q, r = multipliers
     best = []
     loss = []
     steps = []
     for (X, Y, N, ease, wanted, low, high), at, old in zip(commands, side, x, strict=True):
+        # Optimum of a free command; one at its bound stays.
         pull = X * p + Y * q + N * r
         free = at == 0.0
         new = where(free, wanted + ease * pull, old)
+        # Loss of keeping a bound, as in `_solve_floats`.
         lost = where(0.0 * old + low < high, at * ((old - wanted) / ease - pull), 0.0 * old)
+        # Share of the way up to the bound, 1 where none is crossed.
         way = new - old
         outside = (new > high) | (new < low)
         room = where(new > high, high - old, low - old)
@@ -250,7 +276,8 @@ def _towards(commands, multipliers, x, side):
 
 
 def _three_equations(a, b, c, d, e, f, X, Y, N):
-    """Solution of three equations with the symmetric matrix of rows (a b c), (b d e), (c e f)."""
+    """Solve three equations with the symmetric matrix of rows (a b c), (b d e), (c e f)."""
+    # Cofactors of the symmetric matrix; its inverse is their matrix over the determinant.
     A = d * f - e * e
     B = c * e - b * f
     C = b * e - c * d

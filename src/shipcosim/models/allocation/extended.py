@@ -82,17 +82,22 @@ def design(parameters: ExtendedParameters) -> ComponentInverses:
     Extended thrust: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021;
     Sordalen, Optimal thrust allocation for marine vessels, Control Engineering Practice 5 (1997).
     """
+    # Columns of the configuration matrix: a force X at (x, y) gives N = -y X, a force Y gives N = x
+    # Y.
     p = parameters
     effect = (
         *((1.0, 0.0, -p.port_y), (0.0, 1.0, p.port_x)),
         *((1.0, 0.0, -p.starboard_y), (0.0, 1.0, p.starboard_x)),
         (0.0, 1.0, p.tunnel_x),
     )
+    # Prices of the components, as W^-1/2 of the weighted inverse.
     side = p.azimuth_weight * p.sway_price
     price = np.array([p.azimuth_weight, side, p.azimuth_weight, side, p.tunnel_weight]) ** -0.5
     inverses = []
+    # One lever for the whole ship, one where a thruster is missing.
     for lever in (p.yaw_lever, p.yaw_lever_degraded):
         scale = np.array([1.0, 1.0, 1.0 / lever])
+        # For every set of free thrusters: W^-1/2 (S B W^-1/2)^+ S.
         for k in range(8):
             free = np.array([(k >> unit) & 1 for unit in _UNIT_OF])
             weighted = scale[:, None] * np.array(effect).T * (price * free)
@@ -162,21 +167,26 @@ def step(
     As `design`; that thrust beyond a limit is asked of the free units is assumed.
     """
     p = parameters
+    # Forces within the limits of thrust, then the load that they miss.
     reach = parameters.thrust_rate_max * h
     forces = _within_limits(tau, available, shares, parameters=p, design=design)
     X, Y, N = missed(tau, forces, design.effect)
+    # More than 1 N, or its moment at the yaw lever, counts as missed.
     saturated = X**2 + Y**2 + (N / p.yaw_lever) ** 2 > 1.0
     thrusts = []
     angles = []
+    # Turn each azimuth towards its force.
     for unit in (0, 1):
         X, Y = forces[2 * unit : 2 * unit + 2]
         old = state.azimuths[unit]
         share = shares[unit]
         angle = _turned(old, X, Y, available[unit], h, parameters=p)
+        # Until it has turned, it gives the part of the force that lies along its angle.
         along = clip(X * cos(angle) + Y * sin(angle), p.azimuth_thrust_min, p.azimuth_thrust_max)
         limits = share * p.azimuth_thrust_min, share * p.azimuth_thrust_max
         thrusts.append(_moved(state.thrusts[unit], along, reach, limits, available[unit]))
         angles.append(angle)
+    # The tunnel cannot turn: only limits and rate act.
     limits = -shares[2] * p.tunnel_thrust_max, shares[2] * p.tunnel_thrust_max
     thrusts.append(_moved(state.thrusts[2], forces[4], reach, limits, available[2]))
     return Allocated(
@@ -185,20 +195,23 @@ def step(
 
 
 def _turned(old, X, Y, usable, h, *, parameters):
-    """Angle of an azimuth on its way to the direction of a force."""
+    """Angle of an azimuth that turns to the direction of a force."""
+    # Small forces have no reliable direction: the angle stays.
     far = (X * X + Y * Y > parameters.turning_thrust**2) & usable
     wanted = atan2(where(far, Y, sin(old)), where(far, X, cos(old)))
+    # Turn the short way round, at most as fast as the thruster can.
     reach = parameters.azimuth_rate_max * h
     return wrap(old + clip(wrap(wanted - old), -reach, reach))
 
 
 def _moved(old, new, reach, limits, usable):
-    """Thrust on its way to another one; what exceeds the limits that power leaves is taken back at once."""
+    """Thrust that moves to a new one; any excess over the power limit is removed at once."""
     return where(usable, clip(old + clip(new - old, -reach, reach), *limits), 0.0 * new)
 
 
 def _load(thrusts, angles, effect):
     """Load of three thrusts. [N, N, N.m]"""
+    # Components of the azimuths in body axes, as the columns of the matrix.
     forces = []
     for thrust, angle in zip(thrusts, angles, strict=False):
         forces += [thrust * cos(angle), thrust * sin(angle)]
@@ -206,8 +219,9 @@ def _load(thrusts, angles, effect):
 
 
 def _within_limits(tau, available, shares, *, parameters, design):
-    """Force components for a load, without limits of rates; what the unit furthest beyond cannot give others take."""
+    """Forces for a load within limits of thrust; free units take over the rest."""
     p = parameters
+    # Free units; number 8 on selects the inverses for a ship with a missing thruster.
     free = [where(usable, 1.0, 0.0) for usable in available]
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
     most = (
@@ -215,11 +229,14 @@ def _within_limits(tau, available, shares, *, parameters, design):
         shares[1] * p.azimuth_thrust_max,
         shares[2] * p.tunnel_thrust_max,
     )
+    # At most three rounds: in each, the unit furthest beyond its limit is held.
     held = forces = [0.0 * tau[0]] * 5
     for _ in range(3):
+        # Solve for the free units, with the load that the held ones leave.
         chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
         more = _solve(missed(tau, held, design.effect), chosen, design.inverses)
         forces = [f + g for f, g in zip(held, more, strict=True)]
+        # Thrust of each unit, and the share of it within its limit.
         port = hypot(forces[0], forces[1])
         starboard = hypot(forces[2], forces[3])
         tunnel = abs(forces[4])
@@ -227,8 +244,10 @@ def _within_limits(tau, available, shares, *, parameters, design):
             minimum(1.0, limit / where(size > 1.0, size, 1.0))
             for size, limit in zip((port, starboard, tunnel), most, strict=True)
         ]
+        # The unit with the smallest share is furthest beyond its limit: hold it there.
         worst = minimum(minimum(parts[0], parts[1]), parts[2])
         over = [(part < 1.0) & (part <= worst) for part in parts]
+        # Scale the force of a unit, so that its direction stays.
         forces = [force * parts[unit] for force, unit in zip(forces, _UNIT_OF, strict=True)]
         held = [where(over[unit], f, h) for f, h, unit in zip(forces, held, _UNIT_OF, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
@@ -238,8 +257,10 @@ def _within_limits(tau, available, shares, *, parameters, design):
 def _solve(tau, chosen, inverses):
     """Force components of the free units for a load, 0 for the others."""
     X, Y, N = tau
+    # One number: pick the inverse of this set of free units.
     if isinstance(chosen, float):
         return [a * X + b * Y + c * N for a, b, c in inverses[int(chosen)]]
+    # Many numbers: elements may have different sets, so try all sixteen.
     found = [0.0 * X] * 5
     for number, rows in enumerate(inverses):
         here = chosen == number

@@ -1,8 +1,8 @@
-"""Thrust allocation of paper I: one hidden layer of random weights, between a requested load and commands of thrusters.
+"""Thrust allocation of paper I: one hidden layer of random weights, from load to commands.
 
-Commands are in the thrusters' own units (rpm, degrees of pitch). Allocator 1 sees the requested load alone, allocator 2
-its previous commands as well. Nothing in it knows limits or rates: what holds them is what the network took from the
-exercise that it was trained on.
+Commands have the units of the thrusters (rpm, degrees of pitch). Allocator 1 sees the requested
+load, allocator 2 its previous commands as well. The network knows neither limits nor rates: it
+keeps them only as it learned them from the exercise.
 """
 
 from collections.abc import Mapping
@@ -114,6 +114,7 @@ def network_of(arrays: Mapping[str, np.ndarray], parameters: ExtremeLearningPara
     ----------
     Definition.
     """
+    # Allocator and number of signals select the weights; the range of commands is common.
     of = f"{parameters.allocator}.{parameters.signals}"
     scale, bias, least, most = (
         tuple(arrays[name].tolist()) for name in (f"{of}.scale", f"{of}.bias", "least", "most")
@@ -143,8 +144,10 @@ def evaluate(network: Network, inputs: tuple) -> tuple:
     ----------
     Huang, Zhu, Siew, Extreme learning machine: a new learning scheme of feedforward neural networks, IJCNN, 2004.
     """
+    # Inputs over their size in the exercise, as in training.
     x = [one / size for one, size in zip(inputs, network.scale, strict=True)]
     hidden = []
+    # Hidden layer of sigmoids; the clip avoids an overflow of exp.
     for weights, bias in zip(network.hidden, network.bias, strict=True):
         z = clip(sum(w * one for w, one in zip(weights, x, strict=True)) + bias, -50.0, 50.0)
         hidden.append(1.0 / (1.0 + exp(-z)))
@@ -216,14 +219,19 @@ def step(
     ----------
     Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, paper I, 2.3.
     """
+    # Allocator 2 also sees its last commands.
     seen = state.commands[: parameters.signals] if parameters.allocator == 2 else ()
     found = evaluate(design, (*tau, *seen))
+    # With five signals units 5 and 6 share one command.
     found = (*found, found[-1]) if parameters.signals < UNITS else found
+    # A missing unit gives nothing; the others do not take over.
     commands = tuple(where(on, one, 0.0 * one) for one, on in zip(found, available, strict=True))
+    # Thrust of each command, for the load that is reported.
     weakest = parameters.of_units("thrust_min")
     strongest = parameters.of_units("thrust_max")
     limits = tuple(zip(design.least, design.most, weakest, strongest, strict=True))
     thrusts = tuple(_thrust(one, *limit) for one, limit in zip(commands, limits, strict=True))
+    # Saturated: a command beyond the range of the exercise, or a missing unit.
     over = sum(
         where(one < low, 1.0, where(one > high, 1.0, 0.0))
         for one, (low, high, *_) in zip(found, limits, strict=True)
@@ -235,12 +243,14 @@ def step(
 
 
 def _thrust(command, least, most, weakest, strongest):
-    """Thrust of a command, quadratic up to its range and constant beyond."""
+    """Thrust of a command: quadratic within its range, constant beyond."""
+    # Share of the range on this side; thrust of a propeller grows as the square of its speed.
     share = clip(where(command < 0.0, command / least, command / most), 0.0, 1.0)
     return share * share * where(command < 0.0, weakest, strongest)
 
 
 def _load(thrusts, parameters):
-    """Load of the thrusts."""
+    """Load of the thrusters."""
+    # Columns of the configuration matrix: (cos a, sin a, x sin a - y cos a).
     places = zip(*map(parameters.of_units, ("x", "y", "azimuth")), strict=True)
     return load(thrusts, tuple((cos(a), sin(a), x * sin(a) - y * cos(a)) for x, y, a in places))

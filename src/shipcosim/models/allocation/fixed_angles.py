@@ -1,7 +1,8 @@
 """Thrust allocation of up to six units at fixed directions by a weighted generalised inverse.
 
-The units are what their parameters say: a propeller, a tunnel thruster, an azimuth held at an angle. One without thrust
-is none. As in `pseudo_inverse`, what one unit cannot give is asked of those that are not yet at a limit.
+Parameters describe the units: a propeller, a tunnel thruster, an azimuth held at an angle. A unit
+without thrust does not exist. As in `pseudo_inverse`, free units take over what another cannot
+give.
 """
 
 import functools
@@ -145,15 +146,19 @@ def design(parameters: FixedAngleParameters) -> Layout:
     Weighted generalised inverse: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley,
     2021.
     """
+    # Load of one newton of each unit: (cos a, sin a, x sin a - y cos a).
     p = parameters
     places = zip(p.of_units("x"), p.of_units("y"), p.of_units("azimuth"), strict=True)
     effect = tuple((cos(a), sin(a), x * sin(a) - y * cos(a)) for x, y, a in places)
+    # The price of thrust is the square of its share of the unit's largest thrust.
     least = p.of_units("thrust_min")
     most = p.of_units("thrust_max")
     size = np.array([max(high, -low) for low, high in zip(least, most, strict=True)])
     size = size / max(size.max(), 1.0)
+    # A missed moment counts as a missed force at the yaw lever.
     scale = np.array([1.0, 1.0, 1.0 / p.yaw_lever])
     weighted = scale[:, None] * np.array(effect).T * size
+    # For every set of free units: W^-1/2 (S B W^-1/2)^+ S.
     inverses = np.zeros((1 << UNITS, UNITS, 3))
     for k in range(1, 1 << UNITS):
         free = np.array([(k >> unit) & 1 for unit in range(UNITS)])
@@ -221,9 +226,12 @@ def step(
     ----------
     As `design`; that thrust beyond a limit is asked of the free units is assumed.
     """
+    # Thrusts within their limits, then the load that they miss.
     wanted = _within_limits(tau, available, design)
     X, Y, N = missed(tau, wanted, design.effect)
+    # More than 1 N, or its moment at the yaw lever, counts as missed.
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    # Move each thrust at its largest rate; a missing unit gives nothing.
     limits = zip(state.thrusts, wanted, available, design.rate, strict=True)
     thrusts = tuple(
         where(on, old + clip(new - old, -rate * h, rate * h), 0.0 * new)
@@ -233,21 +241,25 @@ def step(
 
 
 def _within_limits(tau, available, design):
-    """Thrusts for a load, without limit of the rate."""
+    """Thrusts for a load, without rate limits."""
+    # Units beyond a limit are held there, and the free ones take over the rest.
     free = [where(on, 1.0, 0.0) for on in available]
     held = [0.0 * tau[0]] * UNITS
     thrusts = held
     for _ in range(UNITS):
+        # Solve for the free units, with the load that the held ones leave.
         found = _solve(missed(tau, held, design.effect), free, design.inverses)
         given = [
             clip(f, low, high)
             for f, low, high in zip(found, design.least, design.most, strict=True)
         ]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
+        # Stop when no unit is beyond its limit, in any element.
         over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]
         anywhere = functools.reduce(operator.or_, over)
         if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
             break
+        # Hold the units beyond a limit, and go on with the others.
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
     return thrusts
@@ -255,12 +267,15 @@ def _within_limits(tau, available, design):
 
 def _solve(tau, free, inverses):
     """Thrusts of the free units for a load, 0 for the others."""
+    # Number of the set of free units: bit i stands for unit i.
     chosen = sum(2.0**unit * one for unit, one in enumerate(free))
+    # One number: pick the inverse of this set.
     if is_single(chosen):
         return [
             a * tau[0] + b * tau[1] + c * tau[2]
             for a, b, c in row_of(inverses, math.floor(chosen)).tolist()
         ]
+    # Many numbers: elements may have different sets, so try them all.
     found = [0.0 * tau[0]] * UNITS
     for k in range(1, 1 << UNITS):
         rows = inverses[k].tolist()

@@ -1,8 +1,8 @@
-"""Monitoring of thrusters and of the ship's place: command against feedback, estimate against reference.
+"""Monitoring of thrusters and position: command against feedback, estimate against reference.
 
-A unit whose feedback stays beyond a tolerance of its command is faulty, and is stopped: the fault is latched. What
-feedback cannot show, a unit that lies or a thrust that is lost behind the shaft, is seen by the ship: she leaves her
-place, or the observer explains her motion by an unknown force that grows beyond what weather gives.
+A unit whose feedback stays beyond a tolerance of its command is faulty, and is stopped: the fault
+is latched. Wrong feedback, or thrust lost behind the shaft, shows in the ship's motion: she leaves
+her position, or the observer estimates an unknown force that is too large for the weather.
 """
 
 from dataclasses import dataclass
@@ -87,7 +87,7 @@ class MonitorState(NamedTuple):
 
 
 class Alarms(NamedTuple):
-    """What the monitor says.
+    """Alarms of the monitor.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def deviation(
     thrust_tolerance: float,
     azimuth_tolerance: float,
 ) -> Arithmetic:
-    """How far the feedback of a unit is from its command, over the tolerance: above 1 is beyond it.
+    """Deviation of feedback from command over its tolerance; above 1 it is exceeded.
 
     Parameters
     ----------
@@ -157,6 +157,7 @@ def deviation(
     >>> deviation((10e3, 8.5e3), (0.0, 0.1), thrust_tolerance=3e3, azimuth_tolerance=0.05)
     2.0
     """
+    # Thrust and direction have tolerances of their own; the direction differs the short way round.
     of_thrust = abs(thrusts[0] - thrusts[1]) / thrust_tolerance
     return maximum(of_thrust, abs(wrap(azimuths[0] - azimuths[1])) / azimuth_tolerance)
 
@@ -201,21 +202,25 @@ def step(
     practice of DP systems; tolerances and times are assumed.
     """
     p = parameters
+    # Count the time beyond a tolerance; once the delay is reached, the time stays: the fault is
+    # latched.
     units = [
         where((off > 1.0) & on, time + h, where(time >= p.fault_delay, time, 0.0))
         for time, off, on in zip(state[:3], deviations, available, strict=True)
     ]
+    # Limits of the ship: position, heading and the force that the observer cannot explain.
     beyond = (
         errors[0] > p.position_limit,
         abs(errors[1]) > p.heading_limit,
         hypot(*bias) > p.force_limit,
     )
+    # These alarms are not latched: the time returns to zero.
     ship = [where(over, time + h, 0.0) for time, over in zip(state[3:], beyond, strict=True)]
     return MonitorState(*units, *ship)
 
 
 def alarms(state: MonitorState, *, parameters: MonitorParameters) -> Alarms:
-    """What the monitor says in a state.
+    """Alarms in a state of the monitor.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Thrust allocation by a network that turns the azimuth thrusters, for any number of units.
 
-The network sees the request, the request smoothed over time, the availability of the units and their last commands. It
-says how fast each azimuth turns and which thrusts it would like. Squashing keeps that within limits and rates. The
-thrusts are then the closest to the liked ones that meet the request, within limits and rates. With an interaction, the
-thrust that slipstreams take is known and made up for, and no sector need be forbidden.
+The network sees the request, the smoothed request, the availability of the units and their last
+commands. Its outputs are the turning of each azimuth and factors on the price of each thrust.
+Thrusts then meet the request at the least price, within limits and rates. With an interaction,
+the thrust lost in slipstreams is known and compensated, and no sector need be forbidden.
 
 Units lie along the last axis: (n,) for one allocation, (..., n) for many at once.
 
@@ -82,7 +82,7 @@ class Units(NamedTuple):
 
 
 class Commands(NamedTuple):
-    """Commands, and what the law remembers beside.
+    """Commands and the smoothed request.
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Commands(NamedTuple):
 def features(
     state: Commands, tau: Arithmetic, available: Arithmetic, pull: Arithmetic, *, units: Units
 ) -> Arithmetic:
-    """What the network sees: numbers of order 1 that do not jump where an angle wraps.
+    """Inputs of the network: numbers of order 1 that do not jump where an angle wraps.
 
     Parameters
     ----------
@@ -124,12 +124,15 @@ def features(
     ----------
     Definition.
     """
+    # Direction and logarithmic size of the present request and of the smoothed one.
     library = library_of(tau)
     largest = units.most.max()
     now, size = _direction(tau, units.lever, largest)
     lately, before = _direction(state.smooth, units.lever, largest)
+    # Thrusts relative to the request, bounded by tanh.
     thrusts = library.tanh(state.thrusts / size)
     rows = [now, _log(size, largest), lately, _log(before, largest), thrusts, available, pull]
+    # Sine and cosine of the angles do not jump at half turns.
     return library.concatenate([*rows, sin(state.azimuths), cos(state.azimuths)], -1)
 
 
@@ -167,10 +170,10 @@ def propose(
     units: Units,
     weights: tuple,
 ) -> Commands:
-    """Commands of the network: how fast units turn, and thrusts at its prices that meet the request within limits.
+    """Commands of the network: turning of units, and thrusts at its prices that meet the request.
 
-    Without the network each unit turns towards the direction in which a newton is worth most, as the sequential
-    quadratic program does, and pays the price of its power. The network adds to the turning and changes the prices.
+    Without the network each unit turns to the direction in which a newton is worth most, as in the
+    sequential quadratic program, at the price of its power. The network adds to turning and prices.
 
     Parameters
     ----------
@@ -196,9 +199,11 @@ def propose(
     ----------
     As this module.
     """
+    # Limits of thrust, reduced where power is short.
     n = units.x.shape[-1]
     least = units.least * available
     most = units.most * available
+    # Next thrusts can differ from the last by the rate.
     old = state.thrusts
     reach = units.rate * h
     least = where(
@@ -206,23 +211,29 @@ def propose(
     )  # a unit at rest goes up to its least thrust
     low = clip(old - reach, least, most)
     high = clip(old + reach, least, most)
+    # Ask for more where slipstreams take thrust: the loss changes little within a step.
     asked = tau + taken(old, state.azimuths, units=units)
+    # Effects without slipstreams, since the loss is already in the request.
     plain = units._replace(tandem=None)
     effect = effects(old, state.azimuths, units=plain)
+    # What a newton of each load is worth at the present angles, without the network's prices.
     _, worth = completed(old, asked, effect, low, high, 1.0 + 0.0 * old, units=units)
     pull = _pull(worth, state.azimuths, units)
+    # The network adds to the turning towards the best direction.
     outputs = network(features(state, tau, available, pull, units=units), weights)
     turns = library_of(pull).tanh(_EAGERNESS * pull + _SWAY * outputs[..., :n])
     azimuths = _turned(state.azimuths, turns * units.turn * h * (available > 0.0), units)
+    # Solve again at the new angles, with the network's prices.
     effect = effects(old, azimuths, units=plain)
     prices = library_of(pull).exp(outputs[..., n:])
     thrusts, _ = completed(old, asked, effect, low, high, prices, units=units)
+    # First-order low-pass of the request.
     share = 1.0 - np.exp(-h / SMOOTHING)
     return Commands(thrusts, azimuths, state.smooth + share * (tau - state.smooth))
 
 
 def effects(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arithmetic:
-    """Load of one newton of each unit, slipstreams considered.
+    """Load of one newton of each unit, slipstreams included.
 
     Parameters
     ----------
@@ -240,17 +251,19 @@ def effects(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arith
     ----------
     Thruster configuration matrix: Skulstad 2021, eq. 2.4, with the full yaw arm; slipstreams: `interaction`.
     """
+    # Columns (cos a, sin a, (x sin a - y cos a) / lever).
     c = cos(azimuths)
     s = sin(azimuths)
     library = library_of(c)
     matrix = library.stack([c, s, (units.x * s - units.y * c) / units.lever], -2)
+    # Slipstreams reduce the thrust of the units that they hit.
     if units.tandem is None:
         return matrix
     return matrix * kept_shares(thrusts, azimuths, units=units)[..., None, :]
 
 
 def taken(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arithmetic:
-    """Load that slipstreams take from commands.
+    """Load that slipstreams take from commanded thrusts.
 
     Parameters
     ----------
@@ -270,6 +283,7 @@ def taken(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arithme
     """
     if units.tandem is None:
         return 0.0
+    # Lost thrust of each unit, then its load.
     lost = thrusts * (1.0 - kept_shares(thrusts, azimuths, units=units))
     c = cos(azimuths)
     s = sin(azimuths)
@@ -279,7 +293,7 @@ def taken(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arithme
 
 
 def kept_shares(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> Arithmetic:
-    """Share of its thrust that the slipstreams of the others leave to each unit.
+    """Share of thrust that each unit keeps in the slipstreams of the others.
 
     Parameters
     ----------
@@ -297,10 +311,14 @@ def kept_shares(thrusts: Arithmetic, azimuths: Arithmetic, *, units: Units) -> A
     ----------
     As `interaction.thrust_shares`. The speed of a slipstream goes with the root of its unit's thrust over the limit.
     """
+    # Speed of a slipstream, as the root of thrust over its limit.
     wash = sqrt(_used(thrusts, units) + 1e-6)
+    # A slipstream flows against the thrust that makes it.
     towards = where(thrusts > 0.0, azimuths + pi, azimuths)
+    # Angle between the slipstream and the direction to each other unit.
     off_axis = wrap(units.bearing - towards[..., :, None])
     shares = kept_share(off_axis, units.tandem, wash[..., :, None] / wash[..., None, :])
+    # Losses by several slipstreams multiply.
     return library_of(shares).prod(shares, -2)
 
 
@@ -342,6 +360,7 @@ def completed(
     ----------
     Newton's step of the power's Lagrangian; a unit beyond a limit stays there, and the others meet what is left.
     """
+    # Price P = c |f|^1.5, relative to the largest unit at its limit.
     library = library_of(thrusts)
     found = clip(thrusts, low, high)
     steep = (
@@ -349,23 +368,32 @@ def completed(
         * (units.full_power / units.full_power.max())
         * (units.most.max() / units.most) ** 1.5
     )
+    # Small thrusts count as quadratic: the curvature of |f|^1.5 is infinite at zero.
     used = maximum(abs(found), _GENTLE * units.most) / units.most.max()
+    # Second and first derivative of the price at the present thrusts.
     curve = 0.5 * steep / sqrt(used)  # of 2/3 of the power over thrust
     slope = steep * sqrt(used) * found / maximum(abs(found), _GENTLE * units.most)
+    # Everything over the largest thrust, so that the numbers are of order 1.
     request = _scaled(tau, units.lever)
     scale = units.most.max()
+    # Units whose bounds coincide are not free.
     free = (high > low) * (1.0 + 0.0 * found)
     turned = library.swapaxes(effect, -1, -2)
+    # A soft request keeps the system solvable where units cannot meet it.
     soft = _SOFT * library.eye(3, dtype=found.dtype)
+    # Units that reach a bound stay there; the others take over in the next round.
     for _ in range(_ROUNDS):
+        # Minimise the quadratic price subject to the request: B E B^T lambda = missing + B E slope.
         ease = free / curve
         missing = (request - (effect @ found[..., None])[..., 0]) / scale
         asked = missing + (effect @ (ease * slope)[..., None])[..., 0]
         across = (effect * ease[..., None, :]) @ turned
         worth = library.linalg.solve(across + soft, asked[..., None])
+        # Newton step of each unit for these multipliers.
         step = ease * ((turned @ worth)[..., 0] - slope)
         wanted = found + scale * step
         after = clip(wanted, low, high)
+        # Units that were clipped are no longer free; their slope follows the price.
         inside = wanted == after
         slope = slope + curve * (after - found) / scale
         free = free * inside
@@ -376,10 +404,12 @@ def completed(
 
 
 def _pull(worth, azimuths, units):
-    """Sine of the angle from each unit's direction to the one in which its newton is worth most; 0 of fixed units."""
+    """Sine of the angle between a unit and its best direction; 0 for fixed units."""
+    # Worth of a newton ahead and to starboard at the place of the unit, its moment included.
     X, Y, N = (worth[..., k][..., None] for k in range(3))
     ahead = X - units.y / units.lever * N
     aside = Y + units.x / units.lever * N
+    # Small worth gives a small pull: there the best direction means little.
     size = sqrt(ahead * ahead + aside * aside + 1e-6)
     return (cos(azimuths) * aside - sin(azimuths) * ahead) / size * (units.turn > 0.0)
 
@@ -408,7 +438,7 @@ def power(thrusts: Arithmetic, *, units: Units) -> Arithmetic:
 
 
 def _used(thrusts, units):
-    """Shares of their limits that thrusts are; 0 of a unit without thrust."""
+    """Shares of their limits that thrusts use; 0 for a unit without thrust."""
     astern = where(
         units.least < 0.0, -units.least, units.most
     )  # the safety layer may reverse a unit that turns
@@ -416,7 +446,7 @@ def _used(thrusts, units):
 
 
 def _turned(azimuths, turns, units):
-    """Directions after turning, within their intervals."""
+    """Directions after turning, within their intervals; fixed units keep theirs."""
     return where(units.turn > 0.0, clip(azimuths + turns, units.first, units.last), azimuths)
 
 
@@ -426,7 +456,7 @@ def _scaled(tau, lever):
 
 
 def _direction(tau, lever, largest):
-    """A load over its size, and its size with a floor. [1, N]"""
+    """A load over its size, and the size, which has a floor. [1, N]"""
     scaled = _scaled(tau, lever)
     size = sqrt((scaled * scaled).sum(-1)[..., None] + (_FLOOR * largest) ** 2)
     return scaled / size, size

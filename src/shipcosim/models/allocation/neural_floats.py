@@ -1,7 +1,7 @@
-"""`neural.propose` and `neural.taken` for one allocation in plain floats, several times as fast; tests compare them.
+"""`neural.propose` and `neural.taken` for one allocation in plain floats; tests compare them.
 
-An allocator FMU computes one allocation a step. Of vectors of three or four entries a call of NumPy costs more than
-what it computes; only the network is large enough for it.
+An allocator FMU computes one allocation a step. For vectors of three or four entries a NumPy call
+costs more than its result; only the network is large enough for NumPy.
 """
 
 from math import cos, exp, log, pi, remainder, sin, sqrt, tanh
@@ -73,7 +73,7 @@ class Floats(NamedTuple):
 
 
 def floats_of(units: Units, weights: tuple) -> Floats:
-    """What `propose` needs.
+    """Units and network as floats, as `propose` needs them.
 
     Parameters
     ----------
@@ -91,10 +91,12 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     ----------
     Definition.
     """
+    # Quantities that depend on the units alone, computed once.
     u = units
     largest = float(units.most.max())
     astern = np.where(u.least < 0.0, -u.least, u.most)
     steep = u.full_power / u.full_power.max() * (largest / u.most) ** 1.5
+    # Fields in the order of `FloatThruster`.
     own = (
         u.azimuth,
         u.turn,
@@ -110,11 +112,14 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     columns = (
         np.asarray(values, float).tolist() for values in (u.x / u.lever, u.y / u.lever, *own)
     )
+    # Only slipstreams that can hit a unit: the others keep all thrust.
     pairs = []
     kept = np.ones((len(u.x), len(u.x))) if u.tandem is None else u.tandem
     for front, behind in np.argwhere(kept < 1.0).tolist():
         bearing = float(u.bearing[front, behind])
         tandem = float(kept[front, behind])
+        # Loss over the angle from the axis, as `interaction.kept_share`: 130 / t^3 is its scale.
+        # [deg^3]
         pairs.append((front, behind, bearing, tandem, 130.0 / tandem**3))
     return Floats(
         tuple(FloatThruster(*row) for row in zip(*columns, strict=True)),
@@ -161,18 +166,23 @@ def propose(
     ----------
     As `neural`.
     """
+    # Request with the slipstream loss added, over the largest thrust and the lever.
     asked = tuple((axis + less) / of.largest for axis, less in zip(tau, lost, strict=True))
     asked = asked[0], asked[1], asked[2] / of.lever
+    # Bounds and effects of each unit at its last command.
     bounds = [
         _bounds(unit, f, share, h) for unit, f, share in zip(of.units, thrusts, usable, strict=True)
     ]
     effects = [_effect(unit, angle) for unit, angle in zip(of.units, azimuths, strict=True)]
+    # Worth of each load at these angles, and the pull of each unit to its best direction.
     worth = _completed(thrusts, asked, effects, bounds, [unit.steep for unit in of.units], of)[1]
     pull = [_pull(unit, worth, effect) for unit, effect in zip(of.units, effects, strict=True)]
+    # The network sees all of it, and puts out turning and prices.
     said = neural.network(
         _features(thrusts, effects, smooth, tau, usable, pull, of), of.weights
     ).tolist()
     angles = []
+    # Turn each unit by the pull and the network's share, within its interval.
     for unit, angle, share, own, more in zip(of.units, azimuths, usable, pull, said, strict=False):
         turn = (
             tanh(neural._EAGERNESS * own + neural._SWAY * more) * unit.turn * h
@@ -180,11 +190,13 @@ def propose(
             else 0.0
         )
         angles.append(min(max(angle + turn, unit.first), unit.last) if unit.turn > 0.0 else angle)
+    # Thrusts at the new angles and the network's prices.
     effects = [_effect(unit, angle) for unit, angle in zip(of.units, angles, strict=True)]
     steep = [
         unit.steep * exp(price) for unit, price in zip(of.units, said[len(angles) :], strict=True)
     ]
     found = _completed(thrusts, asked, effects, bounds, steep, of)[0]
+    # First-order low-pass of the request.
     share = 1.0 - exp(-h / neural.SMOOTHING)
     return (
         tuple(found),
@@ -212,18 +224,24 @@ def taken(thrusts: tuple, azimuths: tuple, of: Floats) -> tuple[float, float, fl
     ----------
     As `neural.effects`.
     """
+    # Without slipstreams nothing is lost.
     if not of.pairs:
         return 0.0, 0.0, 0.0
+    # Speed of each slipstream, as the root of thrust over its limit.
     limits = (
         unit.astern if f < 0.0 else unit.most for f, unit in zip(thrusts, of.units, strict=True)
     )
     wash = [sqrt(abs(f) / (limit + 1e-9) + 1e-6) for f, limit in zip(thrusts, limits, strict=True)]
+    # Losses by several slipstreams multiply.
     kept = [1.0] * len(thrusts)
     for front, behind, bearing, tandem, spread in of.pairs:
+        # A slipstream flows against the thrust that makes it.
         axis = azimuths[front] + pi if thrusts[front] > 0.0 else azimuths[front]
         cube = (abs(remainder(bearing - axis, 2.0 * pi)) * _DEGREES) ** 3
+        # Share kept at this angle; a weak slipstream takes less of a strong unit.
         share = tandem + (1.0 - tandem) * cube / (spread + cube)
         kept[behind] *= 1.0 - (1.0 - share) * min(1.0, wash[front] / wash[behind])
+    # Load of the lost thrusts.
     X = Y = N = 0.0
     for unit, f, angle, share in zip(of.units, thrusts, azimuths, kept, strict=True):
         c, s, arm = _effect(unit, angle)
@@ -262,12 +280,14 @@ def _pull(unit, worth, effect):
 
 def _features(thrusts, effects, smooth, tau, usable, pull, of):
     """As `neural.features`."""
+    # Direction and size of the smoothed and of the present request; size stays that of the latter.
     rows = []
     floor = (neural._FLOOR * of.largest) ** 2
     for X, Y, N in (smooth, tau):
         N = N / of.lever
         size = sqrt(X * X + Y * Y + N * N + floor)
         rows.append((X / size, Y / size, N / size, 0.4 * log(size / of.largest) + 1.0))
+    # Thrusts relative to the request, bounded by tanh.
     given = [tanh(f / size) for f in thrusts]
     sines = [effect[1] for effect in effects]
     cosines = [effect[0] for effect in effects]
@@ -280,6 +300,7 @@ def _completed(thrusts, asked, effects, bounds, steep, of):
     curves = []
     slopes = []
     free = []
+    # Quadratic price at each thrust: curvature, slope and ease, all over the largest thrust.
     for f, (low, high), price, unit in zip(thrusts, bounds, steep, of.units, strict=True):
         f = min(max(f, low), high)
         curve = 0.5 * price / sqrt(max(abs(f), unit.gentle) / of.largest)
@@ -288,10 +309,12 @@ def _completed(thrusts, asked, effects, bounds, steep, of):
         slopes.append(2.0 * curve * f / of.largest)
         free.append(1.0 / curve if high > low else 0.0)
     worth = 0.0, 0.0, 0.0
+    # Each round: three equations for the free units, then one Newton step.
     for _ in range(neural._ROUNDS):
         X0, Y0, N0 = asked
         a = d = f = neural._SOFT
         b = c = e = 0.0
+        # Right side and matrix of B E B^T lambda = request - B f + B E slope.
         for (X, Y, N), at, ease, slope in zip(effects, found, free, slopes, strict=True):
             less = ease * slope - at
             X0 = X0 + X * less
@@ -307,6 +330,7 @@ def _completed(thrusts, asked, effects, bounds, steep, of):
             f = f + ease * N * N
         worth = p, q, r = _three_equations(a, b, c, d, e, f, X0, Y0, N0)
         inside = True
+        # Newton step of each unit; one that leaves its bounds stays at its bound.
         for k, (X, Y, N) in enumerate(effects):
             at = found[k]
             (low, high) = bounds[k]
@@ -315,6 +339,7 @@ def _completed(thrusts, asked, effects, bounds, steep, of):
             if after != wanted:
                 free[k], inside = 0.0, False
             found[k] = after / of.largest
+            # The slope follows the quadratic price to the new thrust.
             slopes[k] += curves[k] * (found[k] - at)
         if inside:
             break

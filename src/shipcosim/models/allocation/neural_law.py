@@ -1,7 +1,7 @@
-"""One step of the neural allocator: what the network proposes, and the quadratic program that makes it safe.
+"""One step of the neural allocator: commands of the network, made safe by a quadratic program.
 
-The network's commands keep limits and rates already. The program takes them to the nearest ones that do so and meet
-the request best, as `sqp.nearest_step`; commands that meet it stay as they are.
+The network's commands keep limits and rates. The program finds the nearest commands that do so and
+meet the request best, as `sqp.nearest_step`; commands that already meet it stay as they are.
 """
 
 from typing import NamedTuple
@@ -99,6 +99,7 @@ def designed(
     ----------
     Definition.
     """
+    # Layers of the network; two outputs for each unit tell how many units it was trained for.
     weights = tuple(
         (arrays[f"{k}.weights"], arrays[f"{k}.bias"]) for k in range(1, len(arrays) // 2 + 1)
     )
@@ -107,13 +108,15 @@ def designed(
         raise ValueError(
             f"the network was trained for {trained} units, the ship has {len(units.x)}"
         )
+    # The same units for the quadratic program, which keeps the limits.
     rows = zip(*(np.asarray(values).tolist() for values in units[:10]), least_degraded, strict=True)
     safety = sqp.designed(tuple(_unit(*row) for row in rows), 0.0, units.lever, lever_degraded)
     return NeuralLaw(units, numbers, weights, safety, floats_of(units, weights))
 
 
 def _unit(x, y, azimuth, turn, first, last, least, most, rate, full_power, degraded):
-    """A unit as the quadratic program knows it."""
+    """A unit as the quadratic program needs it."""
+    # A unit that does not turn has an interval of one angle; its price is P = c |f|^1.5.
     interval = (first, last) if turn > 0.0 else (azimuth, azimuth)
     return sqp.AllocatedThruster(
         x, y, least, most, degraded, rate, *interval, turn, max(full_power, 1.0) / most**1.5
@@ -179,13 +182,17 @@ def step(
     ----------
     As `neural.propose` and `sqp.nearest_step`.
     """
+    # Only the units that exist; power may leave them a share of their limits.
     numbers = design.numbers
     left = tuple(shares[k] if shares else 1.0 for k in numbers)
     on = tuple(available[k] for k in numbers)
     zero = 0.0 * tau[0]
+    # Missing units have the share 0.
     usable = [where(unit, share + zero, zero) for unit, share in zip(on, left, strict=True)]
     thrusts, azimuths = (tuple(of[k] for k in numbers) for of in (state.thrusts, state.azimuths))
+    # Load that slipstreams take from the last commands.
     lost = _taken(thrusts, azimuths, design)
+    # Commands of the network, then the nearest ones that keep all limits and meet the request.
     wanted, angles, smooth = _proposed(
         (thrusts, azimuths, state.smooth), tau, usable, lost, h, design
     )
@@ -196,10 +203,12 @@ def step(
         tau[2] + lost[2],
     )  # within a step the loss hardly changes
     safe = sqp.nearest_step(last, wanted, angles, asked, on, h, design=design.safety, shares=left)
+    # Report the load with the slipstreams of the new commands.
     lost = _taken(safe.thrusts, safe.azimuths, design)
     X, Y, N = (
         axis - loss for axis, loss in zip((safe.tau_X, safe.tau_Y, safe.tau_N), lost, strict=True)
     )
+    # Put the commands back to their places among all units.
     all_thrusts = list(state.thrusts)
     all_azimuths = list(state.azimuths)
     for k, thrust, azimuth in zip(numbers, safe.thrusts, safe.azimuths, strict=True):
@@ -210,7 +219,8 @@ def step(
 
 
 def _proposed(before, tau, usable, lost, h, design):
-    """What the network proposes: thrusts, angles, and the smoothed request."""
+    """Commands of the network: thrusts, angles, and the smoothed request."""
+    # One number each: plain floats are several times as fast.
     if isinstance(tau[0], float):
         thrusts, azimuths, smooth = before
         return neural_floats.propose(thrusts, azimuths, smooth, tau, usable, lost, h, design.floats)

@@ -1,7 +1,7 @@
-"""Neural allocation of two azimuths and a tunnel thruster; the law is that of `neural_law`.
+"""Neural allocation of two azimuths and a tunnel thruster, with the law of `neural_law`.
 
-As trained for one ship: `tunnel_price` and `turning_time` of the parameters, which the optimal allocator weighs,
-have no effect here; the network was trained with the power of her units.
+The network is trained for one ship, with the power of her units. The parameters `tunnel_price` and
+`turning_time` of the optimal allocator have no effect here.
 """
 
 from dataclasses import dataclass
@@ -52,20 +52,25 @@ def units_of(parameters: NeuralParameters, full_power: tuple = (1.0, 1.0, 1.0)) 
     ----------
     Definition.
     """
+    # Without a known slipstream the forbidden sectors of the parameters hold.
     p = parameters
     port = (p.port_x, p.port_y)
     starboard = (p.starboard_x, p.starboard_y)
     first = (p.port_azimuth_first, p.starboard_azimuth_first)
     last = (p.port_azimuth_last, p.starboard_azimuth_last)
     bearing = tandem = None
+    # With slipstreams: forbid only the sector in which one azimuth blows on the other, DNV-ST-0111.
     if p.azimuth_diameter > 0.0:
         half = pi - atan(
             0.1 + p.azimuth_diameter / hypot(starboard[0] - port[0], starboard[1] - port[1])
         )
+        # Bearing from port to starboard, and back; each interval is centred away from the other
+        # unit.
         towards = atan2(starboard[1] - port[1], starboard[0] - port[0])
         back = wrap(towards + pi)
         first = (towards - half, back - half)
         last = (towards + half, back + half)
+        # Bearings and shares kept in each slipstream.
         sizes = dict(diameter_1=p.azimuth_diameter, diameter_2=p.azimuth_diameter)
         places = dict(x_1=port[0], y_1=port[1], x_2=starboard[0], y_2=starboard[1])
         bearing, tandem = pair_table(InteractionParameters(**places, **sizes), (0, 1, 2))

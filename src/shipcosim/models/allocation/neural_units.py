@@ -59,17 +59,21 @@ def units_of(
     ----------
     Definition.
     """
+    # Units with thrust; the others do not exist.
     p = parameters
     numbers = tuple(k for k, most in enumerate(p.of_units("thrust_max")) if most > 0.0)
     names = "x y azimuth thrust_min thrust_max thrust_rate azimuth_rate azimuth_first azimuth_last thrust_least".split()
     x, y, azimuth, low, high, rate, turn, first, last, least = (
         _chosen(p, name, numbers) for name in names
     )
+    # An empty interval of angles means no limit.
     free = last <= first
     first = np.where(free, -inf, first)
     last = np.where(free, inf, last)
+    # A unit that turns runs with its least thrust or more; the others reverse.
     least = np.where(turn > 0.0, np.minimum(least, high), low)
     bearing = tandem = None
+    # Slipstreams only where a diameter is given.
     if _chosen(p, "diameter", numbers).any():
         names = [f"{name}_{k}" for name in ("x", "y", "diameter") for k in range(1, UNITS + 1)]
         bearing, tandem = pair_table(

@@ -1,8 +1,9 @@
 """Optimal thrust allocation of two azimuths and a tunnel thruster: least power within all limits.
 
-The law is that of `sqp`; here are the units by name. Of each azimuth's allowed angles, a cone
-ahead and a cone astern, it keeps to one: one unit ahead and one astern can give any small load without a reversal. Its
-fixed angles `port_azimuth` and `starboard_azimuth` are those of laws that turn no unit, and are not used.
+The law is that of `sqp`; here are the units by name. An azimuth has two cones of allowed angles,
+ahead and astern, and keeps to one of them: one unit ahead and one astern can give any small load
+without a reversal. The parameters `port_azimuth` and `starboard_azimuth` belong to laws with fixed
+angles; they are not used here.
 """
 
 from dataclasses import dataclass
@@ -89,10 +90,12 @@ def design(parameters: OptimalParameters) -> OptimalProblem:
     ----------
     Definition.
     """
+    # Limits that both azimuths share; each has an interval of angles of its own.
     p = parameters
     force = p.azimuth_thrust_least, p.azimuth_thrust_max, p.azimuth_thrust_min, p.thrust_rate_max
     port = p.port_azimuth_first, p.port_azimuth_last, p.azimuth_rate_max, 1.0
     starboard = p.starboard_azimuth_first, p.starboard_azimuth_last, p.azimuth_rate_max, 1.0
+    # The tunnel points to starboard, cannot turn, and reverses.
     most = p.tunnel_thrust_max
     across = 0.5 * pi
     tunnel = -most, most, -most, p.thrust_rate_max, across, across, 0.0, p.tunnel_price
@@ -101,6 +104,7 @@ def design(parameters: OptimalParameters) -> OptimalProblem:
         AllocatedThruster(p.starboard_x, p.starboard_y, *force, *starboard),
         AllocatedThruster(p.tunnel_x, 0.0, *tunnel),
     )
+    # The tunnel's price is relative to an azimuth, whose price is 1.
     return designed(units, p.turning_time, p.yaw_lever, p.yaw_lever_degraded)
 
 

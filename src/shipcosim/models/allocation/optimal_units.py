@@ -115,6 +115,7 @@ def design(parameters: OptimalUnitsParameters) -> OptimalProblem:
     ----------
     Definition.
     """
+    # Parameters of each unit, in the order of `_unit`.
     p = parameters
     fixed = "x", "y", "azimuth", "thrust_min", "thrust_max", "thrust_rate"
     turning = "azimuth_rate", "azimuth_first", "azimuth_last", "thrust_least", "specific_power"
@@ -126,8 +127,10 @@ def design(parameters: OptimalUnitsParameters) -> OptimalProblem:
 
 
 def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, first, last, least, specific_power):
-    """A unit as `sqp` knows it."""
+    """A unit as `sqp` needs it."""
+    # Power over thrust^1.5, from the power at the largest thrust.
     price = specific_power * max(high, -low, 1.0) ** -0.5
+    # A unit that turns keeps its least thrust; without an interval it may turn anywhere.
     if azimuth_rate > 0.0:
         first, last = (first, last) if last > first else (-inf, inf)
         return AllocatedThruster(

@@ -1,7 +1,7 @@
-"""The neural allocator of paper V: the encoder of an autoencoder turns a requested load into commands.
+"""The neural allocator of paper V: an encoder turns a requested load into commands.
 
-What it learned of limits, rates, power and sectors it keeps as well as it learned it; nothing holds it to them. It
-knows no missing units: one that is lost gives nothing, and the others do not take over.
+It keeps limits, rates, power and sectors only as well as it learned them; nothing enforces them.
+It does not know missing units: a lost one gives nothing, and the others do not take over.
 
 References
 ----------
@@ -86,7 +86,7 @@ class PaperVState(NamedTuple):
 
 
 def design(arrays: Mapping[str, np.ndarray]) -> Encoder:
-    """What `step` needs, from what training left.
+    """Encoder and scales from the trained arrays.
 
     Parameters
     ----------
@@ -122,8 +122,10 @@ def at_rest(tau: Load, *, parameters: PaperVParameters) -> PaperVState:
     PaperVState
         The state.
     """
+    # The start angles also stand in the commands, so that nothing jumps before the first sample.
     azimuths = (parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * np.pi)
     commands = (0.0, 0.0, azimuths[0], 0.0, azimuths[1])
+    # Infinite time since the last sample: the network is evaluated at once.
     memory = tuple(Memory(np.zeros(width), np.zeros(width)) for width in WIDTHS)
     return PaperVState((0.0,) * 3, azimuths, 0.0, 0.0, 0.0, False, commands, memory, inf)
 
@@ -162,20 +164,25 @@ def step(
     PaperVState
         Commands and the load that they give.
     """
+    # The network runs at its own sample time; in between its commands are held.
     commands = state.commands
     memory = state.memory
     since = state.since
     if since > design.sample_time * (1.0 - _TOLERANCE):
+        # Standardise the load, and scale the outputs to thrusts and angles.
         found, memory = evaluate(design.encoder, (np.array(tau) - design.mean) / design.std, memory)
         commands = tuple((found * design.ranges).tolist())
         since = 0.0
+    # Order of the thrusters here: port, starboard, tunnel.
     tunnel, port, port_azimuth, starboard, starboard_azimuth = commands
     wanted = (port, starboard, tunnel)
     azimuths = (port_azimuth, starboard_azimuth, 0.5 * np.pi)
+    # Power and availability limit the thrusts; the network does not know of it.
     limits = zip(wanted, available, shares, _limits(parameters), strict=True)
     thrusts = tuple(
         clip(f, share * low, share * high) if on else 0.0 for f, on, share, (low, high) in limits
     )
+    # Load that these commands give.
     load = given((thrusts, azimuths), parameters=parameters)
     return PaperVState(thrusts, azimuths, *load, thrusts != wanted, commands, memory, since + h)
 
@@ -195,12 +202,14 @@ def given(commands: tuple[tuple, tuple], *, parameters: NamedUnits) -> Load:
     tuple of three, like a thrust
         X, Y, N. [N, N, N.m]
     """
+    # Components of both azimuths in body axes.
     (port, starboard, tunnel), (a, b, _) = commands
     p = parameters
     X1 = port * cos(a)
     Y1 = port * sin(a)
     X2 = starboard * cos(b)
     Y2 = starboard * sin(b)
+    # Moment N = x Y - y X of each unit.
     N = (
         p.port_x * Y1
         - p.port_y * X1

@@ -1,9 +1,9 @@
-"""Power of the thrusters: what two buses of the switchboard have is shared among the units that they feed.
+"""Power of the thrusters: each bus of the switchboard shares its power among its units.
 
-A propeller that gives the thrust T takes a power that goes with abs(T)^1.5. Each unit of a bus is granted the part of
-the bus' power that its present power has in that of all its units, and a little more, so that a unit at rest can start:
-the grants of a bus add up to what it has. A grant limits the unit's motor at once, and its thrust in the allocation,
-which asks the others for the rest as at any other limit of thrust.
+A propeller with thrust T takes a power proportional to abs(T)^1.5. Each unit of a bus is granted
+power in proportion to its present power, plus a little so that a unit at rest can start: the
+grants of a bus add up to its available power. A grant limits the motor of the unit at once, and its
+thrust in the allocation, which then asks the other units, as at any limit of thrust.
 """
 
 from dataclasses import dataclass
@@ -72,15 +72,19 @@ def granted_power(
     ----------
     Power over thrust of a propeller at bollard: abs(T)^1.5; the sharing is assumed.
     """
+    # Power at the commanded thrusts, |T|^1.5, plus an idle share so that a unit at rest can start.
     wanted = [
         most * (share * sqrt(share + _ALMOST_NONE) + parameters.idle_share)
         for most, share in zip(parameters.largest, used, strict=True)
     ]
+    # Sum over the units of each bus.
     on_b = [where(bus > 0.5, 1.0, 0.0) for bus in parameters.buses]
     total_b = sum(power * on for power, on in zip(wanted, on_b, strict=True))
     total_a = sum(power * (1.0 - on) for power, on in zip(wanted, on_b, strict=True))
+    # Available power of each bus over what its units want.
     left_a = available[0] / (total_a + _ALMOST_NONE)
     left_b = available[1] / (total_b + _ALMOST_NONE)
+    # Each unit gets its part of its bus.
     a, b, c = (
         power * (on * left_b + (1.0 - on) * left_a) for power, on in zip(wanted, on_b, strict=True)
     )
@@ -108,6 +112,7 @@ def thrust_shares(
     ----------
     As `granted_power`.
     """
+    # Invert P = P_full (T / T_max)^1.5; more power than full thrust needs is no limit.
     a, b, c = (
         minimum(1.0, (power / most + _ALMOST_NONE) ** (2.0 / 3.0))
         for power, most in zip(granted, parameters.largest, strict=True)

@@ -64,6 +64,7 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
         (p.port_x, p.port_y, p.port_azimuth),
         (p.starboard_x, p.starboard_y, p.starboard_azimuth),
     ):
+        # Force (cos a, sin a) at (x, y), and its moment x sin a - y cos a.
         c = cos(angle)
         s = sin(angle)
         units.append((c, s, x * s - y * c))
@@ -94,10 +95,12 @@ def design(parameters: AllocationParameters) -> ThrusterInverses:
     Weighted generalised inverse: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley,
     2021.
     """
+    # Configuration matrix, and prices as W^-1/2.
     p = parameters
     b = effect(p)
     matrix = np.stack(np.broadcast_arrays(*(_vector(*unit) for unit in b)), -1)
     price = _vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
+    # An inverse for every set of free units, with both yaw levers.
     inverses = [
         _inverse(matrix, price, lever, [(k >> unit) & 1 for unit in range(3)])
         for lever in (p.yaw_lever, p.yaw_lever_degraded)
@@ -171,10 +174,13 @@ def step(
     ----------
     Weighted generalised inverse as `design`; that thrust beyond a limit is allocated to the free units is assumed.
     """
+    # Thrusts within their limits, then the load that they miss.
     limits = _limits(shares, parameters)
     wanted = _within_limits(tau, available, limits, design=design)
     X, Y, N = missed(tau, wanted, design.effect)
+    # More than 1 N, or its moment at the yaw lever, counts as missed.
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
+    # Move each thrust at its largest rate; excess over the power limit is removed at once.
     reach = parameters.thrust_rate_max * h
     port, starboard, tunnel = [
         where(usable, clip(old + clip(new - old, -reach, reach), *limit), 0.0)
@@ -199,11 +205,14 @@ def _limits(shares, parameters):
 
 
 def _within_limits(tau, available, limits, *, design):
-    """Thrusts for a load, without rate limit. What one unit cannot give is allocated to those not yet at a limit."""
+    """Thrusts for a load, without rate limits; free units take over what another cannot give."""
+    # Free units; number 8 on selects the inverses for a ship with a missing unit.
     free = [where(usable, 1.0, 0.0) for usable in available]
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
     held = [0.0, 0.0, 0.0]
+    # At most three rounds: each holds the units that are beyond a limit.
     for _ in range(3):
+        # Solve for the free units, with the load that the held ones leave.
         a, b, c = _solve(missed(tau, held, design.effect), free, missing, design.inverses)
         given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
@@ -217,6 +226,7 @@ def _within_limits(tau, available, limits, *, design):
         )
         if not anywhere:
             break
+        # Hold the units beyond a limit, and ask the others for the rest.
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
     return thrusts
@@ -224,6 +234,7 @@ def _within_limits(tau, available, limits, *, design):
 
 def _solve(tau, free, missing, inverses):
     """Thrusts of the free units for a load, 0 for the others."""
+    # Number of the set of free units; its inverse times the load.
     chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
     a, b, c, d, e, f, g, h, i = _choose(chosen, inverses)
     X, Y, N = tau
@@ -232,6 +243,7 @@ def _solve(tau, free, missing, inverses):
 
 def _inverse(matrix, price, lever, free):
     """Nine elements of the generalised inverse of the free units' effect, row by row."""
+    # W^-1/2 (S B W^-1/2)^+ S, with S for the yaw lever and only the free units' columns.
     scale = _vector(1.0, 1.0, 1.0 / lever)
     weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
     inverse = price[..., :, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale[..., None, :]
@@ -245,8 +257,10 @@ def _vector(*values):
 
 def _choose(index, rows):
     """Row of an index that may differ from element to element."""
+    # One number: pick its row.
     if isinstance(index, float):
         return rows[int(index)]
+    # Many numbers: each element takes the row of its own index.
     chosen = rows[0]
     for number, row in enumerate(rows[1:], 1):
         chosen = [where(index == number, new, old) for new, old in zip(row, chosen, strict=True)]

@@ -9,9 +9,10 @@ with the limits of thrust, angle and their rates as bounds. q_i is the curvature
 the last multipliers λ, times 1 + T/h, so that a unit turns towards the cheapest direction with the time constant T.
 A second program for the thrusts alone, at the new angles, takes away the error of the linearised effect.
 
-A unit keeps to its interval of angles. Outside of it, as at the start, it gives no thrust and turns to its nearer end.
-A unit that turns keeps at least its least thrust, so that it never reverses and turning has an effect at once. Only
-where another unit is missing it may reverse: those that are left could not push the other way in time.
+A unit stays within its interval of angles. Outside, as at the start, it gives no thrust and turns
+to the nearer end. A unit that turns keeps at least its least thrust: it never reverses, and turning
+has an effect at once. It may reverse only where another unit is missing: the remaining units could
+not push the other way in time.
 """
 
 from typing import NamedTuple
@@ -136,6 +137,7 @@ def designed(
     ----------
     Definition.
     """
+    # Largest price of one more newton, d/df (c f^1.5) at full thrust: it scales the slack.
     dearest = max(1.5 * unit.price * sqrt(max(unit.most, -unit.least, 0.0)) for unit in units)
     return OptimalProblem(units, turning_time, yaw_lever, yaw_lever_degraded, max(dearest, 1e-9))
 
@@ -200,6 +202,7 @@ def power_step(
     quadratic programming, IEEE Trans. Control Systems Technology 12(1), 2004. Instead of their price of a singular
     configuration, units that turn keep a least thrust.
     """
+    # The slack is so small that no price of power outweighs the request.
     slack = _TIGHT * max(unit.most for unit in design.units) / design.dearest
     return _step(state, tau, available, h, design, shares, slack, None)
 
@@ -244,7 +247,7 @@ def nearest_step(
 
 
 def _step(state, tau, available, h, design, shares, slack, proposed):
-    """Both programs: changes of thrust and angle, then thrusts at the new angles."""
+    """Solve both programs: changes of thrust and angle, then thrusts at the new angles."""
     # True if no unit is missing.
     missing = sum(
         where(on, 0.0, 1.0)
@@ -252,40 +255,52 @@ def _step(state, tau, available, h, design, shares, slack, proposed):
         if unit.most > 0.0
     )
     whole = missing < 0.5
+    # Units with their last commands and the bounds of the next.
     around = _around(state, available, whole, h, design, shares or (1.0,) * len(design.units))
+    # First program: unknowns are the change of each thrust and, where it turns, of each angle.
     unmet = tau
     changes = []
     for at in around:
+        # The request less the load of the last commands.
         unmet = _less(unmet, at.effect, at.thrust)
+        # Price of the changes: power, or the distance to proposed commands.
         ease, wanted, turn_ease, turn = (
             _nearest(at, *proposed) if proposed else _cheapest(at, state.marginal, design, h)
         )
         X, Y, N = at.effect
         changes.append(Command(X, Y, N, ease, wanted, at.low - at.thrust, at.high - at.thrust))
+        # Turning by one radian moves the force across: f b'(alpha).
         if at.unit.azimuth_rate > 0.0:
             (X, Y, N) = at.turning
+            # A unit almost at rest turns as if it had a little thrust, else it would never turn.
             stir = _STIR * at.unit.most
             f = where(abs(at.thrust) < stir, stir + 0.0 * at.thrust, at.thrust)
             changes.append(Command(f * X, f * Y, f * N, turn_ease, turn, at.left, at.right))
+    # A missed moment counts as a missed force at the lever; shorter levers put position first.
     lever = where(whole, design.yaw_lever, design.yaw_lever_degraded)
     slacks = (slack, slack, slack * lever * lever)
     found, marginal = solve(unmet, changes, slacks)
+    # Second program: thrusts alone at the new angles, which removes the error of linearising.
     turned = []
     forces = []
     near = []
     unmet = tau
     for at in around:
+        # Command of this unit's thrust in the list of both kinds of changes.
         command = changes[len(changes) - len(found)]
         near = [*near, found[0]]
         found = found[1:]
         angle = at.azimuth
+        # Apply the change of angle within the interval.
         if at.unit.azimuth_rate > 0.0:
             angle = clip(angle + found[0], at.first, at.last)
             found = found[1:]
+        # Effect at the new angle.
         effect = X, Y, N = _effect(at.unit, *sincos(angle))
         turned.append(angle)
         forces.append(command._replace(X=X, Y=Y, N=N))
         unmet = _less(unmet, effect, at.thrust)
+    # Start from the first solution: it is near the second.
     found = solve(unmet, forces, slacks, near)[0]
     thrusts = [
         clip(at.thrust + change, at.low, at.high) for at, change in zip(around, found, strict=True)
@@ -294,10 +309,11 @@ def _step(state, tau, available, h, design, shares, slack, proposed):
 
 
 def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design):
-    """The state of new commands."""
+    """State after new commands."""
     zero = 0.0 * tau[0]
     all_thrusts = [zero] * len(state.thrusts)
     azimuths = list(state.azimuths)
+    # Load that the new commands miss; moving is set while a unit is limited by its rate.
     unmet = tau
     moving = zero > 0.0
     for at, f, angle, force in zip(around, thrusts, turned, forces, strict=True):
@@ -306,6 +322,7 @@ def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
         moving = moving | (abs(f - at.thrust) > 0.999 * at.unit.thrust_rate * h)
         if at.unit.azimuth_rate > 0.0:
             moving = moving | (abs(angle - at.azimuth) > 0.999 * at.unit.azimuth_rate * h)
+    # Saturated: the load is missed although no unit is still on its way.
     X, Y, N = unmet
     missed = X * X + Y * Y + (N / design.yaw_lever) ** 2 > 1.0
     load = (tau[0] - X, tau[1] - Y, tau[2] - N)
@@ -313,7 +330,7 @@ def _commanded(state, tau, around, thrusts, turned, forces, marginal, h, design)
 
 
 class _Around(NamedTuple):
-    """A unit at its last command, and the bounds of the next."""
+    """A unit with its last command and the bounds of the next."""
 
     index: int
     unit: AllocatedThruster
@@ -330,14 +347,16 @@ class _Around(NamedTuple):
 
 
 def _around(state, available, whole, h, design, shares):
-    """The units that there are."""
+    """Units that exist, with their effects and bounds."""
     found = []
     units = zip(design.units, state.thrusts, state.azimuths, available, shares, strict=True)
     for index, (unit, f, angle, on, share) in enumerate(units):
         if unit.most <= 0.0:
             continue
+        # Effect of the thrust at its angle, and derivative of the effect with the angle.
         s, c = sincos(angle)
         turning = (-s, c, unit.x * c + unit.y * s)
+        # With a missing unit a unit may reverse, down to its degraded least thrust.
         bounds = _bounds(
             unit,
             f,
@@ -352,23 +371,29 @@ def _around(state, available, whole, h, design, shares):
 
 
 def _bounds(unit, f, angle, on, least, most, h):
-    """Least and largest next thrust, and change of the angle; least and largest next angle."""
+    """Bounds of the next thrust, of the change of the angle, and of the next angle."""
+    # Thrust within its limits and its rate.
     reach = unit.thrust_rate * h
     reverses = least < 0.0
     high = minimum(most, f + reach)
+    # A unit that never reverses moves up to its least thrust as fast as it can.
     low = where(
         reverses, clip(f - reach, least, most), minimum(clip(least, f - reach, f + reach), high)
     )
     high = where(reverses, clip(f + reach, least, most), high)
+    # A fixed direction has no turning.
     if unit.azimuth_rate <= 0.0:
         return where(on, low, 0.0 * low), where(on, high, 0.0 * high), 0.0, 0.0, angle, angle
+    # Inside its interval a unit turns at its rate, up to the ends.
     turn = unit.azimuth_rate * h
     end = clip(angle, unit.first, unit.last)
     inside = end == angle
+    # Outside, it first reduces its thrust to zero, then turns to the nearer end.
     fade = clip(0.0 * f, f - reach, f + reach)
     back = where(abs(f) > 0.0, 0.0 * angle, clip(end - angle, -turn, turn))
     left = where(inside, maximum(unit.first - angle, -turn), back)
     right = where(inside, minimum(unit.last - angle, turn), back)
+    # A missing unit gives nothing at once and keeps its angle.
     return (
         where(on, where(inside, low, fade), 0.0 * f),
         where(on, where(inside, high, fade), 0.0 * f),
@@ -380,15 +405,19 @@ def _bounds(unit, f, angle, on, least, most, h):
 
 
 def _cheapest(at, marginal, design, h):
-    """Ease and target of the changes of thrust and angle by the power's price."""
+    """Ease and target of changes of thrust and angle, by the price of power."""
+    # Slope of the price c |f|^1.5 is 1.5 c |f|^0.5.
     unit = at.unit
     f = at.thrust
     k = 1.5 * unit.price
     size = abs(f)
+    # Below a small thrust the price is quadratic: its curvature stays finite.
     gentle = _GENTLE * max(unit.most, -unit.least)
+    # Astern a unit may have another limit at the same full power: the price is higher there.
     astern = -min(unit.least, unit.least_degraded)
     if astern > 0.0 and astern != unit.most:
         k = where(f < 0.0, k * (unit.most / astern) ** 1.5, k)
+    # Quadratic price with the same slope and curvature: target and ease of the change.
     firm = maximum(size, gentle)
     root = sqrt(firm)
     above = where(size > gentle, 2.0, 1.0)
@@ -396,17 +425,21 @@ def _cheapest(at, marginal, design, h):
     wanted = -above * f
     if unit.azimuth_rate <= 0.0:
         return ease, wanted, 0.0, 0.0
+    # Curvature along the angle, f b . lambda, at least that of a small price.
     (X, Y, N) = at.effect
     (p, q, r) = marginal
     pull = X * p + Y * q + N * r
     pull = maximum(where(f < 0.0, -pull, pull), k * sqrt(gentle))
+    # The factor 1 + T/h turns with the time constant T.
     return ease, wanted, 1.0 / (firm * pull * (1.0 + design.turning_time / h)), 0.0
 
 
 def _nearest(at, thrusts, azimuths):
-    """The same by the distance from proposed commands."""
+    """Ease and target by the distance from proposed commands."""
+    # Turning by one radian moves the tip of the thrust by |f|; the arm has a floor.
     f = at.thrust
     arm = maximum(abs(f), _GENTLE * at.unit.most)
+    # Targets are the proposed commands, the short way round, within the bounds.
     s, c = sincos(azimuths[at.index] - at.azimuth)
     return (
         1.0,
@@ -424,5 +457,5 @@ def _effect(
 
 
 def _less(tau, effect, f):
-    """A load without that of a thrust."""
+    """A load less that of a thrust."""
     return tau[0] - effect[0] * f, tau[1] - effect[1] * f, tau[2] - effect[2] * f

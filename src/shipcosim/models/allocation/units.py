@@ -1,4 +1,4 @@
-"""What allocators share: two azimuth thrusters and a tunnel thruster as they know them, commands and their power."""
+"""Definitions of all allocators: two azimuths and a tunnel thruster, commands, and their power."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,9 +37,9 @@ class NamedUnits:
 
 
 class Allocated(NamedTuple):
-    """State of an allocator: its last commands and what they give.
+    """State of an allocator: its last commands and their load.
 
-    A law that has to remember more has a record of its own with these fields and more.
+    A law with more memory has a record of its own with these fields and more.
 
     Parameters
     ----------
@@ -80,13 +80,14 @@ def no_thrust(tau: Load, azimuths: tuple) -> Allocated:
     ----------
     Definition.
     """
+    # Angles in the shape of the load, so that arrays of loads give arrays of states.
     zero = 0.0 * tau[0]
     angles = tuple(zero + angle for angle in azimuths)
     return Allocated((zero,) * len(azimuths), angles, zero, zero, zero, zero > 0.0)
 
 
 def used_shares(thrusts: tuple, least: tuple, most: tuple) -> tuple:
-    """Shares of their limits of thrust that units are commanded.
+    """Shares of their limits of thrust that units use.
 
     Parameters
     ----------
@@ -204,7 +205,7 @@ def missed(tau: Load, thrusts: Sequence, effect: tuple) -> Load:
 
 
 def slack(tau: Load, given: Load) -> Load:
-    """What commands leave unmet of a requested load; differences below a millionth are rounding and count as none.
+    """Load that commands leave unmet; differences below a millionth count as rounding.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Expectations as they are drawn: the allowed band of a signal in its window, coloured by whether it held."""
+"""Bands of expectations: the allowed range of a signal in its window, and whether it held."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -30,7 +30,8 @@ class Band:
 
 
 def window(time: NDArray, expect: Expectation) -> NDArray:
-    """Rows that an expectation looks at, (m,)."""
+    """Rows in the window of an expectation, (m,)."""
+    # Times are rounded in files: a row at the edge of the window belongs to it.
     start, end = expect.during or (-np.inf, np.inf)
     return np.flatnonzero((time >= start - 1e-6) & (time <= end + 1e-6))
 
@@ -57,6 +58,7 @@ def bands_of(
     """
     found = []
     for verdict in verdicts:
+        # An expectation whose window has no row is not drawn.
         rows = window(shown["time"].values, verdict.expect)
         if signal in verdict.expect.signal and len(rows):
             found.append(_band_of(shown.isel(time=rows), signal, verdict, minus))
@@ -70,6 +72,7 @@ def distance_bands(
     found = []
     for verdict in verdicts:
         time = shown["time"].values[window(shown["time"].values, verdict.expect)]
+        # One limit on the distance from the point, from zero up to the radius.
         if verdict.expect.signal == signals and verdict.expect.near is not None and len(time):
             limit = np.full(len(time), verdict.expect.within)
             found.append(_band(time, 0.0 * limit, limit, verdict.passed))
@@ -78,6 +81,8 @@ def distance_bands(
 
 def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) -> Band:
     """Band over the rows of `part`."""
+    # Limits in absolute terms, then relative to the subtracted signal where the panel shows an
+    # error.
     drawn = part[signal].values
     lower, upper = _limits(part, signal, verdict.expect)
     if minus is not None:
@@ -85,10 +90,12 @@ def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) ->
         lower = lower - middle
         upper = upper - middle
         drawn = drawn - middle
+        # An error in heading is drawn the short way round: move the band by the same turns.
         if part[signal].attrs["units"] == "deg":
             turn = wrap_series(lower) - lower
             lower = lower + turn
             upper = upper + turn
+    # An open side is drawn to a little beyond the curve: it has no limit of its own.
     least, most = (pick(drawn[np.isfinite(drawn)], initial=0.0) for pick in (np.min, np.max))
     pad = 0.1 * (most - least)
     lower = np.where(np.isfinite(lower), lower, np.fmin(least, upper) - pad)
@@ -102,19 +109,22 @@ def _limits(part: Dataset, signal: str, expect: Expectation) -> tuple[NDArray, N
     unit = part[signal].attrs["units"]
     factor = part[signal].attrs["factor"]
     ones = np.ones(len(values))
+    # Fixed limits: constant over the window, infinite where there is none.
     if expect.near is None:
         least = -np.inf if expect.at_least is None else expect.at_least * factor
         most = np.inf if expect.at_most is None else expect.at_most * factor
         return least * ones, most * ones
+    # Limits around a target, which is a number or another signal.
     near = expect.near[expect.signal.index(signal)]
     middle = part[near].values if isinstance(near, str) else near * factor * ones
+    # Move the target to the turn on which the heading is drawn.
     if unit == "deg":
         middle = middle + 360.0 * np.round((values - middle) / 360.0)
     return middle - expect.within * factor, middle + expect.within * factor
 
 
 def _band(time: NDArray, lower: NDArray, upper: NDArray, passed: bool) -> Band:
-    """A band with as few corners as it needs."""
+    """Make a band; a constant one needs only its two ends."""
     if np.ptp(lower) == 0.0 and np.ptp(upper) == 0.0:
         time = time[[0, -1]]
         lower = lower[[0, -1]]

@@ -1,4 +1,4 @@
-"""The page of two runs: both in one scene, both in every plot, and in figures how far they differ."""
+"""The page of two runs: both in one scene and in every plot, and their differences as numbers."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -35,7 +35,7 @@ SAME = 1e-9  # of a signal's range: a difference below it is rounding
 
 
 class Difference(NamedTuple):
-    """By how much a signal differs: root mean square, largest, when, in its unit and over its range."""
+    """Difference of a signal: rms, largest, its time, in the signal's unit; rms over its range."""
 
     signal: str
     unit: str
@@ -92,6 +92,7 @@ def write_comparison(
     ShipcosimError
         If a run has no rows, the two have no signal in common, or the file cannot be written.
     """
+    # Put both runs on common times, then compare and write.
     pair = lay_over(tables, names)
     found = _ordered(pair, differences(pair))
     page = _page(pair, found)
@@ -107,6 +108,7 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
     ShipcosimError
         If a run has no rows, or the two have no signal in common.
     """
+    # Collect what makes a comparison impossible before raising.
     empty = [name for name, table in zip(names, tables, strict=True) if not table.sizes["time"]]
     problems = [Problem(name, "The run has no rows.", "Give one that has.") for name in empty]
     if not problems and not set(tables[0].data_vars) & set(tables[1].data_vars):
@@ -120,17 +122,20 @@ def lay_over(tables: tuple[Dataset, Dataset], names: tuple[str, str]) -> Pair:
         ]
     if problems:
         raise ShipcosimError(problems)
+    # Where the runs have no time in common, move the second to the start of the first.
     times = [np.asarray(table["time"].values, float) for table in tables]
     apart = times[1][0] > times[0][-1] or times[1][-1] < times[0][0]
     shift = float(times[0][0] - times[1][0]) if apart else 0.0
+    # All times of both runs; rounding makes equal times equal.
     common = np.union1d(np.round(times[0], 9), np.round(times[1] + shift, 9))
+    # Both in the units of the first, interpolated to the common times.
     first, second = (shown_table(table, ())[1] for table in tables)
     second = second.assign_coords(time=second["time"].values + shift)
     return Pair(names, tables, (_on(first, common), _on(_like(second, first), common)), shift)
 
 
 def differences(pair: Pair) -> list[Difference]:
-    """By how much the signals that both have differ where both are; angles the short way round.
+    """Differences of common signals where both runs have values; angles the short way round.
 
     Parameters
     ----------
@@ -144,21 +149,26 @@ def differences(pair: Pair) -> list[Difference]:
     first, second = pair.shown
     time = first["time"].values
     found = []
+    # Angles the short way round: a difference of 359 deg is one of 1 deg.
     for name in (str(n) for n in first.data_vars if n in second):
         a = first[name].values
         b = second[name].values
         unit = first[name].attrs["units"]
         gap = wrap_series(b - a) if unit == "deg" else b - a
+        # Only rows where both runs have a value.
         both = np.isfinite(gap)
         if not both.any():
             continue
+        # Largest difference, and the range of the signal that scales it.
         size = np.abs(gap[both])
         most = int(np.argmax(size))
+        # A constant signal has no range: use its size, else the difference.
         span = (
             max(float(np.ptp(v[both])) for v in (a, b))
             or float(np.max(np.abs(a[both])))
             or float(size[most])
         )
+        # Smaller differences are rounding.
         if size[most] > SAME * max(span, np.finfo(float).tiny):
             rms = float(np.sqrt(np.mean(size**2)))
             found.append(
@@ -170,9 +180,11 @@ def differences(pair: Pair) -> list[Difference]:
 
 
 def _on(shown: Dataset, time: NDArray) -> Dataset:
-    """A table at other times: on straight lines between its rows, logical signals as they were last."""
+    """Interpolate a table linearly to other times; logical signals hold their last value."""
+    # Rows before the start and after the end of the run have no value.
     own = np.round(shown["time"].values, 9)
     inside = (time >= own[0]) & (time <= own[-1])
+    # Last row at or before each time, for signals that step.
     rows = np.clip(np.searchsorted(own, time, side="right") - 1, 0, len(own) - 1)
     found = {}
     for name, v in shown.data_vars.items():
@@ -187,14 +199,16 @@ def _on(shown: Dataset, time: NDArray) -> Dataset:
 
 
 def _like(shown: Dataset, other: Dataset) -> Dataset:
-    """The table in the other's units, its angles moved by whole turns to lie beside the other's."""
+    """The table in the other's units, angles moved by whole turns to the other's."""
     found = {}
     for name, v in shown.data_vars.items():
         values = v.values.astype(float)
+        # Convert units by the factors that the page applies to both.
         attributes = dict(v.attrs)
         if name in other and other[name].attrs["units"] != attributes["units"]:
             values = values * other[name].attrs["factor"] / attributes["factor"]
             attributes |= {key: other[name].attrs[key] for key in ("units", "factor")}
+        # Compare medians: single wraps must not decide how many turns to move.
         if name in other and attributes["units"] == "deg" and np.isfinite(values).any():
             gap = np.nanmedian(values) - np.nanmedian(other[name].values)
             values = values - 360.0 * np.round(gap / 360.0) if np.isfinite(gap) else values
@@ -237,7 +251,7 @@ def _page(pair: Pair, found: Sequence[Difference]) -> RunPage:
 
 
 def _merged(pair: Pair) -> Dataset:
-    """Signals of both by the names of their runs."""
+    """Signals of both runs, with the name of the run in front."""
     return xr.Dataset(
         {
             f"{run}: {name}": v.assign_attrs(long_name=f"{v.attrs['long_name']}, {run}")
@@ -248,7 +262,7 @@ def _merged(pair: Pair) -> Dataset:
 
 
 def _sections(pair: Pair) -> tuple[Section, ...]:
-    """The panels of the first run with both runs in each."""
+    """Panels of the first run, with both runs in each."""
     roles = shown_table(pair.tables[0], ())[0]
     made = []
     for section in make_sections(pair.shown[0], roles, ()):
@@ -261,11 +275,13 @@ def _sections(pair: Pair) -> tuple[Section, ...]:
 
 
 def _doubled(panel: Panel, pair: Pair) -> Panel | None:
-    """A panel with both runs: each in its colour, or where there are several curves the second run dashed."""
+    """A panel with both runs: one curve each by colour; several curves, the second run dashed."""
+    # Only curves that both runs have; of several, those of the ship itself.
     lines = [line for line in panel.lines if line.signal in pair.shown[1]]
     own = [line for line in lines if line.label in THE_LINE] or lines
     if not own:
         return None
+    # One curve each: the colour tells the runs apart.
     if len(own) == 1:
         pairs = zip(pair.names, COLOURS, strict=True)
         both = [
@@ -273,6 +289,7 @@ def _doubled(panel: Panel, pair: Pair) -> Panel | None:
             for n, c in pairs
         ]
     else:
+        # Several curves keep their colours; the line style tells the runs apart.
         both = [
             replace(line, signal=f"{name}: {line.signal}", label=f"{line.label}, {name}", dash=dash)
             for line in own
@@ -287,10 +304,11 @@ def _span(table: Dataset) -> str:
 
 
 def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
-    """One sentence: how far apart the ships get, else by how much the signal that differs most does."""
+    """One sentence: largest distance of the ships, else the signal that differs most."""
     common = sum(1 for name in pair.shown[0].data_vars if name in pair.shown[1])
     if not found:
         return Outcome("passed", "SAME", f"All {common} signals that both have are the same.")
+    # Distance between the ships at each common time.
     roles = shown_table(pair.tables[0], ())[0]
     position = [roles.signal(roles.ship, axis) for axis in "xy"]
     if all(name in pair.shown[1] and name in pair.shown[0] for name in position):
@@ -304,6 +322,7 @@ def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
             usual = plain(float(rms))
             text = f"The ships lie up to {most} m apart, at {when:g} s; {usual} m rms."
             return Outcome("plain", "DIFFER", f"{text} {len(found)} of {common} signals differ.")
+    # Without positions: the signal with the largest difference over its range.
     worst = max(found, key=lambda one: one.share)
     return Outcome(
         "plain", "DIFFER", f"{len(found)} of {common} signals differ, most of all {worst.signal}."
@@ -313,16 +332,19 @@ def _outcome(pair: Pair, found: Sequence[Difference]) -> Outcome:
 def _remarks(pair: Pair) -> list[str]:
     said = []
     first, second = pair.names
+    # Runs without common times were moved; the reader must know.
     if pair.shift:
         said.append(
             f"The runs have no time in common: {second} is moved by {pair.shift:g} s to start with {first}."
         )
+    # Differences cover only the time that both runs have.
     ends = [table["time"].values[[0, -1]] for table in pair.tables]
     spans = [ends[0], ends[1] + pair.shift]
     if not np.allclose(*spans):
         start = max(span[0] for span in spans)
         end = min(span[1] for span in spans)
         said.append(f"Differences are those between {start:g} and {end:g} s, where both runs are.")
+    # Signals that only one run has: name the first five.
     for name, own, other in ((first, *pair.shown), (second, *pair.shown[::-1])):
         if alone := [str(signal) for signal in own.data_vars if signal not in other]:
             more = f" and {len(alone) - 5} more" if len(alone) > 5 else ""
@@ -355,13 +377,15 @@ def _table(found: Sequence[Difference]) -> Table:
 
 
 def _details(pair: Pair) -> tuple[Detail, ...]:
-    """What is not the same in what the tables say of their runs: start values, events, versions."""
+    """Entries that differ between the attributes of the runs: start values, events, versions."""
+    # Start values have a table of their own.
     attributes = [
         {str(key): parsed(value) for key, value in table.attrs.items()} for table in pair.tables
     ]
     found = [
         _unlike("Start values that differ", pair, [_known(a, "start_values") for a in attributes])
     ]
+    # Everything else that the tables say of their runs, without long lists.
     rest = [
         {k: v for k, v in a.items() if k not in ("start_values", "remarks", "fmus")}
         for a in attributes
@@ -376,7 +400,7 @@ def _known(attributes: Mapping[str, Any], key: str) -> Mapping[str, Any]:
 
 
 def _unlike(title: str, pair: Pair, contents: Sequence[Mapping[str, Any]]) -> Detail | None:
-    """A table of the entries that are not the same in both, or None."""
+    """A table of the entries that differ, or None."""
     names: Iterable[str] = dict.fromkeys([*contents[0], *contents[1]])
     said = [(name, *(str(content.get(name, "–")) for content in contents)) for name in names]
     rows = tuple(row for row in said if row[1] != row[2])

@@ -1,4 +1,4 @@
-"""Signals that no component puts out but every reader looks for: errors, distances, wind as speed and direction."""
+"""Derived signals: errors, distances, wind and current as speed and direction."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ FROM_EXPECTED = "distance from expected point"
 def add_derived(
     shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]
 ) -> Dataset:
-    """The shown table with the derived signals that it has the ingredients for.
+    """Add the derived signals whose inputs the table has.
 
     Parameters
     ----------
@@ -37,6 +37,7 @@ def add_derived(
     -------
     xarray.Dataset
     """
+    # Errors first: distances are computed from them.
     shown = shown.assign(errors(shown, roles))
     return shown.assign({**distances(shown, table, roles, verdicts), **true_flow(shown, roles)})
 
@@ -50,6 +51,7 @@ def desired(roles: Roles, axis: str) -> str | None:
 def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
     """Ship minus reference in x, y and psi; headings the short way round."""
     found = {}
+    # A heading error lies within half a turn.
     for axis, name in ERRORS.items():
         ship = roles.signal(roles.ship, axis)
         reference = desired(roles, axis)
@@ -63,11 +65,13 @@ def errors(shown: Dataset, roles: Roles) -> dict[str, Variable]:
 def distances(
     shown: Dataset, table: Dataset, roles: Roles, verdicts: Sequence[Verdict]
 ) -> dict[str, Variable]:
-    """Distance from the reference, and in the windows of expectations on the position the distance that was judged."""
+    """Distance from the reference, and from the expected point within windows of expectations."""
     if not {ERRORS["x"], ERRORS["y"]} <= set(shown):
         return {}
+    # Distance from north and east error.
     distance = np.hypot(shown[ERRORS["x"]].values, shown[ERRORS["y"]].values)
     found = {FROM_REFERENCE: as_variable(distance, "m", FROM_REFERENCE)}
+    # Distance as the expectation judged it, only where an expectation asks for a position.
     judged = judged_distance(table, [roles.signal(roles.ship, axis) for axis in "xy"], verdicts)
     if np.isfinite(judged).any():
         found[FROM_EXPECTED] = as_variable(judged, "m", FROM_EXPECTED)
@@ -77,12 +81,13 @@ def distances(
 def judged_distance(
     table: Dataset, signals: list[str | None], verdicts: Sequence[Verdict]
 ) -> NDArray:
-    """Distance from the expected point where an expectation on these signals together looks, NaN elsewhere, (n,)."""
+    """Distance from the expected point within windows of expectations, NaN elsewhere, (n,)."""
     time = table["time"].values
     distance = np.full(table.sizes["time"], np.nan)
     for expect in (
         v.expect for v in verdicts if v.expect.signal == signals and v.expect.near is not None
     ):
+        # The target is a point, or signals that move.
         rows = window(time, expect)
         targets = [table[n].values[rows] if isinstance(n, str) else n for n in expect.near or ()]
         gaps = [table[s].values[rows] - target for s, target in zip(signals, targets, strict=True)]
@@ -91,14 +96,16 @@ def judged_distance(
 
 
 def true_flow(shown: Dataset, roles: Roles) -> dict[str, Variable]:
-    """Speed and direction of wind and current at the ship, from their components north and east."""
+    """Speed and direction of wind and current at the ship, from components north and east."""
     found = {}
     for what, sense, suffix in [("wind", -1.0, "from"), ("current", 1.0, "to")]:
+        # Harbours change wind and current; else those of the environment act on the ship.
         parts = [
             roles.signal(roles.harbour or roles.environment, f"{what}_{way}")
             for way in ("north", "east")
         ]
         if None not in parts:
+            # Wind is named by where it comes from, so its components change sign.
             north, east = (sense * shown[part].values for part in parts)
             found[f"{what} speed"] = as_variable(np.hypot(north, east), "m/s", f"{what} speed")
             angle = np.degrees(unturned(f"{what}_{suffix}", np.arctan2(east, north)))

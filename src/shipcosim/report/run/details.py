@@ -1,4 +1,4 @@
-"""Events, start values, versions and whatever else a table says of its run, as tables to unfold."""
+"""Events, start values, versions and further attributes of a run, as tables to unfold."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -56,7 +56,7 @@ def details(
 
 
 def parsed(value: Any) -> Any:
-    """An attribute of a table; attributes of NetCDF are flat, so a dictionary travels as JSON text."""
+    """Parse an attribute; NetCDF attributes are flat, so dictionaries are stored as JSON text."""
     if isinstance(value, str) and value[:1] in "{[":
         try:
             return json.loads(value)
@@ -66,10 +66,12 @@ def parsed(value: Any) -> Any:
 
 
 def _attributes(table: Dataset, system: System | None) -> list[tuple[str, dict[str, Any]]]:
-    """What the table says of its run: titles, and contents by name."""
+    """Attributes of the table: titles, and contents by name."""
     plain: dict[str, Any] = {}
     nested: list[tuple[str, dict[str, Any]]] = []
     for key, value in table.attrs.items():
+        # Start values become a table for each component, dictionaries a table each, the rest one
+        # table.
         name = str(key)
         content = parsed(value)
         if name == "start_values":

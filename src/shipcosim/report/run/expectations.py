@@ -29,7 +29,7 @@ def is_complete(table: Dataset) -> bool:
 
 
 def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
-    """What the run comes to.
+    """Verdict of the run in one word and one sentence.
 
     Parameters
     ----------
@@ -42,6 +42,7 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
     -------
     Outcome
     """
+    # An interrupted run is not judged: its windows may lie beyond its end.
     missed = sum(not v.passed for v in verdicts)
     if not is_complete(table):
         end = float(table["time"].values[-1]) if table.sizes["time"] else 0.0
@@ -50,6 +51,7 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
             "PARTIAL",
             f"The run ended early, at {end:g} s. Its expectations were not judged.",
         )
+    # Expectations whose window the run did not reach are neither held nor missed.
     left = len(parsed(table.attrs.get("not_reached", "[]")))
     if left and not missed:
         if verdicts:
@@ -61,6 +63,7 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
         return Outcome("plain", "DONE", f"None of its {left} expectations was reached.")
     if not verdicts:
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
+    # A missed expectation outweighs those that were not reached.
     if missed:
         return Outcome("failed", "FAIL", f"{missed} of {len(verdicts)} expectations missed.")
     all_of_them = (
@@ -100,6 +103,7 @@ def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
     -------
     list of str
     """
+    # Convert each claim to the unit of the page.
     units = units_to_read(table)
     said = []
     for expect in expectations:
@@ -117,6 +121,7 @@ def _judged(verdict: Verdict, shown_as: dict[str, Any]) -> Judged:
     during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
     worst = "no row"
     when = "–"
+    # Without a row in its window there is no worst value.
     if np.isfinite(verdict.time):
         worst = f"{factor * verdict.worst:.3g} {unit}".rstrip()
         when = f"{verdict.time:g} s"
@@ -135,10 +140,12 @@ def _claim(expect: Expectation, unit: str, factor: float) -> str:
             else f"{round(factor * value, 4):.4g}"
         )
 
+    # A target with tolerance.
     if expect.near is not None and isinstance(expect.within, float):
         target = ",\u00a0".join(map(text, expect.near))
         target = f"({target})" if len(expect.near) > 1 else target
         return f"{expect.subject}: {target}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}".rstrip()
+    # Limits to one or both sides.
     limits = {"≥": expect.at_least, "≤": expect.at_most}
     claims = ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None)
     return f"{expect.subject} {claims}".rstrip()

@@ -14,7 +14,7 @@ from shipcosim.report.theme.views import Table
 def key_figures(
     shown: Dataset, roles: Roles, predictions: Sequence[PredictionSummary] = ()
 ) -> Table:
-    """Errors, power, time at a limit, errors of predictions: what people compare runs by.
+    """Errors, power, share of time at a limit, prediction errors: numbers to compare runs by.
 
     Parameters
     ----------
@@ -31,6 +31,7 @@ def key_figures(
         Name and text of each.
     """
     figures: list[tuple[str, str]] = []
+    # Errors as rms and largest value.
     for name, title in {FROM_REFERENCE: "Position error", ERRORS["psi"]: "Heading error"}.items():
         if name in shown:
             size = np.abs(shown[name].values)
@@ -38,6 +39,7 @@ def key_figures(
             rms = np.sqrt(np.nanmean(size**2))
             largest = np.nanmax(size)
             figures.append((title, f"{rms:.2f} {unit} rms, {largest:.2f} {unit} at most"))
+    # Power of all thrusters together: their peaks need not coincide.
     powers = [p for p in (roles.signal(unit, "power") for unit in roles.thrusters) if p in shown]
     if powers:
         total = np.sum([shown[p].values for p in powers], axis=0)
@@ -48,6 +50,7 @@ def key_figures(
                 f"{np.nanmean(total):.4g} {unit} mean, {np.nanmax(total):.4g} {unit} at most",
             )
         )
+    # Share of time at a limit, by component.
     for component, name in roles.flagged("saturated").items():
         if name in shown:
             figures.append(

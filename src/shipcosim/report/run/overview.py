@@ -1,4 +1,4 @@
-"""The page of several scenarios: one table of what happened, what must hold, what was measured, and the verdict."""
+"""The page of several scenarios: what happened, what must hold, measured values, verdict."""
 
 import os
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ class ScenarioRow(NamedTuple):
 
     @property
     def outcome(self) -> Outcome:
-        """What the run comes to."""
+        """Verdict of the run."""
         return self.digest.outcome
 
     @property
@@ -32,7 +32,7 @@ class ScenarioRow(NamedTuple):
 
     @property
     def remarks(self) -> list[str]:
-        """What must not be overlooked: failures, alarms and their times."""
+        """Remarks that must not be overlooked: failures, alarms and their times."""
         return self.digest.remarks
 
 
@@ -49,7 +49,7 @@ class OverviewPage(Page):
 
 
 def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
-    """What the scenarios come to, taken together."""
+    """Verdict of all scenarios together."""
     missed = [row.name for row in rows if row.outcome.kind not in ("passed", "plain")]
     if missed:
         return Outcome(

@@ -1,4 +1,4 @@
-"""The page of a run: what it shows, and the functions that write it or say it in words."""
+"""The page of a run: its contents, and functions that write or summarise it."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -32,7 +32,7 @@ BYTES_FOR_SIGNALS = 750_000  # of a page that shall stay below 1.5 MB
 
 @dataclass(frozen=True)
 class Thinned:
-    """How many rows are drawn of how many, and how many rows each drawn pair spans."""
+    """Number of drawn and of all rows, and rows that each drawn pair spans."""
 
     drawn: int
     rows: int
@@ -74,7 +74,7 @@ class RunPage(Page):
 
 
 class Digest(NamedTuple):
-    """What a page says in words: the verdict, what must not be overlooked, and the expectations."""
+    """Summary of a page in words: verdict, remarks and expectations."""
 
     outcome: Outcome
     remarks: list[str]
@@ -125,7 +125,7 @@ def render(
 
 
 def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:
-    """What a page says in words, for those who do not open it.
+    """Summarise a page in words, for a terminal.
 
     Parameters
     ----------
@@ -145,8 +145,10 @@ def digest(table: Dataset, verdicts: Sequence[Verdict] = ()) -> Digest:
 def _page(
     table: Dataset, scenario: Scenario | None, verdicts: Sequence[Verdict], system: System | None
 ) -> RunPage:
+    # Signals in the units of the page, and few enough rows to draw.
     roles, shown = shown_table(table, verdicts)
     drawn, thin = drawn_rows(shown)
+    # Scene and panels draw the same run.
     run = make_run(table, verdicts)
     runs = () if run is None else (run,)
     sections = make_sections(shown, roles, verdicts)
@@ -170,7 +172,7 @@ def _page(
 
 
 def shown_table(table: Dataset, verdicts: Sequence[Verdict]) -> tuple[Roles, Dataset]:
-    """What the signals stand for, and the table in the units of the page with the derived signals."""
+    """Roles of the signals, and the table in the page's units with derived signals."""
     roles = find_roles(table.data_vars)
     return roles, add_derived(
         display_table(table, roles.signal(roles.ship, "psi")), table, roles, verdicts
@@ -184,7 +186,7 @@ def _title(scenario: Scenario | None, system: System | None) -> str:
 
 
 def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
-    """What was run, for how long, in which steps and with which engine."""
+    """What was run, for how long, with which step size and engine."""
     facts = []
     if scenario is not None:
         facts = [
@@ -210,7 +212,8 @@ def links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:
 
 
 def drawn_rows(shown: Dataset) -> tuple[Dataset, Thinned | None]:
-    """The rows that a page has room for, and what was left out; None where every row is drawn."""
+    """The rows that fit on a page, and what was left out; None where every row is drawn."""
+    # Constant signals need no space: only the others count.
     varying = [v.values for v in shown.data_vars.values() if not is_constant(v.values)]
     drawn, span = thinned(shown, most_rows(varying, BYTES_FOR_SIGNALS))
     return drawn, Thinned(drawn.sizes["time"], shown.sizes["time"], span) if span > 1 else None

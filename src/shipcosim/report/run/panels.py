@@ -1,4 +1,4 @@
-"""Which time series a page draws, in sections of panels; what a table does not hold is left out."""
+"""Time series of the page, in sections of panels; missing signals are left out."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -116,10 +116,11 @@ def _first(names: Iterable[str]) -> str | None:
 
 
 def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[Panel]:
-    """North, east and heading, each beside its error; distance and speeds."""
+    """North, east and heading with their errors; distance and speeds."""
     panels = []
     for axis, title in AXES.items():
         if ship := roles.signal(roles.ship, axis):
+            # Measured value, set point, reference and ship; the ship on top.
             lines = [
                 Line(
                     _first(roles.anywhere(f"{axis}_meas", f"{axis}_1_meas")),
@@ -137,6 +138,7 @@ def _motion(shown: Dataset, roles: Roles, verdicts: Sequence[Verdict]) -> list[P
                 Line(ship, "ship", palette.SHIP, width=2.0),
             ]
             panels += _panel(shown, title, lines, bands_of(shown, ship, verdicts))
+            # The error has a panel of its own: it is small against the value.
             error = [Line(ERRORS[axis], "ship − reference", palette.SHIP)]
             limits = (
                 bands_of(shown, ship, verdicts, minus=desired(roles, axis))
@@ -165,7 +167,7 @@ def _speeds(shown: Dataset, roles: Roles) -> list[Panel]:
 
 
 def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
-    """Forces and moment by source, with what the controller asks for."""
+    """Forces and moment by source, and the command of the controller."""
     panels = []
     for axis, title in LOADS.items():
         lines = [
@@ -184,6 +186,7 @@ def _loads(shown: Dataset, roles: Roles) -> list[Panel]:
 def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
     """Thrust commanded and delivered per thruster; angles, speeds, power and limits of all."""
     panels = []
+    # Thrust of each thruster, with the zones beyond its limits.
     units = find_units(shown.data_vars, start_values(shown))
     for unit in units:
         lines = [
@@ -197,14 +200,17 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
             for panel in _panel(shown, f"Thrust, {unit.name}", lines)
         ]
     panels += _azimuths(shown, units)
+    # Shaft speeds of azimuths and other thrusters differ in size: a panel for each group.
     turning = [unit for unit in roles.thrusters if roles.signal(unit, "azimuth")]
     for units in (turning, [unit for unit in roles.thrusters if unit not in turning]):
         lines = _coloured({roles.signal(unit, "rpm"): unit for unit in units})
         panels += _panel(shown, f"Shaft speed, {', '.join(units)}", lines)
+    # Power and torque of all thrusters in one panel each.
     for quantity, title in {"power": "Power", "torque": "Torque"}.items():
         panels += _panel(
             shown, title, _coloured({roles.signal(u, quantity): u for u in roles.thrusters})
         )
+    # Logical signals as bars: at a limit, or failed.
     states: dict[str | None, str] = {
         signal: f"{c} {what}"
         for what in ("saturated", "failed")
@@ -214,8 +220,10 @@ def _thrusters(shown: Dataset, roles: Roles) -> list[Panel]:
 
 
 def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
-    """Angles: of all units in one panel where no sector, or the same, is forbidden to them; else of each in its own."""
+    """Angles of all thrusters in one panel if their sectors agree, else one panel each."""
+    # Only thrusters that turn, or are commanded to.
     turning = [unit for unit in units if unit.azimuth in shown or unit.azimuth_command in shown]
+    # Sectors can be shaded in a common panel only if they are the same.
     alike = len({unit.sectors for unit in turning}) < 2
     groups = (
         [("Azimuth", turning)] if alike else [(f"Azimuth, {unit.name}", [unit]) for unit in turning]
@@ -231,7 +239,8 @@ def _azimuths(shown: Dataset, units: Sequence[DrawnThruster]) -> list[Panel]:
 
 
 def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
-    """What the commands miss of the request, and what they take."""
+    """Load that the allocator misses, its power, and its computing time."""
+    # Slack forces in one panel; the moment has another unit.
     slack = {axis: roles.anywhere(f"slack_{axis}") for axis in LOADS}
     forces = _coloured(
         {_first(slack[axis]): title for axis, title in (("X", "forward"), ("Y", "to starboard"))}
@@ -242,6 +251,7 @@ def _allocation(shown: Dataset, roles: Roles) -> list[Panel]:
     )
     power = {_first(roles.anywhere("thruster_power")): "all thrusters"}
     panels += _panel(shown, "Power of the thrusters, estimated by the allocator", _coloured(power))
+    # Only allocators that measure their time.
     times = [
         name for name in roles.anywhere("solve_time") if name in shown and shown[name].values.any()
     ]
@@ -262,6 +272,7 @@ def _angles(units: Sequence[DrawnThruster]) -> list[Line]:
 def _environment(shown: Dataset, roles: Roles) -> list[Panel]:
     """Wind, current and waves as speed and direction."""
     at = lambda connector: roles.signal(roles.environment, connector)  # noqa: E731
+    # Wind and current at the ship, with the mean at sea for comparison.
     flow = {
         "Wind speed": ["wind speed", at("wind_speed_mean")],
         "Wind from": ["wind from", at("wind_from_mean")],

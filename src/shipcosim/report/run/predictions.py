@@ -1,4 +1,4 @@
-"""What predictors of a run foretold, beside what became of the ship."""
+"""Predictions in a run, compared with what the ship did afterwards."""
 
 from __future__ import annotations
 
@@ -78,6 +78,7 @@ def find_predictors(roles: Roles) -> dict[str, tuple[int, ...]]:
     """Components with the outputs of `interfaces.MotionPredictor`, and their horizons. [s]"""
     found = {}
     for component, connectors in roles.connectors.items():
+        # A predictor has x, y and psi at the same horizons, and the time of its prediction.
         ends = [int(match[1]) for name in connectors if (match := re.fullmatch(r"x_(\d+)", name))]
         known = tuple(sorted(end for end in ends if {f"y_{end}", f"psi_{end}"} <= set(connectors)))
         if known and "predicted_at" in connectors:
@@ -86,7 +87,8 @@ def find_predictors(roles: Roles) -> dict[str, tuple[int, ...]]:
 
 
 def first_rows(table: Dataset, component: str) -> NDArray:
-    """Rows at which a new prediction of a component is there."""
+    """Rows at which a component has a new prediction."""
+    # A new prediction changes its time; between two it is held.
     made = table[join(component, "predicted_at")].values
     return np.flatnonzero(np.r_[True, np.diff(made) != 0.0]) if len(made) else np.zeros(0, int)
 
@@ -111,6 +113,7 @@ def make_predictions(table: Dataset) -> pandas.DataFrame:
     """
     import pandas
 
+    # One part for each predictor and horizon.
     roles = find_roles(table.data_vars)
     parts = []
     if roles.signal(roles.ship, "x") is not None:
@@ -119,6 +122,7 @@ def make_predictions(table: Dataset) -> pandas.DataFrame:
             parts += [
                 _at_horizon(table.isel(time=rows), table, roles, component, end) for end in horizons
             ]
+    # Columns of all parts; also without predictors the table has its columns.
     columns = {
         name: np.concatenate([part[name] for part in parts]) if parts else np.zeros(0)
         for name in UNITS
@@ -136,11 +140,14 @@ def _at_horizon(
         name = join(component, connector)
         return made[name].values.astype(float) if name in made else np.zeros(made.sizes["time"])
 
+    # Predicted pose, and the true pose when its time has come.
     time = read("predicted_at")
     place = {axis: read(f"{axis}_{horizon}") for axis in ("x", "y", "psi")}
     true = _truth(table, roles, time + horizon)
+    # Heading error the short way round.
     off = {axis: place[axis] - true[axis] for axis in place}
     off["psi"] = wrap_series(off["psi"], 2.0 * np.pi)
+    # Regions around the prediction; 0 means that there is none.
     circle = read(f"position_region_{horizon}")
     width = read(f"heading_region_{horizon}")
     return {
@@ -161,10 +168,11 @@ def _at_horizon(
 
 
 def _truth(table: Dataset, roles: Roles, time: NDArray) -> dict[str, NDArray]:
-    """Pose of the ship at any times; no number beyond the run."""
+    """Pose of the ship at any times; NaN beyond the run."""
     clock = table["time"].values
     found = {}
     for axis in ("x", "y", "psi"):
+        # Interpolate the heading without jumps, and wrap it again afterwards.
         values = table[roles.signal(roles.ship, axis)].values.astype(float)
         values = unwrap_series(values) if axis == "psi" else values
         found[axis] = np.where(time <= clock[-1] + 1e-6, np.interp(time, clock, values), np.nan)
@@ -173,7 +181,7 @@ def _truth(table: Dataset, roles: Roles, time: NDArray) -> dict[str, NDArray]:
 
 
 def _within(size: NDArray, region: NDArray) -> NDArray:
-    """1 where it lies within the region, 0 where not, no number where there is no region or no truth."""
+    """1 within the region, 0 outside, NaN where there is no region or no truth."""
     return np.where(np.isfinite(size) & (region > 0.0), (size <= region).astype(float), np.nan)
 
 
@@ -195,6 +203,7 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
     """
     found = []
     for component, horizons in find_predictors(find_roles(table.data_vars)).items():
+        # Evenly fewer predictions where there are more than the scene can draw.
         rows = first_rows(table, component)
         rows = rows[
             np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MOST_DRAWN)).round().astype(int))
@@ -209,6 +218,7 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
             values = np.degrees(unwrap_series(values)) if connector.startswith("psi") else values
             return packed_series(values, max(LEVELS, float(np.ptp(values)) / resolution))
 
+        # Pack each column with the resolution that a screen shows.
         if len(rows):
             made_at = made[join(component, "predicted_at")].values.astype(float) + shift
             parts = {"north": ("x_", 0.01), "east": ("y_", 0.01), "heading": ("psi_", 0.02)}
@@ -229,7 +239,7 @@ def predicted_tracks(table: Dataset, shift: float = 0.0) -> list[dict[str, Any]]
 
 
 def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
-    """How far off predictions are, by component and horizon.
+    """Prediction errors by component and horizon.
 
     Parameters
     ----------
@@ -242,11 +252,13 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
         Without what no run reached.
     """
     columns = {name: predictions[name].to_numpy() for name in predictions}
+    # Predictions whose horizon lies beyond the run have no truth.
     known = np.isfinite(columns["true_x"].astype(float))
     found = []
     for component, horizon in sorted(
         set(zip(columns["component"][known], columns["horizon"][known], strict=True))
     ):
+        # Rms errors, and shares within the regions where there are regions.
         of = known & (columns["component"] == component) & (columns["horizon"] == horizon)
         north, east, heading, place, width = (columns[name][of] for name in SUMMARISED)
         found.append(
@@ -266,7 +278,7 @@ def summarise(predictions: pandas.DataFrame) -> list[PredictionSummary]:
 
 
 def texts(summaries: Iterable[PredictionSummary]) -> list[tuple[str, str, str, str]]:
-    """Summaries in words: what is predicted, position and heading off, share within the regions."""
+    """Summaries in words: predictor and horizon, errors, share within the regions."""
     return [
         (
             f"{one.component}, {one.horizon:g} s ahead",

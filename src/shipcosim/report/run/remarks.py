@@ -1,4 +1,4 @@
-"""What a reader of a run must not overlook: warnings, failures, values that are not finite, a ship that cannot hold."""
+"""Remarks on a run: warnings, failures, values that are not finite, a ship that cannot hold."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,7 @@ def remarks(table: Dataset, shown: Dataset, roles: Roles) -> list[str]:
     missed = parsed(table.attrs.get("not_reached", "[]"))
     end = float(table["time"].values[-1]) if missed else 0.0
     not_reached = [f"Not reached: {claim}. The run ended at {end:g} s." for claim in missed]
+    # FMU warnings and unreached expectations first, then what the signals show.
     said = [*parsed(table.attrs.get("remarks", "[]")), *not_reached, *_not_finite(shown)]
     said += _failures(shown, roles) + _alarms(shown, roles)
     return said + _rejected(shown, roles) + _reckoned(shown, roles) + _lost_hold(shown, roles)
@@ -42,12 +43,14 @@ _DERIVED = {*ERRORS.values(), FROM_REFERENCE, FROM_EXPECTED}
 
 
 def _not_finite(shown: Dataset) -> list[str]:
-    """The first signals that stop being numbers, and how many follow."""
+    """The first signals that become non-finite, and how many follow."""
+    # First time of each such signal; derived signals only repeat their inputs.
     begin: dict[str, float] = {
         str(name): float(shown["time"].values[~np.isfinite(v.values)][0])
         for name, v in shown.data_vars.items()
         if str(name) not in _DERIVED and not np.isfinite(v.values).all()
     }
+    # The earliest three: the others usually follow from them.
     names = sorted(begin, key=begin.__getitem__)
     others = f" and {len(names) - 3} more" if len(names) > 3 else ""
     return (
@@ -58,8 +61,9 @@ def _not_finite(shown: Dataset) -> list[str]:
 
 
 def _failures(shown: Dataset, roles: Roles) -> list[str]:
-    """What failed during the run, and when."""
+    """Failures during the run, with their times."""
     begin: dict[float, list[str]] = {}
+    # Components that fail at the same time share a sentence.
     for component, signal in roles.flagged("failed").items():
         if signal in shown and (failed := shown[signal].values > 0.5).any():
             begin.setdefault(shown["time"].values[np.argmax(failed)], []).append(component)
@@ -69,12 +73,13 @@ def _failures(shown: Dataset, roles: Roles) -> list[str]:
 
 
 def _rejected(shown: Dataset, roles: Roles) -> list[str]:
-    """Sensors that a controller did not believe, and when first."""
+    """Sensors that a controller rejected, and when first."""
     said = []
     for component, connectors in roles.connectors.items():
         for connector in (
             c for c in connectors if c.endswith("_rejected") and join(component, c) in shown
         ):
+            # Only rejections that happened.
             flags = shown[join(component, connector)].values > 0.5
             if flags.any():
                 first = shown["time"].values[np.argmax(flags)]
@@ -87,9 +92,10 @@ def _rejected(shown: Dataset, roles: Roles) -> list[str]:
 
 
 def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
-    """How long a controller had no trusted position."""
+    """Longest time without a trusted position, by controller."""
     said = []
     for component, signal in roles.flagged("dead_reckoning_time").items():
+        # The signal counts the time since the last trusted position.
         times = shown[signal].values if signal in shown else np.zeros(1)
         if times.max() > 0.0:
             until = shown["time"].values[np.argmax(times)]
@@ -100,7 +106,7 @@ def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
 
 
 def _alarms(shown: Dataset, roles: Roles) -> list[str]:
-    """Alarms that came on, and when: signals that end in _alarm or _faulty."""
+    """Alarms and their times: signals that end in _alarm or _faulty."""
     begin: dict[float, list[str]] = {}
     for component, connectors in roles.connectors.items():
         for signal in (
@@ -112,20 +118,24 @@ def _alarms(shown: Dataset, roles: Roles) -> list[str]:
 
 
 def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
-    """Where the thrust is at its limit and the error grows all the same: the ship cannot hold there."""
+    """Remark where thrust is at its limit and the error still grows: the ship cannot hold."""
+    # Flags of everything at its limit, and the start of every stretch of STRETCH seconds.
     limits = {c: shown[s].values > 0.5 for c, s in roles.flagged("saturated").items() if s in shown}
     time = shown["time"].values
     starts = np.flatnonzero(time <= time[-1] - STRETCH)
     if not limits or FROM_REFERENCE not in shown or not len(starts):
         return []
+    # Last row of each stretch.
     ends = np.searchsorted(time, time[starts] + STRETCH, side="right") - 1
     error = shown[FROM_REFERENCE].values
+    # The ship loses her position if the error grows while a component is at its limit.
     shares = {c: _share(flags, starts, ends) for c, flags in limits.items()}
     lost = (error[ends] - error[starts] > GROWTH) & (
         np.max(list(shares.values()), axis=0) > AT_LIMIT
     )
     if not lost.any():
         return []
+    # Report the first such stretch: which components, from when on, and how far.
     k = int(np.argmax(lost))
     limited = [component for component, share in shares.items() if share[k] > AT_LIMIT]
     drift = "She cannot hold" if error[-1] > GROWTH else "She is driven off for a while"
@@ -137,6 +147,7 @@ def _lost_hold(shown: Dataset, roles: Roles) -> list[str]:
 
 
 def _share(flags: NDArray, starts: NDArray, ends: NDArray) -> NDArray:
-    """Share of set flags from each start up to its end."""
+    """Share of set flags between each start and end."""
+    # Cumulative count: the share of any stretch is then one difference.
     count = np.concatenate([[0.0], np.cumsum(flags)])
     return (count[ends + 1] - count[starts]) / (ends + 1 - starts)

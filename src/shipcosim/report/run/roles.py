@@ -1,4 +1,4 @@
-"""What the signals of a table stand for, found by their names alone, so that any system's table makes a page."""
+"""Roles of signals, found by their names alone, so that any system's table makes a page."""
 
 import re
 from collections.abc import Hashable, Iterable, Sequence
@@ -67,7 +67,7 @@ class Roles:
         ]
 
     def flagged(self, connector: str) -> dict[str, str]:
-        """Signals of this connector by their component, of all components that have it: who says 'saturated'."""
+        """Signals of this connector by component, as in all components that have 'saturated'."""
         return {
             component: join(component, connector)
             for component, has in self.connectors.items()
@@ -75,7 +75,8 @@ class Roles:
         }
 
     def sources(self) -> list[str]:
-        """Names of what puts load on the ship: wind, drift, hull, thrusters, in the table's order."""
+        """Sources of load on the ship: wind, drift, hull, thrusters, in the table's order."""
+        # Loads are named tau_SOURCE_AXIS; commands and limits of loads are no sources.
         on_ship = self.connectors.get(self.ship, ()) if self.ship is not None else ()
         found = [LOAD.fullmatch(connector) for connector in on_ship]
         return list(dict.fromkeys(m[1] for m in found if m and m[1] not in NOT_A_SOURCE))
@@ -103,6 +104,7 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     >>> find_roles(["boat.x", "boat.y", "boat.psi", "boat.tau_wind_X", "bow.thrust", "bow.rpm"]).thrusters
     ('bow',)
     """
+    # Group connectors by component: roles follow from what a component has.
     connectors: dict[str, list[str]] = {}
     for name in names:
         component, _, connector = str(name).rpartition(".")
@@ -111,9 +113,12 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
     def having(*wanted: str) -> list[str]:
         return [c for c, has in connectors.items() if set(wanted) <= set(has)]
 
+    # Sensors and predictors also have x, y and psi: the component most like a ship comes first.
     ships = sorted(having("x", "y", "psi"), key=lambda c: _likeness(c, connectors[c]), reverse=True)
+    # Wind at sea; a ship may repeat it as its input, so others come first.
     winds = having("wind_speed_mean") or having("wind_north", "wind_east")
     environment = next(iter([c for c in winds if c not in ships] or winds), None)
+    # A harbour puts out wind and current at the ship; predictors only take them in.
     local = [
         c
         for c in having("wind_north", "current_north")
@@ -134,7 +139,7 @@ def find_roles(names: Iterable[Hashable]) -> Roles:
 
 
 def _likeness(component: str, connectors: Sequence[str]) -> tuple[bool, int]:
-    """How much like a ship: sensors and predictors have x, y and psi among their inputs too."""
+    """Likeness to a ship: its name, and its loads; sensors and predictors have x, y, psi too."""
     return component.endswith(("vessel", "ship", "hull")), sum(
         1 for c in connectors if LOAD.fullmatch(c)
     )

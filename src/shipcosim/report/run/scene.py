@@ -1,4 +1,4 @@
-"""The scene of a run: what the page's DP display plays, as one compact table and the records that say what is what."""
+"""The scene of a run: data of the page's DP display, as one compact table and its records."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -74,18 +74,21 @@ class _Columns:
     without_unit: list[str] = field(default_factory=list)
 
     def add(self, name: str | None, unit: str, resolution: float = np.inf) -> str | None:
-        """Pack a signal, unless it is not there, measures something else or is no number all along."""
+        """Pack a signal, unless it is missing, has another quantity, or has no finite value."""
         if name is None or name not in self.table:
             return None
+        # Flags have no unit; everything else is converted.
         values = (
             self.table[name].values.astype(float) if unit == "" else in_unit(self.table, name, unit)
         )
         if values is None or not np.isfinite(values).any():
             return None
+        # A table without units is read as SI: remember this for the remark.
         if unit and not self.table[name].attrs.get("units"):
             self.without_unit.append(
                 f"{name} in {'rad' if unit == 'deg' else unit.removeprefix('k')}"
             )
+        # Angles without jumps, so that the display can interpolate.
         self.put(name, unwrap_degrees(values) if unit == "deg" else values, resolution)
         return name
 
@@ -115,6 +118,7 @@ def make_run(
     -------
     Run or None
     """
+    # Collect columns while the vessels are made: each signal is stored once.
     vessels = find_vessels(table) if table.sizes["time"] else ()
     time = np.asarray(table["time"].values, float) + shift
     columns = _Columns(table, _rows(len(time)))
@@ -122,6 +126,7 @@ def make_run(
     if not drawn:
         return None
     flows = _flows(table, columns)
+    # The page says how names were read, and which units were assumed.
     supposed = [
         f"{names[0]} north, {names[1]} east, {names[2]} heading"
         for names in (v.pose for v in vessels)
@@ -157,9 +162,10 @@ def unwrap_degrees(values: NDArray) -> NDArray:
 
 
 def _packed(values: NDArray, resolution: float) -> float | dict[str, Any] | list[float | None]:
-    """A column for `series` of the page's script: a number where it is the same all along."""
+    """Pack a column; a constant one becomes a single number."""
     if is_constant(values):
         return float(values[0])
+    # Steps as fine as the resolution asks, or a share of the range.
     finite = values[np.isfinite(values)]
     span = float(np.ptp(finite)) if len(finite) else 0.0
     return packed_series(values, max(LEVELS, span / resolution))
@@ -171,7 +177,8 @@ def _rows(count: int) -> NDArray:
 
 
 def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
-    """What the display needs of a vessel."""
+    """Data of a vessel for the display."""
+    # Pose with the resolution of a screen.
     units = ("m", "m", "deg")
     pose = [
         columns.add(n, u, r)
@@ -179,6 +186,7 @@ def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
     ]
     if None in pose:
         return None
+    # Outlines along the way need the pose as numbers, where all of it is finite.
     north, east, heading = (
         in_unit(columns.table, n, u) for n, u in zip(vessel.pose, units, strict=True)
     )
@@ -189,6 +197,7 @@ def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
     ]
     if not len(known):
         return None
+    # Without a known size: a symbol as large as the track suggests.
     size = vessel.size or symbol_size(north[known], east[known])
     where = known[outline_rows(north[known], east[known], unwrap_degrees(heading[known]), size[0])]
     return {
@@ -221,7 +230,7 @@ def _aim(names: tuple[str, str, str | None], columns: _Columns) -> list[str | No
 
 
 def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> dict[str, Any] | None:
-    """A thruster: bars need its thrust; vectors its force in body axes, its place, and a ship to scale around it."""
+    """A thruster: bars need its thrust; vectors also its force, its place and a ship to scale."""
     thrust = columns.add(unit.thrust, "kN")
     if thrust is None:
         return None
@@ -245,11 +254,13 @@ def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> dict[str, A
 
 
 def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
-    """Columns of the force on the ship, forward and to starboard: as put out, else thrust along the azimuth."""
+    """Columns of the force on the ship: as put out, else thrust along the azimuth."""
+    # The force that the thruster puts out includes losses: prefer it.
     if unit.force is not None:
         put_out = [columns.add(name, "kN") for name in unit.force]
         if None not in put_out:
             return [str(name) for name in put_out]
+    # Else the thrust along its direction.
     angle = None if unit.azimuth is None else in_unit(columns.table, unit.azimuth, "rad")
     thrust = in_unit(columns.table, unit.thrust, "kN")
     if angle is None or thrust is None:
@@ -259,9 +270,10 @@ def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
 
 
 def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
-    """Wind and current as velocity north and east, waves as height and direction, where they are told."""
+    """Wind and current as velocity north and east, waves as height and direction, if logged."""
     roles = find_roles(table.data_vars)
     found: list[dict[str, Any]] = []
+    # Flows that are zero all along are not shown.
     for what, (sense, sign) in FLOWS.items():
         values = _velocity(table, roles.anywhere, what, sense, sign)
         if values is not None and np.nanmax(np.hypot(*values), initial=0.0) > 0.0:
@@ -270,6 +282,7 @@ def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
                 for way, v in zip(("north", "east"), values, strict=True)
             ]
             found.append({"what": what, "sense": sense, "velocity": names})
+    # Waves need height and direction.
     heights, sources = (
         _first_in(table, roles.anywhere(f"wave_{part}")) for part in ("height", "from")
     )
@@ -283,11 +296,13 @@ def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
 def _velocity(
     table: Dataset, anywhere: Any, what: str, sense: str, sign: float
 ) -> list[NDArray] | None:
-    """Velocity north and east of what flows: by its components, else by speed and direction. [m/s]"""
+    """Velocity north and east: by its components, else by speed and direction. [m/s]"""
+    # Components are exact; read them first.
     parts = [_first_in(table, anywhere(f"{what}_{way}")) for way in ("north", "east")]
     read = [None if name is None else in_unit(table, name, "m/s") for name in parts]
     if all(values is not None for values in read):
         return [values for values in read if values is not None]
+    # Else speed and direction; a direction "from" points against the velocity.
     named = [_first_in(table, anywhere(f"{what}_{part}")) for part in ("speed", sense)]
     speed = None if named[0] is None else in_unit(table, named[0], "m/s")
     angle = None if named[1] is None else in_unit(table, named[1], "rad")
@@ -303,8 +318,9 @@ def _first_in(table: Dataset, names: Iterable[str]) -> str | None:
 
 
 def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[dict[str, Any]]:
-    """The circle in which a vessel should stay, of an expectation on her position; else nothing."""
+    """Circle of an expectation on the vessel's position; else nothing."""
     expect = verdict.expect
+    # Only fixed points: a moving target is no circle.
     centre = [value for value in expect.near or [] if isinstance(value, int | float)]
     if expect.signal != list(vessel.pose[:2]) or len(centre) != 2 or expect.within is None:
         return []
@@ -313,9 +329,10 @@ def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[dict[str, An
 
 
 def _watch(table: Dataset) -> dict[str, float]:
-    """Distance and angle beyond which an alarm of the table sounds, where the start values say it. [m, deg]"""
+    """Limits of position and heading alarms, where the start values have them. [m, deg]"""
     known: Mapping[str, Any] = start_values(table)
     found = {}
+    # Name of the limit follows from that of the alarm: position_alarm, position_limit.
     for what, factor in (("position", 1.0), ("heading", 180.0 / np.pi)):
         for alarm in find_roles(table.data_vars).anywhere(f"{what}_alarm"):
             limit = known.get(alarm.removesuffix("alarm") + "limit")

@@ -1,4 +1,4 @@
-"""The outline of a ship, and where on her way to draw it."""
+"""The outline of a ship, and where on her track to draw it."""
 
 import json
 
@@ -39,6 +39,7 @@ def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
     >>> float(forward.max()), float(starboard.min()), float(starboard.max())
     (5.0, -2.0, 2.0)
     """
+    # Mirror the starboard side, without repeating bow and stern corner, and close the outline.
     starboard = np.array(HULL) * [length, breadth]
     port = starboard[-2::-1] * [1.0, -1.0]
     closed = np.vstack([starboard, port, starboard[:1]])
@@ -49,6 +50,8 @@ def placed(
     outline: tuple[NDArray, NDArray], x: float, y: float, psi: float
 ) -> tuple[NDArray, NDArray]:
     """An outline on the chart: east and north of its corners. [m, m]"""
+    # Rotate by the heading: north = x + c forward - s starboard, east = y + s forward + c
+    # starboard.
     forward, starboard = outline
     c = np.cos(np.radians(psi))
     s = np.sin(np.radians(psi))
@@ -56,7 +59,7 @@ def placed(
 
 
 def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[int]:
-    """Rows at which to draw the ship: the first, the last, and whenever she moved or turned enough in between.
+    """Rows at which to draw the ship: first, last, and after enough motion or turning.
 
     Parameters
     ----------
@@ -69,6 +72,7 @@ def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[in
     -------
     list of int
     """
+    # Widen the spacing until the number of outlines is small enough to see the track.
     spacing = SPACING * length
     turn = TURN
     while True:
@@ -87,6 +91,6 @@ def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[in
 
 
 def symbol_size(x: NDArray, y: NDArray) -> tuple[float, float]:
-    """Length and breadth of an outline that shows where a vessel of unknown size was. [m, m]"""
+    """Size of an outline for a vessel of unknown size. [m, m]"""
     length = max(SYMBOL * max(float(np.ptp(x)), float(np.ptp(y))), 1.0)
     return length, length / SLENDERNESS

@@ -1,4 +1,4 @@
-"""The vessels of a table and what belongs to each, found by the names of signals, whoever made them."""
+"""Vessels of a table and their signals, found by the names of signals of any tool."""
 
 import json
 import re
@@ -32,7 +32,7 @@ Pose = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class DrawnThruster:
-    """A thruster: its signals, None where there is none, and what the start values say of it.
+    """A thruster: its signals, None where missing, and its start values.
 
     Attributes
     ----------
@@ -102,18 +102,22 @@ def find_vessels(table: Dataset) -> tuple[Vessel, ...]:
     -------
     tuple of Vessel
     """
+    # Signals over time that are numbers.
     names = [
         str(name)
         for name, v in table.data_vars.items()
         if v.dtype.kind in "fiub" and v.dims == ("time",)
     ]
     main = find_roles(names).ship
+    # The main ship first, then by number of loads: sensors have none.
     poses = sorted(
         _poses(table, names), key=lambda pose: (_owner(pose) != main, -_loads(pose, names))
     )
+    # A pose that never moves is an unconnected input, unless it is called a ship.
     apart: list[Pose] = []
     moving = [pose for pose in poses if _moves(table, pose) or _says_ship(pose)]
     for pose in moving or poses[:1]:
+        # A pose near another one is a sensor or a predictor of the same vessel.
         if all(_apart(table, pose, other) for other in apart):
             apart.append(pose)
     known = start_values(table)
@@ -130,11 +134,13 @@ def start_values(table: Dataset) -> dict[str, Any]:
 
 
 def in_unit(table: Dataset, name: str, unit: str) -> NDArray | None:
-    """Values of a signal in a unit, (n,); None if it measures something else. One without a unit is taken as SI."""
+    """Values of a signal in a unit, (n,); None for another quantity. SI where it has no unit."""
+    # A conversion that fails means another quantity.
     try:
         factor, offset = conversion(table[name].attrs.get("units") or None, unit)
     except ShipcosimError:
         return None
+    # Without a unit: SI, so N for kN and rad for deg.
     if not table[name].attrs.get("units"):
         factor, offset = conversion({"kN": "N", "deg": "rad"}.get(unit, unit), unit)
     return factor * np.asarray(table[name].values, float) + offset
@@ -146,9 +152,10 @@ def _plain(connector: str) -> str:
 
 
 def _poses(table: Dataset, names: list[str]) -> list[Pose]:
-    """Signals of every position that has an east beside its north and a heading near it."""
+    """Signals of every position that has an east for its north and a heading nearby."""
     found = []
     headings = [n for n in names if _is(n, "psi") and in_unit(table, n, "rad") is not None]
+    # North and east must be lengths, the heading an angle; names alone may mislead.
     for north in (n for n in names if _is(n, "x") and in_unit(table, n, "m") is not None):
         east = next((e for e in _beside(north, names) if in_unit(table, e, "m") is not None), None)
         heading = _nearest(north, headings)
@@ -158,12 +165,12 @@ def _poses(table: Dataset, names: list[str]) -> list[Pose]:
 
 
 def _says_ship(pose: Pose) -> bool:
-    """Whether its component is called a ship, which may lie still."""
+    """True if its component is called a ship, which may lie still."""
     return _owner(pose).lower().endswith(tuple(COMMON_WORDS - {"model", "fmu"}))
 
 
 def _moves(table: Dataset, pose: Pose) -> bool:
-    """Whether any of it changes: an input that nothing is connected to never does."""
+    """True if any of the pose changes: an unconnected input never does."""
     return any(
         np.ptp(table[name].values.astype(float)) > 0.0 for name in pose if table.sizes["time"]
     )
@@ -177,9 +184,10 @@ def _is(name: str, axis: str, endings: Iterable[str] = ("",)) -> bool:
 
 
 def _beside(north: str, names: list[str]) -> list[str]:
-    """Signals that stand to a position north as its east: the same name but for the word."""
+    """East signals for a north signal: the same name except for the word."""
     component, _, connector = north.rpartition(".")
     plain = _plain(connector)
+    # Replace the word for north by the matching word for east: north and east, x and y.
     for word, other in zip(AXES["x"], AXES["y"], strict=True):
         wanted = {plain.replace(word, other, 1)} if word in plain else set()
         for name in names:
@@ -190,10 +198,12 @@ def _beside(north: str, names: list[str]) -> list[str]:
 
 
 def _nearest(north: str, headings: list[str]) -> str | None:
-    """The heading of the same component; for `north` and `east`, which are always a position, the nearest one."""
+    """Heading of the same component; for `north`, which is always a position, the nearest one."""
+    # Nearest in the tree of components: the longest common path.
     path = north.split(".")[:-1]
     shared = {name: _shared(path, name.split(".")[:-1]) for name in headings}
     best = max(headings, key=lambda name: (shared[name], -name.count(".")), default=None)
+    # A bare x of another component may be anything: then no heading is taken.
     if best is None or (
         best.split(".")[:-1] != path and (shared[best] == 0 or _plain(north.split(".")[-1]) == "x")
     ):
@@ -202,7 +212,7 @@ def _nearest(north: str, headings: list[str]) -> str | None:
 
 
 def _shared(path: list[str], other: list[str]) -> int:
-    """How many steps two paths go together."""
+    """Number of leading steps that two paths share."""
     return next(
         (k for k, (a, b) in enumerate(zip(path, other, strict=False)) if a != b),
         min(len(path), len(other)),
@@ -210,7 +220,7 @@ def _shared(path: list[str], other: list[str]) -> int:
 
 
 def _loads(pose: Pose, names: list[str]) -> int:
-    """How many loads act on the component: on ships many, on what only measures none."""
+    """Number of loads on the component: many on ships, none on sensors."""
     return sum(name.startswith(f"{_owner(pose)}.tau_") for name in names)
 
 
@@ -219,7 +229,8 @@ def _owner(pose: Pose) -> str:
 
 
 def _apart(table: Dataset, pose: Pose, other: Pose) -> bool:
-    """Whether two poses are of two vessels: no two lie in the same place."""
+    """True if two poses belong to two vessels, which are not in the same place."""
+    # Distance over the run; median, since two ships may pass close to each other.
     gaps = [
         (in_unit(table, a, "m"), in_unit(table, b, "m"))
         for a, b in zip(pose[:2], other[:2], strict=True)
@@ -238,14 +249,17 @@ def _words(name: str) -> set[str]:
 
 
 def _belonging(pose: Pose, poses: list[Pose], names: list[str]) -> list[str]:
-    """Signals of a vessel and of what is hers: of the same nested system, or with the word that tells her apart."""
+    """Signals of a vessel: in the same nested system, or with the word that distinguishes her."""
     owners = {other: _owner(other) for other in poses}
     owner = owners[pose]
+    # With one vessel everything is hers.
     if len(poses) == 1:
         return names
+    # Vessels in nested systems of their own: the system decides.
     systems = {other: name.rpartition(".")[0] for other, name in owners.items()}
     if systems[pose] and len(set(systems.values())) == len(poses):
         return [name for name in names if name.startswith(f"{systems[pose]}.")]
+    # Else the words that only this vessel's name has, as a number or a ship's name.
     common = set.intersection(*(_words(name) for name in owners.values()))
     keys = {other: _words(name) - common for other, name in owners.items()}
 
@@ -257,6 +271,7 @@ def _belonging(pose: Pose, poses: list[Pose], names: list[str]) -> list[str]:
 
 
 def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
+    # Size from the start values, under the names that tools use.
     owner = _owner(pose)
     length, breadth = (
         _first_number(known, owner, words)
@@ -275,9 +290,10 @@ def _vessel(pose: Pose, names: list[str], known: Mapping[str, Any]) -> Vessel:
 
 
 def _aims(pose: Pose, names: list[str]) -> dict[str, tuple[str, str, str | None]]:
-    """Where she should be: what is commanded, and the reference on the way there."""
+    """Signals of set point and reference on the way there."""
     found = {}
     for aim, endings in AIMS.items():
+        # North by its name, then east and heading of the same component.
         north = next((name for name in names if _is(name, "x", endings) and name != pose[0]), None)
         beside = [
             n
@@ -305,6 +321,7 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
     -------
     tuple of DrawnThruster
     """
+    # Forces on the ship, where a thruster puts out both.
     roles = find_roles(names)
     force = {unit: [roles.signal(unit, f"tau_{axis}") for axis in "XY"] for unit in roles.thrusters}
     return tuple(
@@ -329,7 +346,7 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
 
 
 def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
-    """Where a thruster is, forward and to starboard; on the centre line where it has a place forward alone. [m, m]"""
+    """Place of a thruster, forward and to starboard; the latter is 0 where missing. [m, m]"""
     forward = _first_number(
         known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x")
     )
@@ -340,11 +357,13 @@ def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
 
 
 def _limits(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
+    # Limits by name, else the ends of the thrust map.
     most, least = (_first_number(known, unit, (f"thrust_{end}",)) for end in ("max", "min"))
     if most is None:
         least, most = _ends_of_map(known.get(join(unit, "thrust_table")))
     if most is None or most <= 0.0:
         return None
+    # Without a least thrust: the same astern as ahead.
     return (-most if least is None else least, most)
 
 
@@ -364,10 +383,11 @@ def _sectors(
     allocators: Iterable[str],
     known: Mapping[str, Any],
 ) -> tuple[tuple[float, float], ...]:
-    """What is left of a turn outside the range of angles that an allocator gives a unit. [rad, rad]
+    """Sector outside the range of angles that an allocator gives a thruster. [rad, rad]
 
     The unit is found by its name in that of the range, `port_azimuth_first`, or by the place of `azimuth_first_1`.
     """
+    # The range is in the allocator's parameters, by the thruster's name or number.
     if azimuth is None:
         return ()
     for allocator in allocators:
@@ -377,9 +397,11 @@ def _sectors(
         ):
             names = (f"{before}azimuth_{end}{after}" for end in ("first", "last"))
             first, last = (_first_number(known, allocator, (name,)) for name in names)
+            # A number belongs to this thruster if the allocator has its place.
             there = before or place == tuple(
                 _first_number(known, allocator, (axis + after,)) for axis in "xy"
             )
+            # The forbidden sector is the rest of the turn.
             if (
                 there
                 and first is not None

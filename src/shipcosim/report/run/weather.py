@@ -42,11 +42,14 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
     found = []
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
+            # The mean of the environment is shown where the ship has the same wind; a harbour
+            # changes it.
             means = [
                 roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)
             ]
             known = roles.harbour is None and None not in means
             size, angle = means if known else (f"{what} speed", f"{what} {sense}")
+            # A flow that is zero all along is not shown.
             if np.nanmax(shown[size].values) > 0.0:
                 found.append(
                     Flow(
@@ -57,6 +60,7 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
                         sense,
                     )
                 )
+    # Waves need height and direction.
     height, source = (
         roles.signal(roles.environment, f"wave_{part}") for part in ("height", "from")
     )
@@ -80,6 +84,7 @@ def _span(values: NDArray) -> str:
 
 
 def _mean_direction(degrees: NDArray) -> float:
+    # Mean of unit vectors: a plain mean fails across north.
     angle = np.radians(degrees)
     return float(
         np.degrees(np.arctan2(np.nanmean(np.sin(angle)), np.nanmean(np.cos(angle)))) % 360.0

@@ -1,4 +1,4 @@
-"""Zones of a panel over time that thrusters cannot or must not reach: beyond a limit, in a forbidden sector."""
+"""Zones that thrusters cannot reach or must not enter: beyond a limit, in a forbidden sector."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -37,6 +37,7 @@ def thrust_zones(
     -------
     tuple of Zone
     """
+    # Limits in the unit of the panel.
     span = _span(shown, signals)
     if limits is None or span is None:
         return ()
@@ -44,6 +45,7 @@ def thrust_zones(
     least, most = (factor * limit for limit in limits)
     margin = 0.05 * (most - least)
     found = []
+    # Draw a limit only if a curve comes near it; else the curves would be flat.
     if span[1] >= NEAR * most > 0.0:
         found.append(Zone(most, max(most, span[1]) + margin))
     if span[0] <= NEAR * least < 0.0:
@@ -69,6 +71,7 @@ def angle_zones(
     -------
     tuple of Zone
     """
+    # Angles in the panel run over several turns: repeat each sector on every turn in view.
     span = _span(shown, signals)
     if span is None:
         return ()

@@ -45,6 +45,7 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     series = series_of(frame, view, [angle])
     traces = []
     groups = []
+    # Each series of directions: rows of the same direction are gathered into one point.
     for k, one in enumerate(series):
         degrees = np.unique(around.values[one.rows][np.isfinite(around.values[one.rows])])
         alike = [one.rows[around.values[one.rows] == at] for at in degrees]
@@ -53,6 +54,7 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         traces += _around(
             one, degrees, points, with_band=len(series) <= 3, fill=0.14 if k == 0 else None
         )
+    # Static capability curves for the same quantity.
     traces += _beside(tables, view, series)
     note = "Bow up; angle: where the weather comes from, 90° from starboard."
     notes = [
@@ -67,12 +69,14 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
 def _around(
     one: SeriesOfRows, degrees: NDArray, points: NDArray, *, with_band: bool, fill: float | None
 ) -> list[dict[str, Any]]:
-    """A curve around the ship, closed where directions go all the way round, and the band of its interval."""
+    """A curve around the ship, closed if directions go all around, and the band of its interval."""
+    # Closed if no gap is much larger than the mean spacing.
     closed = len(degrees) > 2 and np.diff(
         np.append(degrees, degrees[0] + 360.0)
     ).max() <= 1.5 * 360.0 / len(degrees)
     end = [0] if closed else []
     theta = rounded([*degrees, *degrees[end]])
+    # The curve itself, filled for the first series only.
     curve = {
         **{
             "type": "scatterpolar",
@@ -88,6 +92,7 @@ def _around(
     }
     if fill is not None and closed:
         curve |= {"fill": "toself", "fillcolor": palette.faded(one.colour, fill)}
+    # The interval as dotted curves, where it is known.
     known = np.isfinite(points[:, 1:]).all(axis=1)
     if not with_band or not known.any():
         return [curve]
@@ -108,13 +113,15 @@ def _around(
 def _beside(
     tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]
 ) -> list[dict[str, Any]]:
-    """Curves from elsewhere for the same quantity and the series that are drawn, as `about` brings them."""
+    """Curves from `about` for the same quantity and series, such as static capability."""
+    # Only curves of the bases that the view asks for.
     colours = {one.label: one.colour for one in series}
     bases = bases_of(view)
     if unknown := {*bases} - {*NAMES}:
         raise Lacking(f"static: '{unknown.pop()}' is none of {', '.join(NAMES)}.")
     found = []
     for one in tables.about.get("beside") or ():
+        # Same quantity, same basis, and a series that is drawn.
         is_asked = one.get("radius") == view.get("radius") and (
             "basis" not in one or one["basis"] in bases
         )
@@ -140,6 +147,7 @@ def _beside(
 
 def _polar_axes(traces: Sequence[dict[str, Any]]) -> dict[str, Any]:
     look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
+    # A little more room than the largest radius.
     most = max((r for trace in traces for r in trace["r"] if r is not None), default=1.0)
     return {
         "bgcolor": "@card",
@@ -163,6 +171,7 @@ def _polar_axes(traces: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     """Empirical distribution of a quantity, with its simultaneous 95 % band."""
     name = str(view.get("quantity"))
+    # Failed runs say nothing about the distribution.
     frame = frame_of(tables, {"table": "runs"} | dict(view), [name])
     quantity = frame.column(name)
     series = series_of(frame, view, [name])
@@ -175,8 +184,10 @@ def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     never = 0
     widths = []
     largest = np.nanmax(quantity.values) if np.isfinite(quantity.values).any() else 1.0
+    # Runs that never reach a value keep the curve below 1.
     for one in series:
         rows = one.rows if done is None or len(done) != frame.rows else one.rows[done[one.rows]]
+        # Empirical distribution with its simultaneous band.
         reached, share, half = distribution(quantity.values[rows])
         never += len(rows) - len(reached)
         widths.append(half)
@@ -206,6 +217,7 @@ def _steps(
     *,
     with_band: bool,
 ) -> list[dict[str, Any]]:
+    # Prolong the last step to the right edge of the figure.
     x = np.concatenate([reached, [largest]])
     y = np.concatenate([share, share[-1:] if len(share) else [0.0]])
     curve = line(
@@ -216,10 +228,12 @@ def _steps(
         width=2,
         hovertemplate="%{y:.3~f} up to %{x:.4~g}",
     )
+    # Steps: the share is constant between two values.
     curve["line"] |= {"shape": "hv"}
     if not with_band:
         return [curve]
     look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
+    # Band of the distribution, within 0 and 1.
     low, high = (
         line("", x, np.clip(y + k * half, 0, 1), one.colour, width=0, **look) for k in (-1, 1)
     )
@@ -230,23 +244,28 @@ def _steps(
 
 def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     """Values by category, with their intervals."""
+    # One or several values, each with its bars in the same categories.
     asked = view.get("value")
     by = str(view.get("category"))
     values = [str(asked)] if isinstance(asked, str) else [str(one) for one in asked or ()]
     frame = frame_of(tables, view, [by, *values])
     category = frame.column(by)
+    # Levels of a factor, else the different numbers.
     every = category.levels or tuple(
         np.unique(category.values[np.isfinite(category.values)]).tolist()
     )
     levels = every[: int(view.get("most") or len(every))]
+    # With several values the colours tell these apart, not series.
     series = series_of(frame, {"series": False} | dict(view) if len(values) > 1 else view, [by])
     names = [category.text(at) for at in levels]
+    # Long names need horizontal bars.
     is_upright = sum(map(len, names)) <= MOST_LETTERS
     traces = []
     groups = []
     colours = iter(palette.CYCLE)
     for name in values:
         for one in series:
+            # Gather the rows of each category into a value with interval.
             alike = [one.rows[category.values[one.rows] == level] for level in levels]
             points = np.array(
                 [gathered(frame, name, rows) if len(rows) else (np.nan,) * 3 for rows in alike]
@@ -256,6 +275,7 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
             traces.append(
                 _bar(label or name, names, points, next(colours, palette.INK), is_upright)
             )
+    # Tell the reader what is left out, and what the interval is.
     unit = frame.column(values[0]).unit if values else ""
     fewer = f"The first {len(levels)} of {len(every)}." if len(levels) < len(every) else ""
     notes = [
@@ -270,7 +290,7 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
 
 
 def _bar_axes(is_upright: bool) -> dict[str, Any]:
-    """Long names lie beside their bars, the first on top."""
+    """Axes: long names stand next to horizontal bars, the first one on top."""
     if is_upright:
         return {"barmode": "group", "xaxis": {"type": "category"}}
     return {"barmode": "group", "yaxis": {"type": "category", "autorange": "reversed"}}
@@ -279,6 +299,7 @@ def _bar_axes(is_upright: bool) -> dict[str, Any]:
 def _bar(
     name: str, categories: Sequence[str], points: NDArray, colour: str, is_upright: bool
 ) -> dict[str, Any]:
+    # Upright or horizontal bars with the same data.
     along, across = ("y", "x") if is_upright else ("x", "y")
     made = {"type": "bar", "name": name, across: list(categories), along: rounded(points[:, 0])}
     made |= {
@@ -286,6 +307,7 @@ def _bar(
         "hovertemplate": f"%{{{along}:.3~g}}",
     }
     made |= {"orientation": "v" if is_upright else "h"}
+    # Error bars from the interval, where there is one.
     if not np.isfinite(points[:, 1:]).any():
         return made
     with np.errstate(invalid="ignore"):  # what never happens is infinite, and has no bar
@@ -296,7 +318,8 @@ def _bar(
 
 
 def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
-    """Two or three quantities against each other; the runs that no other beats are marked."""
+    """Two or three quantities against each other; runs on the Pareto front are marked."""
+    # Smaller is better, unless the view says larger.
     names = [str(name) for name in view.get("quantities") or ()]
     if len(names) not in (2, 3):
         raise Lacking(f"A Pareto plot has two or three quantities, not {len(names)}.")
@@ -304,6 +327,7 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     columns = [frame.column(name) for name in names]
     larger = {str(name) for name in view.get("largest") or ()}
     front = pareto_front([-c.values if c.name in larger else c.values for c in columns])
+    # Sort the front by the first quantity, so that a line can join it.
     rows = {"others": np.flatnonzero(~front), "front": np.flatnonzero(front)}
     rows["front"] = rows["front"][np.argsort(columns[0].values[rows["front"]])]
     third = columns[2] if len(columns) == 3 else None
@@ -313,6 +337,7 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         "opacity": 0.95,
         "line": {"color": palette.INK, "width": 1},
     }
+    # Others small and faint, the front on top of them.
     traces = [
         _dots(
             "other runs" if frame.name == RUNS else "others",
@@ -325,11 +350,13 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         ),
         _dots("not beaten", frame, tables, columns, rows["front"], third, look),
     ]
+    # With two quantities the front is a curve.
     if third is None:
         traces[1] |= {
             "mode": "lines+markers",
             "line": {"color": palette.VERMILLION, "width": 1, "dash": "dot"},
         }
+    # A run that the view marks, such as the shipped gains.
     if name := view.get("marked"):
         rows["marked"] = np.flatnonzero(frame.column(name).values == 1.0)
         mark = {
@@ -341,6 +368,7 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         traces.append(
             _dots(str(name).replace("_", " "), frame, tables, columns, rows["marked"], None, mark)
         )
+    # The note says which direction is better.
     better = ", ".join(f"{c.name} {'large' if c.name in larger else 'small'}" for c in columns)
     notes = [
         str(
@@ -354,7 +382,7 @@ def pareto(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
 
 
 def _sizes(third: Column | None) -> str:
-    """What the sizes of dots say."""
+    """Meaning of the dot sizes."""
     known = np.zeros(0) if third is None else third.values[np.isfinite(third.values)]
     if third is None or not known.size:
         return ""
@@ -366,12 +394,14 @@ def scatter(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     names = [str(view.get("x")), str(view.get("y"))]
     frame = frame_of(tables, view, names)
     columns = [frame.column(name) for name in names]
+    # Colour by a factor, if it has few enough levels.
     chosen = view.get("colour") or view.get("series")
     series = series_of(
         frame,
         {**view, "series": chosen if chosen and frame.column(chosen).levels else False},
         names,
     )
+    # Evenly fewer dots, by the same share in each series.
     share = min(MOST_DOTS / max(frame.rows, 1), 1.0)
     traces = [
         _dots(
@@ -405,8 +435,9 @@ def _dots(
     third: Column | None,
     look: Mapping[str, Any],
 ) -> dict[str, Any]:
-    """Dots, each of which knows the number of its run where it is one."""
+    """Dots, each with the number of its run where it stands for one."""
     marker = {"opacity": 0.7, "line": {"width": 0}} | dict(look)
+    # A third quantity sets the size of the dots.
     if third is not None and len(rows):
         low = np.nanmin(third.values)
         span = np.ptp(third.values[np.isfinite(third.values)]) or 1.0
@@ -417,6 +448,7 @@ def _dots(
         "y": _drawn(columns[1], rows),
         "hovertemplate": "%{x}, %{y}",
     }
+    # The number of the run links a dot to its page.
     if frame.name == RUNS:
         numbers = tables.runs["run"].to_numpy()[rows].tolist()
         made |= {"customdata": numbers, "hovertemplate": "run %{customdata}: %{x:.4~g}, %{y:.4~g}"}
@@ -432,7 +464,7 @@ def _drawn(column: Column, rows: NDArray) -> list[Any]:
 
 
 def _even(rows: NDArray, share: float | None = None) -> NDArray:
-    """Rows of which few enough are left, evenly spaced."""
+    """Evenly thinned rows."""
     most = MOST_DOTS if share is None else max(int(share * len(rows)), 1)
     return rows if len(rows) <= most else rows[np.linspace(0, len(rows) - 1, most).astype(int)]
 
@@ -463,7 +495,7 @@ def _figure(
 def distance_figure(
     time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]], unit: str = "m"
 ) -> Figure:
-    """Distance from the first position over time: the median of each series and the range of nine in ten.
+    """Distance from the first position over time: median and 5 to 95 % range of each series.
 
     Parameters
     ----------
@@ -474,6 +506,7 @@ def distance_figure(
     """
     traces = []
     for one, (low, middle, high) in spread:
+        # Band between the outer quantiles, then the median on top.
         look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
         top = line("", time, high, one.colour, width=0, **look)
         traces += [line("", time, low, one.colour, width=0, **look)]

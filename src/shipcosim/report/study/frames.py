@@ -1,4 +1,4 @@
-"""The table that a view is drawn from, its series, and values gathered over runs that are alike."""
+"""Table of a view, its series, and values gathered over similar runs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST_SERIES = 8
 
 
 class Point(NamedTuple):
-    """A value with the interval that it is known to, NaN where there is none."""
+    """A value with its interval, NaN where there is none."""
 
     value: float
     low: float
@@ -49,7 +49,7 @@ class Frame:
     columns: Mapping[str, Column]
 
     def column(self, name: object) -> Column:
-        """A column; what there is instead is said where it is missing."""
+        """A column; if missing, the error lists the columns."""
         if name not in self.columns:
             raise Lacking(
                 f"There is no column '{name}' in {self.name}. There is: {', '.join(self.columns)}."
@@ -58,7 +58,7 @@ class Frame:
 
     @cached_property
     def rows(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return len(next(iter(self.columns.values())).values) if self.columns else 0
 
 
@@ -72,18 +72,20 @@ class SeriesOfRows:
 
 
 def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
-    """Tables with the rows that a view shows: all, or those whose columns have the values of its `only`.
+    """Tables with the rows of a view: all, or those with the values of its `only`.
 
     Raises
     ------
     Lacking
         If no table has such a column, or none such a value.
     """
+    # A single value counts as a list of one.
     asked = (view.get("only") or {}).items()
     only = {str(name): value if isinstance(value, list) else [value] for name, value in asked}
     runs = tables.runs
     summary = tables.summary
     others = dict(tables.tables)
+    # A misspelt column or value must not give an empty figure.
     for name, values in only.items():
         having = [table for table in (runs, summary, *others.values()) if name in table]
         if not having:
@@ -93,6 +95,7 @@ def narrowed(tables: StudyTables, view: Mapping[str, Any]) -> StudyTables:
         wanted = {label(value) for value in values}
         if missing := wanted - {label(value) for table in having for value in table[name]}:
             raise Lacking(f"only: no row has {name} = {', '.join(sorted(missing))}.")
+        # Every table that has the column is narrowed.
         runs, summary = (_with(table, name, wanted) for table in (runs, summary))
         others = {key: _with(table, name, wanted) for key, table in others.items()}
     return replace(tables, runs=runs, summary=summary, tables=others) if only else tables
@@ -107,7 +110,7 @@ def _with(table: DataFrame, name: str, wanted: set[str]) -> DataFrame:
 
 
 def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]) -> Frame:
-    """The table of a view: the one it names, else the summary where it has all columns, else the runs.
+    """Table of a view: the named one, else the summary if it has all columns, else the runs.
 
     Raises
     ------
@@ -115,12 +118,14 @@ def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]
         If the table that it names is not there.
     """
     said = tables.about.get("columns", ())
+    # A table named by the view.
     if name := view.get("table"):
         every = {"runs": tables.runs, "summary": tables.summary, **tables.tables}
         if name not in every:
             raise Lacking(f"There is no table '{name}'. There is: {', '.join(every)}.")
         title = f"the table '{name}'" if name in tables.tables else f"the {name}"
         return Frame(title, columns_of(every[name], said))
+    # The summary serves only if it has all needed columns.
     if not {*needed} <= {*map(str, tables.summary.columns)}:
         return Frame(RUNS, columns_of(tables.runs, said))
     rows = tables.summary.dropna(
@@ -130,7 +135,7 @@ def frame_of(tables: StudyTables, view: Mapping[str, Any], needed: Sequence[str]
 
 
 def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> list[SeriesOfRows]:
-    """Series of a view: levels of the factors that it names; else of all that it does not use, unless it shows runs.
+    """Series of a view: levels of the named factors; else of unused factors, unless it shows runs.
 
     Parameters
     ----------
@@ -145,6 +150,7 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
     list of SeriesOfRows
         At most eight, in the order of their levels.
     """
+    # Without a choice, all factors that are no axis; runs are then one series.
     asked = view.get("series")
     if asked is None:
         free = [
@@ -153,6 +159,7 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
             if c.role == FACTOR and c.name not in taken and c.levels
         ]
         asked = free if frame.name != RUNS else []
+    # Series are the combinations of levels that occur.
     names = [asked] if isinstance(asked, str) else list(asked or ())
     columns = [frame.column(name) for name in names]
     keys = (
@@ -165,6 +172,7 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
         if columns
         else (keys[:1], np.zeros(frame.rows, int))
     )
+    # At most as many series as colours.
     return [
         SeriesOfRows(_label(columns, key), palette.CYCLE[k], np.flatnonzero(place.ravel() == k))
         for k, key in enumerate(found[:MOST_SERIES])
@@ -172,7 +180,7 @@ def series_of(frame: Frame, view: Mapping[str, Any], taken: Sequence[str]) -> li
 
 
 def left_out(frame: Frame, drawn: Sequence[SeriesOfRows]) -> str:
-    """A sentence on rows that no series has; empty where all are drawn."""
+    """Sentence on rows that no series contains; empty if all are drawn."""
     missing = frame.rows - sum(len(one.rows) for one in drawn)
     return (
         f"{missing} of {frame.rows} rows are in further series, which are not drawn."
@@ -186,8 +194,9 @@ def _label(columns: Sequence[Column], key: Sequence[float]) -> str:
 
 
 def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
-    """One value of some rows that are alike: that of a single row with its interval, else mean or share over them."""
+    """Value of similar rows: of a single row with its interval, else mean or share over them."""
     column = frame.column(value)
+    # A single row may have its interval in columns of its own.
     if len(rows) == 1:
         ends = [
             frame.columns[f"{value}_{end}"].values[rows[0]]
@@ -196,6 +205,7 @@ def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
             for end in ("low", "high")
         ]
         return Point(float(column.values[rows[0]]), float(ends[0]), float(ends[1]))
+    # Several rows: share with Wilson's interval, or mean with a normal one.
     known = column.values[rows]
     known = known[np.isfinite(known)]
     if column.is_truth and len(known):
@@ -204,10 +214,12 @@ def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
 
 
 def how_gathered(frame: Frame, value: str, groups: Sequence[NDArray]) -> str:
-    """What a value and its interval are, as a sentence; empty where neither needs one."""
+    """Sentence on what a value and its interval are; empty if neither needs one."""
     column = frame.column(value)
+    # Single rows: the interval of the table.
     if all(len(rows) <= 1 for rows in groups):
         return f"Interval: as in {frame.name}, 95 %." if f"{value}_low" in frame.columns else ""
+    # Otherwise tell how many runs a value is gathered from.
     counts = [len(rows) for rows in groups if len(rows)]
     of = f"{min(counts)}" if min(counts) == max(counts) else f"{min(counts)} to {max(counts)}"
     if column.is_truth:

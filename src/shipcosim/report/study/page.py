@@ -48,7 +48,7 @@ class ErrorOfRuns:
 
 
 class Choice(NamedTuple):
-    """A column whose levels readers choose from: its name, its title, and each level with its text."""
+    """A column that readers filter by level: name, title, and each level with its text."""
 
     column: str
     title: str
@@ -116,12 +116,15 @@ def write_study(tables: StudyTables, path: str | os.PathLike[str]) -> None:
 
 
 def page_of(tables: StudyTables) -> StudyPage:
-    """What the page of a study shows."""
+    """Contents of the page of a study."""
+    # Columns with units and roles, as the study describes them.
     said = tables.about.get("columns", ())
     runs = columns_of(tables.runs, said)
     summary = columns_of(tables.summary, said)
+    # Views first: a section without content is left out.
     tracks, plots, undrawn = _views(tables)
     drawn = (*plots, *(view.distance for view in tracks))
+    # As many runs as the page has room for.
     rows = _kept_rows(tables, list(runs.values()))
     errors = tuple(
         ErrorOfRuns(text, len(numbers), numbers[:20]) for text, numbers in words.errors(tables)
@@ -160,12 +163,13 @@ def page_of(tables: StudyTables) -> StudyPage:
 def _views(
     tables: StudyTables,
 ) -> tuple[tuple[TracksView, ...], tuple[Figure, ...], tuple[str, ...]]:
-    """The views that the study asks for; what is lacking for one takes nothing from the others."""
+    """Views of the study; a view that cannot be drawn does not affect the others."""
     tracks = []
     plots = []
     undrawn = []
     for view in tables.study.get("view") or ():
         kind = str(view.get("kind"))
+        # Each view with its own rows; what is missing is told in its place.
         try:
             shown = narrowed(tables, view)
             if kind == "tracks":
@@ -180,13 +184,16 @@ def _views(
 
 
 def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
-    """Rows that the page has room for: failed ones, at most half of all, and the others evenly spaced."""
+    """Rows that fit on the page: failed ones, at most half of all, and evenly spaced others."""
+    # Columns with levels need little space: only numbers count.
     varying = [column.values for column in columns if column.is_number and not column.levels]
     most = most_rows([*varying, np.arange(len(tables.runs))], BYTES_FOR_RUNS)
     if len(tables.runs) <= most:
         return np.arange(len(tables.runs))
+    # Failed runs first: these are what readers look for.
     failed = words.is_failed(tables)
     parts = [np.flatnonzero(failed)[: most // 2]]
+    # The others evenly spaced.
     others = np.flatnonzero(~failed)
     room = min(most - len(parts[0]), len(others))
     parts.append(others[np.unique(np.linspace(0, len(others) - 1, room).astype(int))])
@@ -200,7 +207,8 @@ def _data(
     tracks: Sequence[TracksView],
     drawn: Sequence[Figure],
 ) -> dict[str, Any]:
-    """What the scripts of the page draw."""
+    """Data for the scripts of the page."""
+    # Error texts are stored once, each run refers to its text.
     failed = words.is_failed(tables)[rows]
     kept = tables.runs.iloc[rows]
     texts = [str(error) for error in kept["error"][failed]] if "error" in kept else []
@@ -230,7 +238,8 @@ def _data(
 
 
 def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
-    """A column as the script reads it: levels by their places, numbers as they are."""
+    """A column for the script: levels by their places, numbers as they are."""
+    # Description of the column, then its values.
     values = column.values[rows]
     made = {
         name: value
@@ -238,6 +247,7 @@ def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
         if name in ("name", "role", "description", "unit")
     }
     made |= {"labels": column.labels, "truth": column.is_truth}
+    # Few levels: small integers instead of numbers.
     if column.levels and column.is_number:
         place = {level: k for k, level in enumerate(column.levels)}
         return made | {
@@ -264,14 +274,15 @@ def _choices(columns: Mapping[str, Column]) -> tuple[Choice, ...]:
 
 
 def _level(column: Column, level: float) -> str:
-    """A level without its unit, which the name of the column has."""
+    """A level without its unit, which the column's title has."""
     if column.is_truth:
         return "yes" if level else "no"
     return column.text(level) if column.labels else signed(level, 6)
 
 
 def _summary(columns: Mapping[str, Column]) -> Table:
-    """The summary as texts; of a long one its first rows."""
+    """The summary as texts; at most its first rows."""
+    # Ends of intervals are shown in the cell of their value.
     ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
     shown = [column for name, column in columns.items() if name not in ends]
     count = min(len(shown[0].values), MOST_SUMMARY) if shown else 0
@@ -282,7 +293,8 @@ def _summary(columns: Mapping[str, Column]) -> Table:
 
 
 def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> str:
-    """A cell of the summary, with its interval where it has one."""
+    """A cell of the summary, with its interval if it has one."""
+    # Value first, then both ends in brackets.
     cell = _cell(column, column.values[row])
     ends = [
         columns[f"{column.name}_{end}"].values[row]

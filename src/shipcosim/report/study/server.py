@@ -1,7 +1,8 @@
-"""The page of a study with a server: a click on a row simulates it. For the own machine only, one simulation at a time.
+"""The page of a study with a server: a click on a row simulates it, one at a time.
 
-Served are the files of one folder, to programs of this machine. What a page of another origin could ask for by itself
-is refused: requests by another name than that of the server, and simulations without a header of ours, for which a
+The server gives the files of one folder to programs of this machine only. It refuses requests that
+another site's page could make: under another host name, and simulations without our header, for
+which a browser asks the server first.
 browser asks the server first.
 """
 
@@ -64,7 +65,7 @@ class StudyServer(ThreadingHTTPServer):
         super().__init__((ADDRESS, port), _Handler)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say what went wrong, but for a browser that did not wait for its answer."""
+        """Report an error, except for a browser that did not wait for its answer."""
         if not isinstance(sys.exception(), ConnectionError):
             super().handle_error(request, client_address)
 
@@ -102,7 +103,7 @@ def study_server(
 
 
 def page_of_run(folder: Path, run: int) -> Path:
-    """Where the page of one run lies.
+    """Path of the page of one run.
 
     Examples
     --------
@@ -121,6 +122,7 @@ class _Handler(BaseHTTPRequestHandler):
     sys_version = ""
 
     def do_GET(self) -> None:
+        # Requests under another host name come from another site.
         path = urlsplit(self.path).path
         if not self._is_ours():
             return
@@ -138,6 +140,7 @@ class _Handler(BaseHTTPRequestHandler):
     do_HEAD = do_GET
 
     def do_POST(self) -> None:
+        # Only our page may start a simulation: its header, and its origin.
         if not self._is_ours():
             return
         if (
@@ -148,6 +151,7 @@ class _Handler(BaseHTTPRequestHandler):
                 HTTPStatus.FORBIDDEN, "Only the page of this study may ask for a simulation."
             )
             return
+        # The number must be that of a run of this study.
         found = RUN.fullmatch(self.path)
         if not found or int(found[1]) not in self.server.runs:
             self._refuse(HTTPStatus.NOT_FOUND, "There is no such run in this study.")
@@ -155,7 +159,8 @@ class _Handler(BaseHTTPRequestHandler):
         self._simulate(int(found[1]))
 
     def _simulate(self, run: int) -> None:
-        """Simulate a run that has no page yet, unless another one is being simulated."""
+        """Simulate a run that has no page yet, unless another simulation is running."""
+        # One simulation at a time: the machine has few cores.
         page = page_of_run(self.server.folder, run)
         if not self.server.at_work.acquire(blocking=False):
             self._refuse(
@@ -173,7 +178,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._answer(HTTPStatus.OK, {"page": page.relative_to(self.server.folder).as_posix()})
 
     def _without_page(self, run: int, page: Path) -> str:
-        """Simulate a run that has no page; why it has none afterwards."""
+        """Simulate a run without a page; return why it has none afterwards."""
+        # Errors are shown on the page; the server goes on.
         try:
             if not page.is_file():
                 self.server.simulate(run)
@@ -187,7 +193,7 @@ class _Handler(BaseHTTPRequestHandler):
         return f"http://{self.headers.get('Host')}"
 
     def _is_ours(self) -> bool:
-        """Whether the request is for this server by its own name; a name that only points here is another site's."""
+        """True if the request uses this server's name; other names may be another site's."""
         port = self.server.server_port
         if self.headers.get("Host") in (f"{ADDRESS}:{port}", f"localhost:{port}"):
             return True
@@ -195,10 +201,12 @@ class _Handler(BaseHTTPRequestHandler):
         return False
 
     def _file(self, path: str) -> Path | None:
-        """A file of the folder, at most one folder deep; None for anything else, links out of the folder included."""
+        """A file of the folder, at most one folder deep; None for all else, links out included."""
+        # Plain names only: no dots, no deeper folders.
         parts = unquote(path).strip("/").split("/") if path != "/" else ["report.html"]
         if len(parts) > 2 or any(not re.fullmatch(r"\w[\w.-]*", part, re.ASCII) for part in parts):
             return None
+        # Resolved, so that links cannot lead out of the folder.
         file = self.server.folder.joinpath(*parts).resolve()
         is_inside = file.is_relative_to(self.server.folder) and file.suffix in SHOWN
         return file if is_inside and file.is_file() else None
@@ -227,4 +235,4 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
     def log_message(self, format: str, *args: object) -> None:
-        """The terminal is for what matters."""
+        """Log nothing: the terminal shows only what matters."""

@@ -1,4 +1,4 @@
-"""The static capability of the ship of a study, drawn beside what the study found, where a view asks for it."""
+"""Static capability of a study's ship, drawn next to the study's results if a view asks for it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ DASHES = {SIMULATOR: "dash", LEVEL_1: "dot"}
 
 
 def bases_of(view: Mapping[str, Any]) -> list[str]:
-    """What the static numbers that a view asks for are made by."""
+    """Bases of the static capability numbers that a view asks for."""
     asked = view.get("static") or []
     return [str(one) for one in asked] if isinstance(asked, list) else [str(asked)]
 
@@ -41,15 +41,18 @@ def static_curves(
     (list of dict, list of str)
         Curves as `StudyTables.about` has them under `beside`, and why there are none.
     """
+    # Only polar views can show it.
     asking = [
         view for view in views if view.get("kind") == "polar" and {*NAMES} & {*bases_of(view)}
     ]
     if not asking:
         return [], []
+    # A ship without the needed data is no error of the study.
     try:
         capability = capability_of(vessel_of(system, parameters))
     except ShipcosimError as error:
         return [], [f"The static capability is not drawn. {error}"]
+    # A curve for each case, basis and radius.
     curves = [
         {
             **{"radius": radius, "basis": basis, "dash": DASHES[basis], "series": case.name},

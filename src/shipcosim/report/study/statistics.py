@@ -1,4 +1,4 @@
-"""Statistics of the page: intervals, distributions, what varies with what, Pareto fronts."""
+"""Statistics of the page: intervals, distributions, explained variance, Pareto fronts."""
 
 from collections.abc import Sequence
 
@@ -32,8 +32,10 @@ def wilson(count: int, of: int) -> tuple[float, float]:
     >>> [round(end, 3) for end in wilson(9, 10)]
     [0.596, 0.982]
     """
+    # Without runs anything is possible.
     if not of:
         return 0.0, 1.0
+    # Wilson's score: centre (p + z^2/2n) / (1 + z^2/n), never beyond 0 and 1.
     share = count / of
     more = Z * Z / of
     middle = (share + more / 2) / (1 + more)
@@ -42,13 +44,14 @@ def wilson(count: int, of: int) -> tuple[float, float]:
 
 
 def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
-    """Mean and its 95 % interval; the normal one, without an interval for a single value.
+    """Mean and its normal 95 % interval; no interval for a single value.
 
     Examples
     --------
     >>> [round(float(v), 2) for v in mean_interval([1.0, 2.0, 3.0])]
     [2.0, 0.87, 3.13]
     """
+    # Interval z s / sqrt(n); values that are not finite do not count.
     known = np.asarray(values, float)
     known = known[np.isfinite(known)]
     if not known.size:
@@ -59,7 +62,7 @@ def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
 
 
 def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:
-    """Empirical distribution: values in their order, the share up to each, half width of its simultaneous 95 % band.
+    """Empirical distribution: sorted values, share up to each, half width of its 95 % band.
 
     Parameters
     ----------
@@ -80,6 +83,7 @@ def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:
     >>> reached.tolist(), share.tolist(), round(half, 2)
     ([1.0, 2.0, 3.0], [0.25, 0.5, 0.75], 0.68)
     """
+    # Dvoretzky-Kiefer-Wolfowitz with Massart's constant: sqrt(ln(2/alpha) / 2n).
     found = np.asarray(values, float)
     reached = np.sort(found[np.isfinite(found)])
     half = float(np.sqrt(np.log(2 / (1 - LEVEL)) / (2 * len(found)))) if len(found) else 1.0
@@ -87,7 +91,7 @@ def distribution(values: ArrayLike) -> tuple[NDArray, NDArray, float]:
 
 
 def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
-    """Share of the variance of one column that goes with another alone.
+    """Share of the variance of one column that another column explains.
 
     Parameters
     ----------
@@ -112,30 +116,36 @@ def explained(values: ArrayLike, by: ArrayLike, are_levels: bool) -> float:
     >>> round(explained(4 * [1.0, 1.1, 5.0, 5.1], 4 * [0.0, 0.0, 1.0, 1.0], True), 3)
     0.999
     """
+    # Rows where both are known.
     quantity = np.asarray(values, float)
     cause = np.asarray(by, float)
     known = np.isfinite(quantity) & np.isfinite(cause)
     quantity = quantity[known]
     cause = cause[known]
+    # Groups: levels, or bins of equal size.
     groups = np.unique(cause, return_inverse=True)[1] if are_levels else _bins(cause)
     count = np.bincount(groups) if len(groups) else np.zeros(0)
     left = len(quantity) - np.count_nonzero(count)
+    # Too few runs or groups: no statement.
     if np.count_nonzero(count) < 2 or left < 2 or not np.ptp(quantity):
         return float("nan")
+    # Variance within groups over total variance, both with their degrees of freedom.
     means = np.bincount(groups, quantity) / np.maximum(count, 1)
     within = float(np.square(quantity - means[groups]).sum()) / left
     share = 1.0 - within / float(quantity.var(ddof=1))
+    # Less than two standard deviations of chance counts as nothing.
     by_chance = 2.0 * np.sqrt(2.0 * (np.count_nonzero(count) - 1)) / (len(quantity) - 1)
     return float(share) if share > by_chance else 0.0
 
 
 def _bins(values: NDArray) -> NDArray:
+    # Bins by rank have equal size, whatever the distribution.
     ranks = np.argsort(np.argsort(values, kind="stable"), kind="stable")
     return (ranks * min(BINS, max(len(values) // 3, 1))) // max(len(values), 1)
 
 
 def pareto_front(quantities: Sequence[ArrayLike]) -> NDArray:
-    """Which points no other point beats: at least as low in every quantity and lower in one.
+    """True for points on the Pareto front: no other is as low in all quantities and lower in one.
 
     Parameters
     ----------
@@ -152,10 +162,12 @@ def pareto_front(quantities: Sequence[ArrayLike]) -> NDArray:
     >>> pareto_front([[1.0, 2.0, 2.0, 3.0], [3.0, 2.0, 3.0, 1.0]]).tolist()
     [True, True, False, True]
     """
+    # Points with an unknown quantity cannot be compared.
     points = np.column_stack([np.asarray(one, float) for one in quantities])
     front = np.zeros(len(points), bool)
     rows = np.flatnonzero(np.isfinite(points).all(axis=1))
     best = np.empty((0, points.shape[1]))
+    # In lexicographic order a point can only be beaten by earlier ones.
     for row in rows[np.lexsort(points[rows].T[::-1])]:
         beaten = ((best <= points[row]).all(axis=1) & (best < points[row]).any(axis=1)).any()
         if not beaten:

@@ -1,4 +1,4 @@
-"""What a study of many runs left, as the page takes it, and its columns as people read them."""
+"""Results of a study of many runs for the page, and their columns in units to read."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _TRUTH = (False, True)
 
 @dataclass(frozen=True)
 class StudyTables:
-    """What a study left.
+    """Results of a study.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class StudyTables:
 
 
 def tables_of(swept: Swept, command: str) -> StudyTables:
-    """What a study left, with the tables and pages of runs that lie in its folder.
+    """Results of a study, with tables and pages of runs in its folder.
 
     Parameters
     ----------
@@ -80,6 +80,7 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     """
     import pandas
 
+    # Tracks, static capability, and runs that have a page.
     folder = swept.folder
     tracks = swept.folder / "tracks.parquet"
     scenario = swept.plan.scenario
@@ -100,7 +101,8 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
 
 
 def _ship(swept: Swept) -> dict[str, float]:
-    """Length and breadth of the ship whose tracks are kept; empty where they are not known. [m]"""
+    """Length and breadth of the ship whose tracks are kept; empty if unknown. [m]"""
+    # Sizes from the start values of the component whose signals are kept.
     tracks = swept.plan.study.tracks
     system = swept.plan.system
     name = system.split(tracks.signals[0])[0] if tracks is not None else None
@@ -142,7 +144,8 @@ class Column:
 
     @property
     def levels(self) -> tuple[float, ...]:
-        """Different values of a factor, or whole numbers, in their order; empty where too many to choose from."""
+        """Distinct values of a factor, or whole numbers, in order; empty if they are too many."""
+        # Labels are levels; numbers only if they are few, and whole or a factor's.
         if self.labels:
             return tuple(float(k) for k in range(len(self.labels)))
         found = np.unique(self.values[np.isfinite(self.values)])
@@ -163,13 +166,14 @@ class Column:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def text(self, value: float, with_name: bool = False) -> str:
-        """A value as people read it.
+        """A value as text for readers.
 
         Examples
         --------
         >>> Column("wind", FACTOR, "", "m/s", np.zeros(1)).text(7.5, with_name=True)
         'wind 7.5 m/s'
         """
+        # Infinite means never reached.
         if not np.isfinite(value):
             return "never" if value == np.inf else "–"
         if self.labels:
@@ -185,7 +189,7 @@ class Column:
 
 
 def signed(value: float, digits: int = 4) -> str:
-    """A number as a cell of a table has it.
+    """A number as a table cell shows it.
 
     Examples
     --------
@@ -210,6 +214,7 @@ def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str,
     dict of str to Column
         In the order of the table.
     """
+    # Ends of an interval have the unit and role of their value.
     known = {str(one["name"]): one for one in said}
     for name, one in list(known.items()):
         for end in ("low", "high"):
@@ -221,21 +226,25 @@ def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str,
 
 
 def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
-    """One column, in the unit that people read: degrees, kN where numbers are large."""
+    """One column in units to read: degrees, kN for large numbers."""
     made = Column(
         name, str(said.get("role") or ""), str(said.get("description") or ""), "", np.zeros(0)
     )
+    # True or false, also where some values are missing.
     known = values[values.notna()]
     if values.dtype.kind == "b" or (
         values.dtype.kind == "O" and len(known) and all(value in _TRUTH for value in known)
     ):
         return replace(made, values=_numbers(values), is_truth=True)
+    # Numbers, in the unit to read.
     if values.dtype.kind in "iuf" or not len(known):
         shown, unit = readable(_numbers(values), said.get("unit"))
         return replace(made, values=shown, unit=unit)
+    # Texts that are all numbers become numbers; others become labels.
     texts = [label(value) for value in values]
     if all(map(_is_number, filter(None, texts))):
         return column_of(name, values.map(lambda value: float(label(value) or "nan")), said)
+    # Labels in the order of the study, then as they occur.
     order = [label(value) for value in said.get("labels") or ()]
     labels = tuple(
         dict.fromkeys(
@@ -249,19 +258,21 @@ def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:
 
 
 def readable(values: ArrayLike, unit: str | None) -> tuple[NDArray, str]:
-    """Numbers and their unit as people read them.
+    """Numbers with their unit for readers.
 
     Examples
     --------
     >>> readable([0.0, np.pi / 4], "rad")
     (array([ 0., 45.]), '°')
     """
+    # Small quantities stay in their unit.
     found = np.asarray(values, float)
     shown, factor, least = READ_AS.get(unit or None, (unit or "", 1.0, 0.0))
     known = np.abs(found[np.isfinite(found)])
     if known.size and known.max() < least:
         shown = unit or ""
         factor = 1.0
+    # Round to 12 digits: 45 deg must not read 44.99999999.
     scaled = factor * found
     power = np.where(
         np.isfinite(scaled) & (scaled != 0.0), np.floor(np.log10(np.abs(scaled) + 1e-300)), 0.0
@@ -280,7 +291,7 @@ def _is_number(text: str) -> bool:
 
 
 def label(value: object) -> str:
-    """A value of a column of labels as text; a number as 2, not 2.0."""
+    """A label as text; whole numbers as 2, not 2.0."""
     if value is None or value != value:
         return ""
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,4 +1,4 @@
-"""The view of recorded tracks: where the ship of each run was, its density, outlines to scale, circles of distance."""
+"""View of recorded tracks: positions, density, outlines to scale, circles of distance."""
 
 from __future__ import annotations
 
@@ -63,6 +63,7 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
     Lacking
         If no tracks were kept.
     """
+    # Series of the runs that have a track.
     frame = Frame(RUNS, columns_of(tables.runs, tables.about.get("columns", ())))
     tracks = _read(tables)
     series = series_of(frame, {"series": False} | dict(view), [])
@@ -71,12 +72,14 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
         SeriesOfRows(one.label, one.colour, one.rows[some])
         for one, some in zip(series, known, strict=True)
     ]
+    # Circles and figure use the distance from the start.
     distance = np.hypot(tracks.north, tracks.east)
     circles = [float(radius) for radius in view.get("circles") or _circles(distance)]
     drawn = _chosen(series)
     note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
     note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
     said = [str(view.get("note") or note), left_out(frame, [*series, *_without(frame, series)])]
+    # Quantiles over all tracks, not only over the drawn ones.
     spread = [(one, _spread(distance[one.rows])) for one in series if len(one.rows)]
     return TracksView(
         title=str(view.get("title") or "Tracks"),
@@ -88,27 +91,31 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
 
 
 def _without(frame: Frame, series: Sequence[SeriesOfRows]) -> list[SeriesOfRows]:
-    """Rows without a track, which no series leaves out."""
+    """Rows without a track, which do not count as left out."""
     there = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
     return [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
 
 
 def _read(tables: StudyTables) -> _Tracks:
-    """Tracks of the table on few common times."""
+    """Read the tracks on few common times."""
+    # Signals north, east and heading as the study names them.
     names = [str(name) for name in (tables.study.get("tracks") or {}).get("signals", ())]
     if tables.tracks is None or not len(tables.tracks) or len(names) < 2:
         raise Lacking(
             "No tracks were kept: the study has no [tracks] with signals of north, east and heading."
         )
     table = tables.tracks
+    # A row for each run, a column for each time.
     place = {int(run): k for k, run in enumerate(tables.runs["run"])}
     stamps, column = np.unique(table["time"].to_numpy(float), return_inverse=True)
     row = np.array([place.get(int(run), -1) for run in table["run"]])
     full = np.full((3, len(place), len(stamps)), np.nan)
     for k, name in enumerate(names[:3]):
         full[k, row[row >= 0], column[row >= 0]] = table[name].to_numpy(float)[row >= 0]
+    # Evenly fewer times, first and last included.
     kept = np.unique(np.linspace(0, len(stamps) - 1, MOST_TIMES).astype(int))
     north, east, psi = full[:, :, kept]
+    # Each track relative to its first known position.
     first = [
         np.array([row[np.isfinite(row)][:1].sum() for row in one])[:, None] for one in full[:2]
     ]
@@ -116,7 +123,8 @@ def _read(tables: StudyTables) -> _Tracks:
 
 
 def _circles(distance: NDArray) -> list[float]:
-    """Three round radii within what the runs reach. [m]"""
+    """Three round radii within the reach of the runs. [m]"""
+    # Radii 1, 2 and 5 times powers of ten.
     most = float(np.nanmax(distance)) if np.isfinite(distance).any() else 1.0
     power = 10.0 ** np.floor(np.log10(max(most, 0.1)))
     return [r for r in np.outer([0.1, 1.0], [1.0, 2.0, 5.0]).ravel() * power if r <= most][-3:] or [
@@ -125,7 +133,7 @@ def _circles(distance: NDArray) -> list[float]:
 
 
 def _chosen(series: Sequence[SeriesOfRows]) -> list[NDArray]:
-    """Rows of which tracks are drawn: as many of each series."""
+    """Rows of the drawn tracks: equally many of each series."""
     most = MOST_TRACKS // max(len(series), 1)
     return [
         one.rows[np.unique(np.linspace(0, len(one.rows) - 1, min(most, len(one.rows))).astype(int))]
@@ -161,6 +169,7 @@ def _data(
             else [-1.0, 1.0]
         )
     box = [float(f"{end:.6g}") for end in ends]
+    # Outline to scale where the ship's size is known.
     ship = tables.about.get("ship") or {}
     size = (float(ship.get("length") or 0.0), float(ship.get("breadth") or 0.0))
     is_to_scale = min(size) > 0.0
@@ -189,7 +198,8 @@ def _data(
 
 
 def _density(tracks: _Tracks, rows: NDArray, box: Sequence[float]) -> list[int]:
-    """How many positions lie in each cell, row by row from the north."""
+    """Number of positions in each cell, row by row from the north."""
+    # All positions of the series within the box of all tracks.
     north = tracks.north[rows].ravel()
     east = tracks.east[rows].ravel()
     known = np.isfinite(north) & np.isfinite(east)
@@ -204,6 +214,7 @@ def _density(tracks: _Tracks, rows: NDArray, box: Sequence[float]) -> list[int]:
 
 def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[list[float]]:
     """Share of the runs that have left each circle by each time."""
+    # Largest distance so far: a run that returns has still left the circle.
     distance = np.hypot(tracks.north[rows], tracks.east[rows])
     largest = np.fmax.accumulate(np.where(np.isfinite(distance), distance, 0.0), axis=1)
     shares = [

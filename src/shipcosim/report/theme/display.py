@@ -1,4 +1,4 @@
-"""A table as people read it: degrees and kN, angles without jumps, few enough rows to draw."""
+"""A table for readers: degrees and kN, angles without jumps, few enough rows to draw."""
 
 import numpy as np
 import xarray as xr
@@ -36,10 +36,12 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
         Same rows and attributes; text signals are left out. What is drawn is the attribute `factor` times what the
         table holds, plus whole turns where it is an angle.
     """
+    # One unit for each quantity on the whole page.
     units = units_to_read(table)
     found = {}
     for name, variable in _series(table).items():
         unit, factor = units.get(variable.attrs.get("units"), (variable.attrs.get("units"), 1.0))
+        # Angles are drawn without jumps.
         values = unturned(str(name), variable.values) if unit == "deg" else variable.values
         found[name] = as_variable(
             factor * np.asarray(values, float), unit, variable.attrs.get("long_name", ""), factor
@@ -48,24 +50,27 @@ def display_table(table: Dataset, ship_heading: str | None = None) -> Dataset:
     shown = xr.Dataset(
         found, coords={"time": ("time", np.asarray(table["time"].values, float))}, attrs=table.attrs
     )
+    # Headings next to each other must lie on the same turn.
     if ship_heading is not None:
         _align_headings(shown, ship_heading)
     return shown
 
 
 def units_to_read(table: Dataset) -> dict[str | None, tuple[str, float]]:
-    """For each unit of the table: the unit to show and the factor; one choice for the whole page.
+    """Unit and factor to show for each unit of the table; the same on the whole page.
 
     Returns
     -------
     dict of str or None to (str, float)
     """
     chosen = {}
+    # Largest size of each unit: kN pays only from 1000 N on.
     largest = dict.fromkeys([v.attrs.get("units") for v in table.variables.values()], 0.0)
     for variable in _series(table).values():
         if variable.dtype.kind != "b" and variable.size and not np.isnan(variable.values).all():
             unit = variable.attrs.get("units")
             largest[unit] = max(largest[unit], np.nanmax(np.abs(variable.values)))
+    # Small quantities stay in their unit.
     for unit, size in largest.items():
         shown, factor, least = READ_AS.get(unit, (unit, 1.0, 0.0))
         chosen[unit] = (shown, factor) if size >= least else (unit or "", 1.0)
@@ -79,7 +84,7 @@ def _series(table: Dataset) -> dict[str, xr.Variable]:
 
 
 def thinned(shown: Dataset, most: int) -> tuple[Dataset, int]:
-    """The table with few enough rows to draw: the extremes of each interval, so that no peak is lost.
+    """The table with few enough rows to draw: extremes of each interval, so no peak is lost.
 
     Parameters
     ----------
@@ -96,12 +101,14 @@ def thinned(shown: Dataset, most: int) -> tuple[Dataset, int]:
     rows = shown.sizes["time"]
     if rows <= most:
         return shown, 1
+    # Two rows for each interval: its least and its largest value.
     span = int(np.ceil(2 * rows / most))
     starts = np.arange(0, rows, span)
     drawn = np.unique(
         np.concatenate([starts, np.minimum(starts + span // 2, rows - 1), [rows - 1]])
     )
     thin = shown.isel(time=drawn)
+    # Each signal has its own extremes; the rows in between only carry the times.
     for name, variable in shown.data_vars.items():
         thin[name] = ("time", _extremes(variable.values, drawn, starts, span), variable.attrs)
     return thin, span
@@ -113,15 +120,18 @@ def is_constant(values: NDArray) -> bool:
 
 
 def _extremes(values: NDArray, drawn: NDArray, starts: NDArray, span: int) -> NDArray:
-    """Values for the rows `drawn`: least and largest of each interval, in the order they occur."""
+    """Values for the rows `drawn`: least and largest of each interval, in their order."""
     answer = values[drawn].copy()
     position = {row: k for k, row in enumerate(drawn)}
+    # Intervals with gaps, or without a second row, keep their plain values.
     for start in starts:
         part = values[start : start + span]
         if np.isnan(part).any() or start + span // 2 >= len(values):
             continue
+        # Keep the order in time: a rise stays a rise.
         rows = sorted((int(np.argmin(part)), int(np.argmax(part))))
         answer[position[start]], answer[position[start + span // 2]] = part[rows[0]], part[rows[1]]
+    # First and last value are exact: key figures and runs start and end there.
     answer[0], answer[-1] = values[0], values[-1]
     return answer
 
@@ -141,6 +151,7 @@ def unturned(name: str, radians: ArrayLike) -> NDArray:
     finite = np.isfinite(values)
     if not finite.any():
         return values
+    # A direction from north starts within [0, 2 pi).
     values = unwrap_series(values)
     if name.rpartition(".")[2].split("_")[-1] in ("from", "to", "mean"):
         values -= 2 * np.pi * np.floor(values[finite][0] / (2 * np.pi))
@@ -148,13 +159,14 @@ def unturned(name: str, radians: ArrayLike) -> NDArray:
 
 
 def _align_headings(shown: Dataset, psi: str) -> None:
-    """Move other headings by whole turns to lie beside the ship's."""
+    """Move other headings by whole turns to the ship's."""
     for name in shown.data_vars:
         if (
             name != psi
             and "psi" in str(name).rpartition(".")[2].split("_")
             and shown[name].attrs["units"] == "deg"
         ):
+            # The median decides, since single wraps must not.
             gap = np.nanmedian(shown[name].values - shown[psi].values)
             if np.isfinite(gap):
                 shown[name].values[:] -= 360.0 * np.round(gap / 360.0)

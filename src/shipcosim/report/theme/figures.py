@@ -26,7 +26,7 @@ def rounded(values: ArrayLike, digits: int = 5) -> list[float | None]:
 
 
 def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]:
-    """A curve or track with few enough points to draw: of each stretch its ends and its extremes on both axes.
+    """Thin a curve for drawing: of each stretch its ends and its extremes on both axes.
 
     Parameters
     ----------
@@ -49,6 +49,7 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
     y = np.asarray(y, float)
     if len(x) <= most:
         return x, y
+    # Six points for each stretch: both ends, and least and largest on either axis.
     known = np.isfinite(x) & np.isfinite(y)
     kept = []
     for stretch in np.array_split(np.arange(len(x)), most // 6):
@@ -59,13 +60,15 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
                 rows[-1],
                 *(rows[of(values[rows])] for values in (x, y) for of in (np.argmin, np.argmax)),
             ]
+    # Insert a gap wherever points that are not finite were left out.
     rows = np.unique(np.array(kept, int))
     breaks = np.flatnonzero(np.diff(np.cumsum(~known)[rows])) + 1
     return np.insert(x[rows], breaks, np.nan), np.insert(y[rows], breaks, np.nan)
 
 
 def _told_apart(values: NDArray) -> list[float | None]:
-    """Numbers with five significant digits, and more where they differ by little: times of a long log."""
+    """Numbers with five significant digits, more where they differ by little, as late times."""
+    # Additional digits as the size exceeds the span: 100000.1 and 100000.2 must differ.
     known = values[np.isfinite(values)]
     span = float(np.ptp(known)) if known.size else 0.0
     more = np.log10(np.abs(known).max() / span) if span > 0.0 else 0.0
@@ -83,6 +86,7 @@ def line(
     **more: Any,
 ) -> dict[str, Any]:
     """A curve, thinned where it has more points than a figure shows; the colour is one of `palette`."""
+    # Thinned to what a figure can show, so that pages stay small.
     x, y = thinned_curve(x, y)
     places = {"x": _told_apart(x), "y": _told_apart(y)}
     look = {"color": colour, "width": width, "dash": dash}

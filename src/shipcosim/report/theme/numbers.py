@@ -26,6 +26,7 @@ def plain(value: float | None, digits: int = 3) -> str:
         return "–"
     if value == 0.0 or not 1e-4 <= abs(value) < 1e6:
         return f"{value:.{digits}g}".replace("-", "−")
+    # So many decimals that the significant digits are there, without an exponent.
     decimals = max(digits - 1 - math.floor(math.log10(abs(value))), 0)
     return f"{value:.{decimals}f}".replace("-", "−")
 

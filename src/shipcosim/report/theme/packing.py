@@ -1,4 +1,4 @@
-"""Data small enough for a page: series in whole steps of what a figure can show, and everything compressed."""
+"""Data small enough for a page: series in whole steps of visible size, all compressed."""
 
 import base64
 import gzip
@@ -32,12 +32,12 @@ def packed_text(text: str) -> str:
 
 
 def packed_data(data: Any) -> str:
-    """What a page draws, as compressed JSON. Numbers that JSON does not have are an error."""
+    """Data of a page as compressed JSON; NaN and infinity are an error."""
     return packed_text(json.dumps(data, separators=(",", ":"), allow_nan=False))
 
 
 def packed_series(values: ArrayLike, levels: float = LEVELS) -> dict[str, Any] | list[float | None]:
-    """A series as steps from one value to the next, which compress well; `series` of `templates/figures.js` reads it.
+    """A series as differences in whole steps, which compress well; `templates/figures.js` reads it.
 
     Parameters
     ----------
@@ -57,11 +57,14 @@ def packed_series(values: ArrayLike, levels: float = LEVELS) -> dict[str, Any] |
     >>> packed_series([0.0, 1.0, float("nan"), 0.5], 10)
     {'step': 0.1, 'steps': [0, 10, None, -5]}
     """
+    # Gaps where values are not finite, or too large for the browser.
     found = np.asarray(values, float)
     known = np.isfinite(found) & (np.abs(found) < LARGEST)
+    # Where no step serves the whole range, the numbers themselves.
     step = _step(found[known], levels)
     if step is None:
         return [float(f"{v:.6g}") if ok else None for v, ok in zip(found, known, strict=True)]
+    # Whole steps from one value to the next: small integers compress well.
     steps = np.full(len(found), None, object)
     counts = np.round(found[known] / step).astype(np.int64)
     steps[known] = np.diff(counts, prepend=0)
@@ -83,8 +86,10 @@ def most_rows(columns: Collection[ArrayLike], budget: int) -> int:
     int
         All n if they fit, smooth as they are; else what fits even of noise.
     """
+    # Rows that fit even if the series are noise.
     rows = max((np.size(column) for column in columns), default=0)
     sure = max(int(budget / (BYTES_A_NUMBER * max(len(columns), 1))), 500)
+    # Somewhat more rows fit if they compress well: measure it.
     if (
         sure < rows <= 3 * sure
         and len(packed_data([packed_series(column) for column in columns])) <= budget
@@ -94,14 +99,18 @@ def most_rows(columns: Collection[ArrayLike], budget: int) -> int:
 
 
 def _step(known: NDArray, levels: float) -> float | None:
-    """The step of a series; None where there is no range, or none that serves all of it."""
+    """Step of a series; None without a range, or where no step serves all of it."""
+    # A range that is zero or beyond float32 cannot be divided into steps.
     span = float(np.ptp(known)) if known.size else 0.0
     if not SMALLEST < span < LARGEST:
         return None
+    # Spread of most values: single peaks must not make the steps coarse.
     spread = float(np.subtract(*np.quantile(known, [0.95, 0.05]))) or span
     if span > BEYOND * spread:
         return None
+    # Finest step that is needed, but not below the precision of the numbers.
     finest = max(min(span, SPIKY * spread) / levels, 1e-15 * float(np.abs(known).max()))
+    # The next smaller 1, 2 or 5 times a power of ten.
     power = int(np.floor(np.log10(finest)))
     return max(
         float(f"{m}e{power}") for m in (1, 2, 5) if float(f"{m}e{power}") <= 1.000001 * finest

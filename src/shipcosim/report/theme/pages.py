@@ -12,7 +12,7 @@ from shipcosim.report.theme.views import Page
 
 
 def render(template: str, page: Page) -> str:
-    """A page as HTML. Every text in it is escaped, and a name that the template misspells is an error.
+    """Render a page as HTML; texts are escaped, and misspelt names in templates are errors.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def _asset(path: str) -> Markup:
 
 @cache
 def _plotly() -> str:
-    """The library that draws, compressed, with the licences of all that is in it."""
+    """The plotting library, compressed, with the licences of all its parts."""
     return packed_text(
         f"/*{_asset('theme/vendor/LICENSES.txt')}*/{_asset('theme/vendor/plotly.min.js')}"
     )

@@ -1,4 +1,4 @@
-"""What the templates of all pages fill in: plain records of texts and figures, without any HTML."""
+"""Records that all page templates fill in: texts and figures without any HTML."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 
 
 class Fact(NamedTuple):
-    """One fact below the title: its name and what it is."""
+    """One fact below the title: name and text."""
 
     name: str
     text: str
 
 
 class KeyFigure(NamedTuple):
-    """A number that readers compare runs by, as text, and what it is."""
+    """A key figure as text, and its meaning."""
 
     value: str
     meaning: str
@@ -21,7 +21,7 @@ class KeyFigure(NamedTuple):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run or a diagnosis comes to: one word and one sentence; `kind` chooses the colour."""
+    """Verdict of a run or a diagnosis: one word and one sentence; `kind` chooses the colour."""
 
     kind: str
     word: str
@@ -30,7 +30,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Link:
-    """A link to a section of the page: its anchor, its title, and what the section found in a few words."""
+    """A link to a section of the page: anchor, title, and its finding in a few words."""
 
     anchor: str
     title: str
@@ -78,7 +78,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Page:
-    """What every page has.
+    """Contents of every page.
 
     Attributes
     ----------

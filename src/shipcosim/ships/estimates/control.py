@@ -1,10 +1,11 @@
-"""A DP loop for any ship: one tuned loop, made slower or quicker with her size, within what her thrusters can do.
+"""A DP loop for any ship: the tuned loop, scaled with her size and limited by her thrust.
 
-The rule. All natural frequencies go with the root of the length, as ship motions do (Froude): with s = sqrt(33.9 m/L)
-the tuned loop of docs/dp-loop.md has s times its frequencies, time constants over s. It is made slower where a metre of
-error would ask for more than a fifth of the weakest thrust. The observer's bandwidth follows: intensities of velocity
-disturbance grow with the fourth power of s, of the bias' drift with the sixth. Noise, rates and latencies of the
-sensors are those of usual DP sensors whatever the ship; s is at most 1.5, beyond which they leave no margin.
+Froude scaling: all natural frequencies go with 1 over the root of the length. With
+s = sqrt(33.9 m/L) the tuned loop of docs/dp-loop.md has s times its frequencies, and its time
+constants over s. It is slower where a metre of error would ask for more than a fifth of the weakest
+thrust. The observer's bandwidth follows: velocity disturbances grow with s^4, bias drift with s^6.
+Noise, rates and latencies of sensors are the usual ones for any ship. s is at most 1.5: beyond it
+the sensors leave no margin.
 """
 
 from dataclasses import dataclass
@@ -95,7 +96,7 @@ class ControlledShip:
 def reach_of(
     effects: np.ndarray, least: np.ndarray, most: np.ndarray
 ) -> tuple[float, float, float]:
-    """Largest force forward or astern, to a side, and yaw moment, each alone and to the weaker side.
+    """Largest surge and sway force and yaw moment, each alone and to the weaker side.
 
     Parameters
     ----------
@@ -109,12 +110,15 @@ def reach_of(
     tuple of three floats
         0 where the thrusters cannot give it without the others. [N, N, N.m]
     """
+    # Scale forces and moment to one size, as the geometry needs it.
     force, moment = (max(float(np.abs(rows).max()), 1e-9) for rows in (effects[:2], effects[2]))
     scale = np.array([force, force, moment])
+    # Each thruster gives the loads between its limits, along one line.
     sets = [
         np.outer((low, high), effect) / scale
         for low, high, effect in zip(least, most, effects.T, strict=True)
     ]
+    # Reach in both directions of each axis; the weaker side counts.
     both = np.concatenate([np.eye(3), -np.eye(3)])
     found = largest_multiple(sets, np.ones((6, len(sets))), both / scale)
     X, Y, N = np.minimum(found[:3], found[3:]).tolist()
@@ -134,11 +138,15 @@ def pace_of(loop: ControlledShip) -> tuple[float, float]:
     tuple of two floats
         [1, 1]
     """
+    # Froude: frequencies go with the inverse root of the length.
     by_size = min(sqrt(TUNED_LENGTH / loop.length), MOST_PACE)
+    # The heaviest axis and the weakest force: omega^2 m 1 m may ask for a fifth of the force.
     mass = max(loop.mass[0, 0], loop.mass[1, 1])
     force = min(loop.reach[:2])
     by_thrust = sqrt(SHARE * force / mass) / TUNED["position"]
+    # The same in yaw for an error of 5 deg.
     turn = sqrt(SHARE * loop.reach[2] / (loop.mass[2, 2] * 5.0 * pi / 180.0)) / TUNED["heading"]
+    # The slower of both rules decides.
     return min(by_size, by_thrust), min(by_size, turn)
 
 
@@ -155,10 +163,12 @@ def controller(loop: ControlledShip) -> dict[str, EstimatedNumber]:
     dict of str to Estimate
         Parameters of the controller, without its wind table and mast.
     """
+    # Natural frequencies of the loop, and the error at which SHARE of the thrust is used.
     position, heading = pace_of(loop)
     m = loop.mass
     stiff = TUNED["position"] * position, TUNED["heading"] * heading
     error = SHARE * min(loop.reach[:2]) / (max(m[0, 0], m[1, 1]) * stiff[0] ** 2)
+    # Model of the controller: mass, linear damping as a share of m omega, critically damped law.
     values = {
         "mass_surge": m[0, 0],
         "mass_sway": m[1, 1],
@@ -175,7 +185,9 @@ def controller(loop: ControlledShip) -> dict[str, EstimatedNumber]:
         "heading_error_max": 20.0 * pi / 180.0,
         "wind_share": 1.0,
     }
+    # Filters become slower with the loop, never faster.
     values |= {name: time / min(position, heading, 1.0) for name, time in FILTERS.items()}
+    # Disturbances scale with the power of the pace that keeps the observer's bandwidth ratio.
     for name, (value, power) in DISTURBANCES.items():
         values[name] = (
             value
@@ -200,6 +212,7 @@ def reference(loop: ControlledShip) -> dict[str, EstimatedNumber]:
     dict of str to Estimate
         Parameters of the reference model.
     """
+    # Largest speed: a share of frequency times length, at least 0.2 m/s.
     position, heading = pace_of(loop)
     speed = 0.3 * position * TUNED["reference"] * loop.length
     return {
@@ -210,7 +223,7 @@ def reference(loop: ControlledShip) -> dict[str, EstimatedNumber]:
 
 
 def sensors(length: float) -> dict[str, EstimatedNumber]:
-    """Usual DP sensors, and a mast before midships.
+    """Usual DP sensors, and a mast forward of midships.
 
     Parameters
     ----------
@@ -230,7 +243,7 @@ def sensors(length: float) -> dict[str, EstimatedNumber]:
 
 
 def mast(length: float) -> dict[str, EstimatedNumber]:
-    """Where the anemometer stands.
+    """Place of the anemometer.
 
     Parameters
     ----------

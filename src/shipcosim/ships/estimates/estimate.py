@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class EstimatedNumber(NamedTuple):
-    """A number that nobody measured.
+    """An estimated number with its tolerance and source.
 
     Attributes
     ----------

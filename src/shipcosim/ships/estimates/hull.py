@@ -84,10 +84,14 @@ def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
     B = form.breadth
     T = form.draught
     rho = form.density
+    # Each hull counts for itself.
     volume = form.volume / form.hulls
+    # Surge: Söding's formula from volume and length.
     A11 = 2.7 * rho * volume ** (5.0 / 3.0) / L**2
+    # Sway: Clarke, Gedling and Hine; a floor for hulls broader than their data.
     sway = 1.0 + 0.16 * form.block * B / T - 5.1 * (B / L) ** 2
     A22 = 0.5 * rho * L**3 * pi * (T / L) ** 2 * max(sway, 0.3)
+    # Coupling of sway and yaw: zero, with the uncertainty of its lever.
     lever = 0.05 * L
     share = form.hulls
     coupling = EstimatedNumber(
@@ -127,6 +131,7 @@ def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
     EstimatedNumber
         [kg.m2]
     """
+    # Inertia about the centre of gravity, then Steiner's term to midships.
     own = mass * (0.25 * length) ** 2
     return EstimatedNumber(
         own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021"
@@ -176,6 +181,7 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
     B = form.breadth
     T = form.draught
     Cb = form.block
+    # Clarke's derivatives are non-dimensional with 1/2 rho L^n and pi (T/L)^2.
     scale = 0.5 * form.density * form.hulls * pi * (T / L) ** 2
     return {
         "added_mass_coriolis": EstimatedNumber(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),

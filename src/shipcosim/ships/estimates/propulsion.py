@@ -106,6 +106,7 @@ def most_thrust(kind: str, diameter: float, power: float, density: float) -> flo
     float
         [N]
     """
+    # Momentum theory: T = (2 rho A P^2)^(1/3); in a duct without contraction the factor is 4.
     disc = 0.25 * pi * diameter**2
     return ((2.0 if kind == "open" else 4.0) * density * disc * power**2) ** (1.0 / 3.0)
 
@@ -125,6 +126,7 @@ def shaft_speed(kind: str, diameter: float, thrust: float, density: float) -> Es
     EstimatedNumber
         [rpm]
     """
+    # n from KT = T / (rho n^2 D^4).
     rpm = 60.0 * sqrt(thrust / (density * USUAL_KT[kind] * diameter**4))
     return within(rpm, 0.15, f"KT {USUAL_KT[kind]} at the bollard; assumed")
 
@@ -147,20 +149,29 @@ def curves(screw: Screw) -> dict[str, EstimatedNumber]:
     KT falls to 0 at J0, 2.4 KT of an open propeller, along KT (1 - 0.75 J/J0 - 0.25 J²/J0²), KQ to a third of its
     bollard value; in the other quadrants the series B4-70 is scaled to meet them and the thrust astern.
     """
+    # Advance ratio at no thrust; the polynomials hold to 0.9 of it.
     zero = ZERO_THRUST[screw.kind] * screw.thrust_coefficient
     end = 0.9 * zero
     last = degrees(atan(0.9 * zero / TIP))
+    # KT = KT0 (1 - 0.75 J/J0 - 0.25 J^2/J0^2), KQ falls to a third.
     thrust = (screw.thrust_coefficient, -0.75 / zero, -0.25 / zero**2)
     torque = (screw.torque_coefficient, -0.5 / zero, -0.17 / zero**2)
+    # Values of both polynomials at their end.
     at_end = [k * (1.0 + a * end + b * end**2) for k, a, b in (thrust, torque)]
+    # Series B4-70 at the bollard, at the end of the polynomials, and astern at the bollard.
     beta = np.radians([0.0, last, -180.0])
     bollard, beyond, back = (np.array(pair) for pair in zip(*series(beta), strict=True))
+    # The series is a function of the angle of advance, tan(beta) = J / (0.7 pi):
+    # C = K cos^2(beta) / (pi/8 (0.7 pi)^2).
     slope = np.cos(beta[1]) ** 2
+    # Factors that make the series meet the bollard point, the end of the polynomial and thrust
+    # astern.
     ahead = np.array([thrust[0], torque[0]]) / _DISC / bollard
     ends = np.array(at_end) * slope / _DISC / beyond
     astern = -np.array([ASTERN[screw.kind] * thrust[0], torque[0]]) / _DISC / back
     source = "form of the series B4-70, scaled to the bollard points"
     found = {}
+    # Polynomials over the advance ratio up to that angle, and factors on the series elsewhere.
     for i, (name, (k, a, b)) in enumerate((("thrust", thrust), ("torque", torque))):
         found[f"{name}_polynomial"] = EstimatedNumber(
             f"{last:.4g} {k:.5g} {k * a:.5g} {k * b:.5g} 0", 0.0, source
@@ -185,7 +196,9 @@ def drive(screw: Screw, rise: float) -> dict[str, EstimatedNumber]:
     dict of str to Estimate
         thrust_rate, rpm_max, torque_max, power_max, inertia, friction, proportional_gain, integral_gain.
     """
+    # Smogeli's rule for the rotating mass; tunnels have light propellers.
     inertia = 24.0 * screw.diameter**5 * (0.3 if screw.kind == "tunnel" else 1.0)
+    # A small floor keeps the gains of boats finite.
     inertia = max(inertia, 1e-5)
     return {
         "thrust_rate": EstimatedNumber(

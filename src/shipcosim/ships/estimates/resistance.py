@@ -59,8 +59,10 @@ def wetted_surface(
     B = form.breadth
     T = form.draught
     Cb = form.block
+    # Coefficients by the block coefficient, unless they are given.
     Cm = midship_coefficient(Cb) if midship is None else midship
     Cwp = (1.0 + 2.0 * Cb) / 3.0 if waterplane is None else waterplane
+    # Holtrop and Mennen's regression, without the bulb.
     shape = 0.453 + 0.4425 * Cb - 0.2862 * Cm - 0.003467 * B / T + 0.3696 * Cwp
     return form.hulls * L * (2.0 * T + B) * sqrt(Cm) * shape
 
@@ -88,6 +90,7 @@ def form_factor(
     """
     L = form.length
     T = form.draught
+    # Holtrop and Mennen 1982: c12 for the draught, the length of the run, 1 + k.
     Cp = _prismatic(form, midship)
     c12 = (
         0.479948 + 48.20 * max(T / L - 0.02, 0.0) ** 2.078 if T / L < 0.05 else (T / L) ** 0.2228446
@@ -143,10 +146,13 @@ def wave_resistance(
     L = form.length
     B = form.breadth
     T = form.draught
+    # Wave resistance is computed for one hull, then counted for each.
     volume = form.volume / form.hulls
     Cp = _prismatic(form, midship)
     Cwp = min((1.0 + 2.0 * form.block) / 3.0, 0.98) if waterplane is None else waterplane
+    # Within the range of the regression.
     froude = max(min(froude_number(form), MOST_FROUDE), 0.05)
+    # c7: function of B/L in three ranges.
     slender = B / L
     c7 = (
         0.229577 * slender ** (1.0 / 3.0)
@@ -154,12 +160,15 @@ def wave_resistance(
         else min(slender, 0.5 - 0.0625 / slender)
     )
     c7 = slender if _FINE <= slender <= _BROAD else c7
+    # c1 contains the half angle of entrance.
     entrance = _entrance(form, volume, Cp, Cwp, lcb)
     c1 = 2223105.0 * c7**3.78613 * (T / B) ** 1.07961 * (90.0 - entrance) ** -1.37565
+    # m1, m2 and lambda of Holtrop and Mennen 1982; no bulb, no transom.
     c16 = 8.07981 * Cp - 13.8673 * Cp**2 + 6.984388 * Cp**3 if Cp < 0.8 else 1.73014 - 0.7067 * Cp
     m1 = 0.0140407 * L / T - 1.75254 * volume ** (1.0 / 3.0) / L - 4.79323 * B / L - c16
     m2 = -1.69385 * Cp**2 * exp(-0.1 / froude**2)
     length = 1.446 * Cp - 0.03 * L / B if L / B < 12.0 else 1.446 * Cp - 0.36
+    # R_w = c1 V rho g exp(m1 Fn^d + m2 cos(lambda Fn^-2)), d = -0.9.
     shape = exp(
         min(m1 * froude**-0.9 + m2 * cos(length / froude**2), 5.0)
     )  # beyond it there is no such ship
@@ -185,6 +194,7 @@ def resistance(
     float
         [N]
     """
+    # Friction with form factor, correlation allowance, and waves.
     S = wetted_surface(form) if surface is None else surface
     viscous = friction(form.speed, form.length) * (form_factor(form) if factor is None else factor)
     pressure = 0.5 * form.density * S * form.speed**2
@@ -206,8 +216,10 @@ def drag_coefficient(
     EstimatedNumber
         X_uu. [N.s2/m2]
     """
+    # X_uu u^2 equals the resistance at service speed.
     found = -resistance(form, surface, factor) / form.speed**2
     source = f"Holtrop and Mennen 1982 with ITTC 1957 at {form.speed:.3g} m/s, and a tenth for appendages"
+    # Beyond the formula only the order of magnitude is known: the tolerance says so.
     if froude_number(form) > MOST_FROUDE:
         return within(found, 3.0, f"{source}; beyond the formula, the order of magnitude at best")
     return within(found, 0.5, source)
@@ -241,6 +253,7 @@ def _run(L: float, Cp: float, lcb: float) -> float:
 def _entrance(form: HullDimensions, volume: float, Cp: float, Cwp: float, lcb: float) -> float:
     """Half angle of entrance in deg."""
     L = form.length
+    # Holtrop and Mennen's half angle of entrance, in deg.
     B = form.breadth
     run = _run(form.length, Cp, lcb)
     power = (
@@ -254,6 +267,7 @@ def _allowance(form: HullDimensions) -> float:
     """Correlation allowance of a ship without bulb, with the draught at the bow that she has amidships."""
     if form.length < FULL_SCALE:
         return 0.0
+    # Holtrop's C_A without bulb; c4 = T/L, at most 0.04.
     L = form.length
     hump = 0.003 * sqrt(L / 7.5) * form.block**4 * (0.04 - min(form.draught / L, 0.04))
     return 0.006 * (L + 100.0) ** -0.16 - 0.00205 + hump

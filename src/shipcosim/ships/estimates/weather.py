@@ -95,14 +95,19 @@ def wind_table(
     sin² 2g, and the force across acts at s_L + 0.18 L (π/2 - g).
     """
     across, ahead, astern, delta = BLENDERMANN[kind]
+    # One row every ten degrees, by symmetry from bow to stern.
     rows = []
     for angle in range(0, 181, 10):
         g = radians(angle)
+        # Drag along the ship differs for wind from ahead and from astern.
         along = ahead if angle < 90 else astern
+        # D = 1 - d/2 (1 - C_l A_F / (C_t A_L)) sin^2 2g.
         share = along * front / side / across
         divisor = 1.0 - 0.5 * delta * (1.0 - share) * sin(2.0 * g) ** 2
+        # Loads per squared wind speed: 1/2 rho A C.
         X = -0.5 * AIR * front * along * cos(g) / divisor
         Y = -0.5 * AIR * side * across * sin(g) / divisor
+        # The lateral force acts at s_L + 0.18 L (pi/2 - g).
         N = Y * (centre_x + 0.18 * length * (0.5 * pi - g))
         rows.append(
             f"{angle} " + " ".join(f"{0.0 if abs(load) < 1e-9 else load:.6g}" for load in (X, Y, N))
@@ -133,12 +138,16 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
     Reflected is what runs above the keel, 1 - exp(-2 k T) of the wave's energy. No yaw moment. Crude: the loads of a
     ship that moves in waves of her own length are up to twice as large or half.
     """
+    # Drift loads by wave frequency and heading.
     rows = []
     for omega in (0.2, 0.4, 0.6, 0.8, 1.0, 1.2, 1.5, 2.0, 2.6):
+        # Share of the wave above the keel; k = omega^2/g in deep water.
         reflected = 1.0 - exp(-2.0 * omega**2 / GRAVITY * draught)
+        # Load per metre of a reflecting wall, 1/2 rho g a^2, over the squared amplitude.
         scale = 0.5 * density * GRAVITY * reflected**2
         for heading in range(0, 181, 30):
             c = cos(radians(heading))
+            # A wall reflects with the square of the angle on both sides of the ship.
             s = sin(radians(heading))
             X = scale * breadth * c * abs(c)
             Y = scale * length * s * s

@@ -1,4 +1,4 @@
-"""Parameter sets in files, bound to the elements of an SSD and unbound."""
+"""Bind parameter set files to elements of an SSD, and unbind them."""
 
 from os import PathLike
 from pathlib import Path
@@ -13,6 +13,7 @@ from shipcosim.ssp.xml.markup import add, drop, ensure
 
 def bind(draft: Draft, source: str | PathLike[str], element: str, prefix: str | None) -> None:
     """Bind a parameter set to an element; see `SystemStructure.bind`."""
+    # A file in the package is bound by its own address; any other is copied into it.
     inside = (draft.path.parent / source).resolve()
     there = not Path(source).is_absolute() and (inside in draft.package.held or inside.is_file())
     if not there and not Path(source).is_file():

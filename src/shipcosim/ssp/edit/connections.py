@@ -1,4 +1,4 @@
-"""Connections of an SSD, added and removed."""
+"""Add and remove connections of an SSD."""
 
 from shipcosim.errors import suggestion
 from shipcosim.ssp.edit.connectors import declare_variable
@@ -23,6 +23,7 @@ def connect(
     suppress : bool
         Whether units are not converted.
     """
+    # A name can be read in several ways: take the pair of ends that exist in one system.
     ends = best_pair(
         source,
         target,
@@ -30,8 +31,10 @@ def connect(
         lambda end: _exists(draft, end),
         draft.package.show(draft.path),
     )
+    # The FMU may have a variable that the SSD does not declare yet.
     for end in ends:
         _declare(draft, end)
+    # From output to input, in whichever order the ends were given.
     start, end = reversed(ends) if ends[0].gives() is False or ends[1].gives() else ends
     names = {
         "startElement": start.element_name,
@@ -50,6 +53,7 @@ def connect(
 
 def disconnect(draft: Draft, source: str, target: str | None) -> None:
     """Remove connections; see `SystemStructure.disconnect`."""
+    # Connections that contain the given end or ends; suggest similar ones if there are none.
     wanted = {source, target} - {None}
     there = list(connections(draft.system))
     found = [element for ends, element in there if wanted <= set(ends)]
@@ -63,13 +67,13 @@ def disconnect(draft: Draft, source: str, target: str | None) -> None:
 
 
 def _exists(draft: Draft, end: NameMatch) -> bool:
-    """Whether a connector is declared, or could be because its FMU has the variable."""
+    """True if a connector is declared, or its FMU has the variable."""
     fmu = None if end.element is None else draft.fmu_of(end.element)
     return end.declared() is not None or (fmu is not None and end.connector in fmu.variables)
 
 
 def _declare(draft: Draft, end: NameMatch) -> None:
-    """Give a component the connector that a connection needs, if its FMU has it."""
+    """Declare the connector that a connection needs, if its FMU has the variable."""
     if end.element is None or end.declared() is not None:
         return
     fmu = draft.fmu_of(end.element)

@@ -1,4 +1,4 @@
-"""Connectors added to the elements of an SSD, with the units and enumerations that they need."""
+"""Add connectors to elements of an SSD, with the units and enumerations that they need."""
 
 from collections.abc import Mapping
 
@@ -58,11 +58,13 @@ def declare(
     root : lxml element
         Of the SSD, which gets the definitions of the unit and the enumeration.
     """
+    # The connector itself; types that SSP 1.0 lacks stay undeclared.
     listed = ensure(element, "ssd:Connectors")
     connector = add(listed, "ssd:Connector", name=name, kind=kind, description=description or None)
     if type_name not in SSP_1_TYPES:
         return
     typed = add(connector, f"ssc:{type_name}")
+    # The unit must be defined in the SSD before a connector refers to it.
     if unit is not None and define_unit(root, "ssd:Units", unit):
         typed.set("unit", unit.name)
     if type_name == "Enumeration":

@@ -1,4 +1,4 @@
-"""An SSP whose SSD is held in memory: several changes are made together or not at all, checked, and written."""
+"""An SSP in memory: changes are made together or not at all, checked, and written."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -54,7 +54,7 @@ class Draft:
         self._came_with = set(self.package.located)
 
     def copy(self) -> "Draft":
-        """The same draft once more, changed independently."""
+        """Copy the draft; both can then be changed independently."""
         copied = Draft(self.package, self.document, self.file)
         copied.package.held.update(self._snapshot())
         copied._came_with = set(self._came_with)
@@ -97,7 +97,7 @@ class Draft:
     def assemble(
         self, parameters: ParameterSets = (), swapped: Mapping[str, Path] | None = None
     ) -> tuple[System | None, Findings]:
-        """System (None or incomplete where there are errors) and findings, as it is now."""
+        """Assemble the system as it is now; None or incomplete where there are errors."""
         findings = Findings()
         self.package.located.clear()
         system = assemble_package(
@@ -112,9 +112,10 @@ class Draft:
         return self._assembled
 
     def fmu_of(self, element: etree._Element) -> FmuDescription | None:
-        """Description of a component's FMU; None for anything else, or where it cannot be read."""
+        """Description of a component's FMU; None for other elements, or if it cannot be read."""
         if element.get("type", FMU) != FMU or not element.get("source"):
             return None
+        # Where the SSD points to; the description is cached by file and time of change.
         file = self.package.locate(element.get("source", ""), self.document.folder, "", Findings())
         if file is None:
             return None
@@ -129,18 +130,22 @@ class Draft:
 
         A block within a block is part of the outer one.
         """
+        # Only the outermost block checks: within it the system may be incomplete.
         if self._changing:
             yield
             return
+        # Errors that the system already had do not count.
         before = self._snapshot()
         known = Counter(problem.found for problem in self.assembled()[1].errors)
         self._changing = True
         try:
             yield
+            # New errors undo the whole block, as any other exception does.
             fresh = [p for p in dict.fromkeys(self.assembled()[1].errors) if not known[p.found]]
             if fresh:
                 raise ShipcosimError(fresh)
         except BaseException:
+            # Return to the state before the block.
             self.package.held.clear()
             self.package.held.update(before)
             self._assembled = None
@@ -158,14 +163,16 @@ class Draft:
         }
 
     def resource(self, file: Path) -> str:
-        """Address under which a file from elsewhere belongs to the package from now on."""
+        """Address of a file from elsewhere, which from now on belongs to the package."""
         folder = self.path.parent / "resources"
         top = self.package.folder.resolve()
+        # The same file, by content, may already be in the package.
         known = {top / name: path for name, path in self.package.located.items()}
         known |= {path: held for path, held in self.package.held.items() if isinstance(held, Path)}
         for place, path in known.items():
             if place.name == file.name and path.is_file() and cmp(path, file, shallow=False):
                 return quote(place.relative_to(self.path.parent).as_posix())
+        # Else take a name that no file in the package has.
         names = {path.name for path in (*known, *self.package.held, *folder.glob("*"))}
         name = (
             free_name(file.stem, {name.removesuffix(file.suffix) for name in names}) + file.suffix
@@ -185,11 +192,13 @@ class Draft:
         fmus : bool
             Whether FMUs that were not in the package come along; a .ssp always has them.
         """
+        # FMUs from elsewhere come along only if asked for, or in an archive.
         files = self._files()
         packed = path.suffix.lower() == ".ssp"
         if not (packed or fmus):
             inside = self.package.folder.resolve()
             files = {name: file for name, file in files.items() if not _is_elsewhere(file, inside)}
+        # An archive: everything packed, the SSD under its standard name.
         if packed:
             contents = {
                 name: file.read_bytes() if isinstance(file, Path) else file
@@ -197,6 +206,7 @@ class Draft:
             }
             write_archive(path, _with_ssd(contents, self.package.ssd, SYSTEM_STRUCTURE))
             return
+        # A folder: write only what is not already there.
         folder, ssd = (
             (path.parent, path.name) if path.suffix.lower() == ".ssd" else (path, SYSTEM_STRUCTURE)
         )
@@ -206,7 +216,8 @@ class Draft:
                 write_file(target, file.read_bytes() if isinstance(file, Path) else file)
 
     def _files(self) -> dict[str, Path | bytes]:
-        """Contents, or where they are, by name in the package; FMUs of removed components left out."""
+        """Contents, or their paths, by name in the package; FMUs of removed components left out."""
+        # All files of the package, except hidden ones.
         self.assemble()
         folder = self.package.folder.resolve()
         files: dict[str, Path | bytes] = {}
@@ -219,12 +230,14 @@ class Draft:
                 if path.is_file()
             }
             files = {name.as_posix(): path for name, path in found.items() if not _is_hidden(name)}
+        # FMUs that were found elsewhere, then every changed file.
         files |= self.package.located
         for path, held in self.package.held.items():
             if isinstance(held, Document):
                 files[path.relative_to(folder).as_posix()] = to_bytes(
                     relocated(held.root, self.package.moved), *PREFIXES.get(path.suffix, ())
                 )
+        # FMUs that came with the package but are not used any more.
         gone = {
             name for name in self._came_with - set(self.package.located) if name.endswith(".fmu")
         }
@@ -247,7 +260,7 @@ def _is_elsewhere(file: Path | bytes, folder: Path) -> bool:
 
 
 def _with_ssd(files: dict[str, Content], name: str, wanted: str) -> dict[str, Content]:
-    """Files with the SSD under the name that it is looked for, unless another one has it."""
+    """Files with the SSD under the wanted name, unless another file has that name."""
     if wanted == SYSTEM_STRUCTURE and SYSTEM_STRUCTURE in files:
         return files
     return {(wanted if known == name else known): file for known, file in files.items()}

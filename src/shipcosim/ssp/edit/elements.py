@@ -1,4 +1,4 @@
-"""Components, systems and connectors of an SSD: found by their full names, added, removed and renamed."""
+"""Find elements, systems and connectors of an SSD by full name; add, remove and rename them."""
 
 from pathlib import Path
 
@@ -40,7 +40,7 @@ def element_named(draft: Draft, name: str) -> etree._Element:
 
 
 def system_for(draft: Draft, name: str) -> tuple[etree._Element, str]:
-    """System that something new belongs to by its full name, and its own name there.
+    """System that a new element belongs to by its full name, and its short name there.
 
     Parameters
     ----------
@@ -121,7 +121,8 @@ def add_component(
 
 
 def remove(draft: Draft, name: str) -> None:
-    """Remove an element or connector with what belongs to it; see `SystemStructure.remove`."""
+    """Remove an element or connector with its connections; see `SystemStructure.remove`."""
+    # Connections to it first, then the element, then its values in parameter sets.
     is_element = name in _elements(draft)
     named = element_named(draft, name) if is_element else _connector_named(draft, name)
     ends = attached(draft.system, name, is_element)
@@ -133,17 +134,20 @@ def remove(draft: Draft, name: str) -> None:
 
 def rename(draft: Draft, old: str, new: str) -> None:
     """Rename an element or a system's connector; see `SystemStructure.rename`."""
+    # Connectors of components are named by their FMU.
     is_element = old in _elements(draft)
     named = element_named(draft, old) if is_element else _connector_named(draft, old)
     listed = parent_of(named)
     short = named.get("name", "")
     if local(parent_of(listed)) == "Component":
         raise draft.error(old, "It is named by the FMU.", "Connectors of systems can be renamed.")
+    # The new name must be free among elements and connectors.
     full = old.removesuffix(short) + new
     if full in _elements(draft) or any(
         part.get("name") == new for part in listed if part is not named
     ):
         raise draft.error(full, "The name is taken.", "Names must differ.")
+    # Connections and parameter sets follow the new name.
     for connection, attribute in attached(draft.system, old, is_element):
         connection.set(attribute, new)
     named.set("name", new)

@@ -1,4 +1,4 @@
-"""Default experiment of an SSD: start and stop, and the base step size, which the standard leaves to annotations."""
+"""Default experiment of an SSD: start and stop time, and the base step size as an annotation."""
 
 import lxml.etree as etree
 
@@ -30,10 +30,12 @@ def set_experiment_time(root: etree._Element, name: str, time: float) -> None:
 
 
 def write_step_size(root: etree._Element, step_size: float) -> None:
-    """State a base step size [s] in an SSD: wherever one is stated, and in OSP's annotation."""
+    """Write a base step size [s] into an SSD: wherever one is stated, and in OSP's annotation."""
+    # Other tools' annotations are kept in agreement.
     stated = list(step_sizes(root))
     for part, attribute in stated:
         part.set(attribute, repr(step_size))
+    # libcosim reads OSP's annotation only.
     if not any(OSP_MARK in part.tag and local(part) == "FixedStepAlgorithm" for part, _ in stated):
         experiment = ensure(root, "ssd:DefaultExperiment")
         add_osp(root, experiment, "Algorithm", "FixedStepAlgorithm", baseStepSize=repr(step_size))

@@ -14,7 +14,7 @@ ELEMENTS = ("Component", "SignalDictionaryReference", "System")
 
 
 class NameMatch(NamedTuple):
-    """One way to read the name of a signal: a connector of an element in a system, or (None) of the system itself."""
+    """One reading of a signal's name: a connector of an element, or (None) of the system itself."""
 
     system: etree._Element
     element: etree._Element | None
@@ -35,7 +35,8 @@ class NameMatch(NamedTuple):
         return connector_of(self.owner, self.connector)
 
     def gives(self) -> bool | None:
-        """Whether a value comes from here; None where the connector does not say."""
+        """True if a value comes from here; None if the connector has no clear direction."""
+        # Seen from inside, an input of the system is a source.
         connector = self.declared()
         kind = None if connector is None else connector.get("kind")
         if kind not in KIND_NAMES or kind in ("inout", "unspecified"):
@@ -50,7 +51,7 @@ def parts(system: etree._Element) -> list[etree._Element]:
 
 
 def walk(system: etree._Element, name: str = "") -> Iterator[tuple[str, etree._Element]]:
-    """A system and everything in it, each element after its full name; the outermost system's is empty."""
+    """A system and everything in it, with full names; that of the outermost system is empty."""
     yield name, system
     for part in parts(system):
         inner = ".".join(filter(None, (name, part.get("name", ""))))
@@ -88,6 +89,7 @@ def connections(system: etree._Element) -> Iterator[tuple[tuple[str, str], etree
     """All connections, nested ones included: the full names of the two ends, and the element."""
     for name, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
+            # Full names of both ends, with the systems around them.
             ends = (
                 (connection.get(f"{s}Element"), connection.get(f"{s}Connector"))
                 for s in ("start", "end")
@@ -115,9 +117,11 @@ def attached(
     iterator of (lxml element, str)
         The connection, and its attribute with the name.
     """
+    # Every end of every connection, in nested systems too.
     for owner, element in walk(system):
         for connection in children(element, "ssd:Connections", "ssd:Connection"):
             for side in ("start", "end"):
+                # Compare the full name of the element, or of element and connector.
                 at = [owner, connection.get(f"{side}Element"), connection.get(f"{side}Connector")]
                 part = at[:2] if is_element else at
                 if at[1 if is_element else 2] and ".".join(filter(None, part)) == name:
@@ -125,7 +129,7 @@ def attached(
 
 
 def readings(signal: str, system: etree._Element) -> Iterator[NameMatch]:
-    """Every reading of a signal's name, which can be ambiguous: names of elements and connectors can contain dots."""
+    """Readings of a signal's name, which is ambiguous: elements and connectors may contain dots."""
     yield NameMatch(system, None, signal)
     for part in parts(system):
         start = f"{part.get('name')}."
@@ -142,7 +146,7 @@ def best_pair(
     exists: Callable[[NameMatch], bool],
     where: str,
 ) -> tuple[NameMatch, NameMatch]:
-    """Readings of two signals that a connection can join: both in one system, and existing as far as possible.
+    """Readings of two signals that a connection can join: in one system, existing if possible.
 
     Parameters
     ----------
@@ -160,12 +164,14 @@ def best_pair(
     ShipcosimError
         If one of them names an element that is not there, or the two can only be joined through systems between them.
     """
+    # Only pairs within one system can be connected.
     pairs = [
         (start, end)
         for start in readings(source, system)
         for end in readings(target, system)
         if start[0] is end[0]
     ]
+    # The most likely pair; what does not exist is explained by name.
     start, end = max(pairs, key=lambda pair: sum(_likely(reading, exists) for reading in pair))
     for signal, reading in ((source, start), (target, end)):
         if not exists(reading):
@@ -178,7 +184,7 @@ def _likely(reading: NameMatch, exists: Callable[[NameMatch], bool]) -> int:
 
 
 def _names_an_element(reading: NameMatch) -> bool:
-    """Whether what is taken for a connector's name looks like one of a component that is not there."""
+    """True if a supposed connector's name looks like one of a component that does not exist."""
     return reading.element is None and "." in reading.connector
 
 
@@ -189,7 +195,8 @@ def _refuse_if_elsewhere(
     exists: Callable[[NameMatch], bool],
     where: str,
 ) -> None:
-    """Raise where a signal is in another system, or of an element that is not there; the check finds all else."""
+    """Raise if a signal is in another system, or of a missing element; the check finds all else."""
+    # The signal exists, but in another system.
     if any(exists(other) for other in readings(signal, system)):
         remedy = (
             "A connection stays within one system: go through connectors of the systems between."
@@ -197,6 +204,7 @@ def _refuse_if_elsewhere(
         raise ShipcosimError(
             Problem(where, f"{signal} is in another system than the other end.", remedy)
         )
+    # The first part of its name is no element here.
     if _names_an_element(reading):
         names = [part.get("name", "") for part in parts(system)]
         element = signal.partition(".")[0]

@@ -1,4 +1,4 @@
-"""System structures to look at and change: read from a file, or begun anew."""
+"""Open system structures for viewing and editing: from a file, or empty."""
 
 import tempfile
 from collections.abc import Iterable
@@ -45,6 +45,7 @@ def read(
     ShipcosimError
         If there is no such file, or no system structure in it.
     """
+    # OSP structures are run, not edited: they have no place for everything in an SSD.
     findings = Findings()
     if osp_file(path):
         found = "An OspSystemStructure.xml cannot be edited."
@@ -52,6 +53,7 @@ def read(
     package = open_package(
         path, findings, library.fmus(path, build=False) if fmus is None else fmus
     )
+    # The root element must be an SSD with a system in it.
     document = None if package is None else package.document(findings)
     if document is not None and has_root(document, "ssd:SystemStructureDescription", findings):
         if child(document.root, "ssd:System") is None:
@@ -75,6 +77,7 @@ def new(name: str) -> SystemStructure:
     -------
     SystemStructure
     """
+    # A package in a temporary folder, until it is written.
     folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
     root = etree.fromstring(EMPTY.encode())
     for element in (root, *children(root, "ssd:System")):

@@ -1,4 +1,4 @@
-"""Parameter sets that an SSD binds, changed where they stand: inline, or in files beside it."""
+"""Parameter sets that an SSD binds, changed in place: inline, or in files of the package."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -69,7 +69,7 @@ class Bound:
 
 
 class Sets:
-    """The sets that an SSD binds, weakest first: those of inner elements, then of the systems around them.
+    """Parameter sets of an SSD, weakest first: of inner elements, then of systems around them.
 
     Parameters
     ----------
@@ -82,6 +82,7 @@ class Sets:
     def __init__(self, package: Package, document: Document):
         self.package = package
         self.document = document
+        # Bindings of all elements; a file bound twice must not be changed for one element only.
         system = child(document.root, "ssd:System")
         self.elements = {} if system is None else dict(walk(system))
         found = [
@@ -91,6 +92,7 @@ class Sets:
         ]
         counts = Counter(self._file(part) for _, part in found)
         bound = [self._bound(name, part, counts) for name, part in found]
+        # Outer systems override inner ones: sort by depth, innermost first.
         depths = {
             name: sum(1 for _ in element.iterancestors()) for name, element in self.elements.items()
         }
@@ -108,6 +110,7 @@ class Sets:
     def _bound(
         self, owner: str, binding: etree._Element, counts: Mapping[Path | None, int]
     ) -> Bound | None:
+        # The set is in a file, or inline in the binding.
         file = self._file(binding)
         inline = child(binding, "ssd:ParameterValues")
         root = (
@@ -135,7 +138,7 @@ class Sets:
             self.package.held[file] = Document(self.package.show(file), root, file.parent)
 
     def put(self, name: str, value: ParameterValue) -> None:
-        """Give a parameter a value where it has one, else in a set of its element's own.
+        """Set a parameter's value in the set that has it, else in a set of its element.
 
         Parameters
         ----------
@@ -144,11 +147,13 @@ class Sets:
         value : ParameterValue
             Its own name is not looked at.
         """
+        # The strongest set with this parameter, unless it is shared.
         places = [one for one in self.bound if one.parameter(name) is not None]
         if places and not places[-1].shared:
             write_value(places[-1].root, places[-1].parameter(name), value)
             self.keep(places[-1].file, places[-1].root)
             return
+        # Else a set of the same element, where its names fit.
         owner = places[-1].owner if places else self._owner(name)
         own = [one for one in self.bound if one.owner == owner]
         fits = (
@@ -162,10 +167,11 @@ class Sets:
             self._add(own[0].root, name[len(own[0].prefix) :], value)
             self.keep(own[0].file, own[0].root)
         else:
+            # Else a new set, bound after all others.
             self.append(owner, name, value)
 
     def append(self, owner: str, name: str, value: ParameterValue) -> None:
-        """Give a parameter a value in a new set, bound to an element after all others.
+        """Set a parameter's value in a new set, bound to an element after all others.
 
         Parameters
         ----------
@@ -190,13 +196,13 @@ class Sets:
         write_value(root, parameter, value)
 
     def _owner(self, name: str) -> str:
-        """Innermost element of this SSD that a parameter's full name begins with."""
+        """Innermost element of this SSD with which a parameter's full name begins."""
         return max(
             (owner for owner in self.elements if not owner or name.startswith(f"{owner}.")), key=len
         )
 
     def clear(self, name: str) -> bool:
-        """Take a parameter out of all sets; false where it is in none, or in one that is bound more than once."""
+        """Remove a parameter from all sets; false if none has it, or one that is shared."""
         places = [one for one in self.bound if one.parameter(name) is not None]
         for one in places:
             if one.shared:
@@ -206,18 +212,21 @@ class Sets:
         return bool(places)
 
     def rename(self, old: str, new: str | None, *, exact: bool = False) -> None:
-        """Follow a renamed or (new name None) removed element or connector in the parameter sets of the systems around.
+        """Rename or remove (new name None) an element or connector in all surrounding sets.
 
         Parameters
         ----------
         old, new : str
             Of an element, whose parameters' names begin with it, or (`exact`) of a system's connector.
         """
+        # Only sets around the element know its name, relative to their owner.
         for one in self.bound:
             if one.owner and not old.startswith(f"{one.owner}."):
                 continue
             owner = f"{one.owner}."
             names = _Names(old.removeprefix(owner), new and new.removeprefix(owner), exact)
+            # A mapping has the name in its targets, a prefix in itself, all others in each
+            # parameter.
             mapping = child(one.binding, "ssd:ParameterMapping")
             if mapping is not None:
                 self._rename_targets(mapping, names)
@@ -243,7 +252,7 @@ class Sets:
 
 
 class _Names(NamedTuple):
-    """An old and a new name of something, as a set sees them."""
+    """An old and a new name, as one parameter set sees them."""
 
     old: str
     new: str | None
@@ -252,7 +261,7 @@ class _Names(NamedTuple):
     def follow(
         self, element: etree._Element, attribute: str, remove: Callable[[etree._Element], None]
     ) -> bool:
-        """Change an attribute if it has the old name, and return whether it had."""
+        """Change an attribute that has the old name; return whether it did."""
         text = element.get(attribute, "")
         if text != self.old if self.exact else not text.startswith(f"{self.old}."):
             return False
@@ -264,12 +273,12 @@ class _Names(NamedTuple):
 
 
 def remove_parameter(parameter: etree._Element) -> None:
-    """Take a Parameter out of its set, which may be empty then."""
+    """Remove a Parameter from its set, which may then be empty."""
     parent_of(parameter).remove(parameter)
 
 
 def write_value(root: etree._Element, parameter: etree._Element, value: ParameterValue) -> None:
-    """Write a value into a Parameter element; description and tolerance are the new value's, other things stay.
+    """Write a value into a Parameter element; its description and tolerance replace the old ones.
 
     Parameters
     ----------
@@ -280,11 +289,13 @@ def write_value(root: etree._Element, parameter: etree._Element, value: Paramete
     value : ParameterValue
         What to write.
     """
+    # Replace the typed value, and define its unit in the set.
     for part in [part for part in parameter if local(part) in KINDS]:
         parameter.remove(part)
     typed = add(parameter, f"ssv:{value.kind}", value=text_of(value.value))
     if value.unit is not None and define_unit(root, "ssv:Units", value.unit):
         typed.set("unit", value.unit.name)
+    # Description and tolerance belong to the new value.
     parameter.attrib.pop("description", None)
     if value.description:
         parameter.set("description", value.description)

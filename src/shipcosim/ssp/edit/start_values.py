@@ -1,4 +1,4 @@
-"""Start values of a system that is edited, as a mapping of names to values in the FMUs' units."""
+"""Start values of an edited system, as a mapping of names to values in the FMUs' units."""
 
 from collections.abc import Iterator, Mapping, MutableMapping
 from math import isfinite
@@ -82,7 +82,8 @@ class StartValues(MutableMapping[str, Value]):
         description: str = "",
         tolerance: float | None = None,
     ) -> None:
-        """Set a value where it stands or, if that has no effect, over everything; see `SystemStructure.set`."""
+        """Set a value in place or, without effect there, over all; see `SystemStructure.set`."""
+        # Convert to the type and unit of the variable.
         kind, own, items = _target(self._system(), name)
         value = getattr(value, "item", lambda: value)()  # NumPy's scalars
         if kind == "Enumeration" and type(value) is int:
@@ -93,6 +94,7 @@ class StartValues(MutableMapping[str, Value]):
         given = ParameterValue(
             name, kind, value, own if kind == "Real" else None, description, tolerance=tolerance
         )
+        # Put it in place, and look whether the system now has this value.
         before = len(self._draft.assembled()[1].errors)
         self._draft.sets.put(name, given)
         system, findings = self._draft.assembled()
@@ -104,6 +106,7 @@ class StartValues(MutableMapping[str, Value]):
 
     def bind_to_components(self) -> None:
         """See `SystemStructure.bind_to_components`."""
+        # Collect all values before the bindings go: they may come from anywhere.
         system = self._system()
         bound = self._draft.sets.bound
         values = {name: _given(system, bound, name) for name in self}
@@ -131,6 +134,7 @@ class StartValues(MutableMapping[str, Value]):
     def _converted(self, name: str, value: Value, unit: str | None, own: Unit | None) -> Value:
         if unit is None:
             return value
+        # Units of the SSD may have names of its own.
         given = find_unit(unit, read_units(children(self._draft.root, "ssd:Units", "ssc:Unit")))
         if given is None or own is None or relation(given, own) in ("unknown", "incompatible"):
             found = f"A value in {unit}, but {name} is in {own.name if own else 'no unit'}."
@@ -140,7 +144,7 @@ class StartValues(MutableMapping[str, Value]):
 
 
 def _value(system: System, name: str) -> Value | None:
-    """Start value of a signal; None where nobody gives one."""
+    """Start value of a signal; None if there is none."""
     component, variable = system.split(name)
     if component is None:
         return _signal(system, variable).start
@@ -148,7 +152,7 @@ def _value(system: System, name: str) -> Value | None:
 
 
 def _target(system: System, name: str) -> tuple[str | None, Unit | None, Mapping[str, int]]:
-    """Type, unit and items of a signal."""
+    """Type, unit and enumeration items of a signal."""
     component, variable = system.split(name)
     if component is None:
         signal = _signal(system, variable)
@@ -159,15 +163,18 @@ def _target(system: System, name: str) -> tuple[str | None, Unit | None, Mapping
 
 
 def _given(system: System, bound: list[Bound], name: str) -> ParameterValue:
-    """Start value of a signal as it goes into a set, with what the set that it comes from says about it."""
+    """Start value of a signal for a parameter set, with description and tolerance of its origin."""
     kind, unit, items = _target(system, name)
     value = _value(system, name)
+    # Enumerations are written by item name.
     if kind == "Enumeration":
         value = next(item for item, number in items.items() if number == value)
+    # The last set that has the parameter describes it.
     found = [one.parameter(name) for one in bound]
     origin = next((part for part in reversed(found) if part is not None), None)
     described: dict[str, Any] = {}
     if origin is not None:
+        # A tolerance in another unit would be wrong.
         same_unit = unit is None or any(part.get("unit") == unit.name for part in origin)
         described = {"description": origin.get("description", "")}
         described["tolerance"] = tolerance_of(origin) if same_unit else None

@@ -1,4 +1,4 @@
-"""What a system structure holds: elements, connections, default experiment; whether it is right; how it is written."""
+"""Contents of a system structure: elements, connections, default experiment; check and write."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -118,7 +118,7 @@ class SystemContents:
             write_step_size(self._draft.root, float(step_size))
 
     def check(self, parameters: ParameterSets = ()) -> list[Problem]:
-        """Everything that is wrong, and remarks on what stops nothing; no binary is loaded.
+        """Find everything that is wrong, and remarks; no binary is loaded.
 
         Parameters
         ----------
@@ -175,11 +175,11 @@ class SystemContents:
             yield self
 
     def copy(self) -> Self:
-        """The same system once more, changed independently."""
+        """Copy the system; both can then be changed independently."""
         return type(self)(self._draft.copy())
 
     def write(self, path: str | PathLike[str], *, fmus: bool = True) -> None:
-        """Write the system with everything that belongs to it; what was not changed stays the same.
+        """Write the system with all its files; unchanged parts stay byte by byte the same.
 
         Parameters
         ----------

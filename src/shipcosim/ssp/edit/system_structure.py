@@ -1,7 +1,7 @@
-"""A system structure that can be changed, in SSP's words, and written as the same system or the changed one.
+"""A system structure that can be changed and written.
 
-The XML itself is what is edited, so that everything nobody asked to change comes out as it was: annotations of other
-tools, geometry, descriptions, files of any kind in the package.
+The XML itself is edited, so that everything unchanged stays as it was: annotations of other tools,
+geometry, descriptions, files of any kind in the package.
 """
 
 from collections.abc import Iterable
@@ -123,7 +123,7 @@ class SystemStructure(SystemContents):
         offset: float | None = None,
         suppress_unit_conversion: bool = False,
     ) -> None:
-        """Connect two connectors of one system; what the FMU has and the SSD does not declare yet is declared.
+        """Connect two connectors of one system; undeclared variables of FMUs are declared.
 
         Parameters
         ----------
@@ -144,7 +144,7 @@ class SystemStructure(SystemContents):
             connections.connect(self._draft, source, target, linear, suppress_unit_conversion)
 
     def disconnect(self, source: str, target: str | None = None) -> None:
-        """Remove the connection of two connectors, in either order; without `target` all connections of one.
+        """Remove the connection of two connectors, in either order; without `target` all of one.
 
         Parameters
         ----------
@@ -262,10 +262,10 @@ class SystemStructure(SystemContents):
             bindings.unbind(self._draft, source, element)
 
     def bind_to_components(self) -> None:
-        """Give each component one set with all its values in its FMU's units, instead of those bound to systems.
+        """Give each component one set of all its values, in its FMU's units, for system sets.
 
         The system stays the same. libcosim takes the first set of each component and no others, and converts no units.
-        Values for elements that the system does not have get lost.
+        Values for elements that the system does not have are lost.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Parameter sets written, and systems packed into an .ssp."""
+"""Write parameter sets, and pack systems into an .ssp."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -56,6 +56,7 @@ def parameter(
     ShipcosimError
         If the unit's spelling makes no sense.
     """
+    # A unit must be convertible, or the value has no meaning.
     defined = find_unit(unit)
     if defined is not None and defined.exponents is None:
         raise ShipcosimError(
@@ -97,6 +98,7 @@ def write_file(path: Path, data: bytes) -> None:
     ShipcosimError
         If it cannot be written.
     """
+    # Write next to the file, then replace it in one step.
     partial = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -127,6 +129,7 @@ def pack(
     ShipcosimError
         With everything that is wrong with the system, or if the archive cannot be written.
     """
+    # Check the system first: a faulty package is not written.
     findings = Findings()
     folder = Path(folder)
     package = open_package(folder, findings, fmus)
@@ -134,6 +137,7 @@ def pack(
         assemble_package(package, (), str(folder), findings)
     if package is None or findings.errors:
         raise ShipcosimError(list(dict.fromkeys(findings.errors)))
+    # Files in sorted order, without hidden ones: the same input gives the same bytes.
     files = {
         path.relative_to(folder).as_posix(): path.read_bytes()
         for path in sorted(folder.rglob("*"))
@@ -143,6 +147,7 @@ def pack(
     files |= {
         name: path.read_bytes() for name, path in package.located.items() if name not in files
     }
+    # Addresses of FMUs elsewhere become those within the package.
     if package.moved and (document := package.document(findings)) is not None:
         files[package.ssd] = to_bytes(
             relocated(document.root, package.moved), "ssd", "ssc", "ssv", "osp"
@@ -151,7 +156,7 @@ def pack(
 
 
 def relocated(root: etree._Element, moved: Mapping[str, str]) -> etree._Element:
-    """An SSD in which addresses that are none of the standard are those of the files within the written package.
+    """An SSD with non-standard addresses replaced by those of files in the written package.
 
     Parameters
     ----------

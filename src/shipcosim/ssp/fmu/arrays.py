@@ -1,4 +1,4 @@
-"""Arrays of an FMU taken apart into their scalar elements, ``A[1,2]``, counted from 1, the last index fastest.
+"""Scalar elements of an FMU's arrays, ``A[1,2]``, counted from 1, the last index fastest.
 
 Reference: FMI 3.0.1, section 2.4.7.5.
 """
@@ -46,14 +46,17 @@ def without_arrays(
     -------
     FmuDescription
     """
+    # Arrays with the sizes that structural parameters give them.
     whole = {v.name: _with_sizes(v, sizes or {}) for v in fmu.variables.values() if v.dimensions}
     if not whole:
         return fmu
+    # A few digits in a file can ask for more elements than memory holds.
     if sum(prod(variable.dimensions) for variable in whole.values()) > MOST_ELEMENTS:
         findings.error(
             place, f"{fmu.path.name} has arrays of more than {MOST_ELEMENTS} elements in all."
         )
         return replace(fmu, variables={n: v for n, v in fmu.variables.items() if n not in whole})
+    # Elements take the place of their array, so that the order stays.
     variables = {}
     for name, variable in fmu.variables.items():
         variables |= (
@@ -67,7 +70,7 @@ def without_arrays(
 
 
 def _with_sizes(variable: Variable, sizes: Mapping[str, int]) -> Variable:
-    """An array with other values of the structural parameters that size it; its start values are unknown then."""
+    """An array resized by structural parameters; its start values are then unknown."""
     pairs = zip(variable.sizes, variable.dimensions, strict=True)
     dimensions = tuple(
         max(sizes.get(name, size) if isinstance(name, str) else size, 0) for name, size in pairs
@@ -80,7 +83,7 @@ def _with_sizes(variable: Variable, sizes: Mapping[str, int]) -> Variable:
 
 
 def _elements(variable: Variable) -> Iterator[Variable]:
-    """Elements of an array as variables of their own."""
+    """Elements of an array as variables."""
     names = element_names(variable.name, variable.dimensions)
     starts = variable.start if isinstance(variable.start, tuple) else (variable.start,)
     starts = (

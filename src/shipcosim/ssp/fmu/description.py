@@ -1,4 +1,4 @@
-"""What an FMU's modelDescription.xml says: the FMU and its variables as records.
+"""The contents of an FMU's modelDescription.xml: the FMU and its variables as records.
 
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """

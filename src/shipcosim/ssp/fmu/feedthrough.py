@@ -1,4 +1,4 @@
-"""Direct feedthrough of an FMU: which outputs depend on which inputs at the same time, as its ModelStructure says.
+"""Direct feedthrough of an FMU: outputs that depend on inputs at once, by its ModelStructure.
 
 Reference: FMI 1.0 co-simulation, section 3.3 (DirectDependency); FMI 2.0.4, section 2.2.8; FMI 3.0.1, section 2.4.8.
 """
@@ -14,7 +14,7 @@ from shipcosim.ssp.xml.document import LARGEST_FILE, Findings, local, parse, par
 
 
 def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozenset[str]]:
-    """Inputs that outputs follow at once.
+    """Inputs that outputs depend on at once.
 
     Parameters
     ----------
@@ -29,6 +29,7 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
     dict of str to frozenset of str
         By output. One that is not in it may follow every input: the FMU does not say.
     """
+    # An FMU that cannot be read states nothing.
     try:
         data = read_entry(fmu.path, "modelDescription.xml", LARGEST_FILE)
     except ShipcosimError:
@@ -36,10 +37,12 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
     root = None if data is None else parse(data, fmu.path.name, Findings(), utf8=False)
     if root is None:
         return {}
+    # FMI 1.0 lists direct dependencies at each output.
     variables = parts_of(root, "ModelVariables")
     if root.get("fmiVersion", "").startswith("1"):
         return _direct(variables)
     structure = parts_of(root, "ModelStructure")
+    # FMI 3.0 refers to variables by value reference, FMI 2.0 by their index.
     if root.get("fmiVersion", "").startswith("3"):
         key = "valueReference"
         names = {part.get("valueReference"): part.get("name") for part in variables}
@@ -55,6 +58,7 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
             "Output": groups.get("Outputs", []),
             "InitialUnknown": groups.get("InitialUnknowns", []),
         }
+    # Initialisation has dependencies of its own; outputs not listed there depend on nothing.
     if not (at_start and listed["InitialUnknown"]):
         return _stated(listed["Output"], key, names)
     unknown = {names.get(part.get(key)) for part in listed["InitialUnknown"]}
@@ -65,7 +69,7 @@ def feedthrough(fmu: FmuDescription, at_start: bool = False) -> dict[str, frozen
 def _stated(
     outputs: Iterable[etree._Element], key: str, names: Mapping
 ) -> dict[str, frozenset[str]]:
-    """Outputs that have an attribute `dependencies`, which can be empty."""
+    """Outputs with an attribute `dependencies`, which may be empty."""
     return {
         names[part.get(key)]: frozenset(
             names[one] for one in part.get("dependencies").split() if one in names
@@ -76,7 +80,7 @@ def _stated(
 
 
 def _direct(variables: Iterable[etree._Element]) -> dict[str, frozenset[str]]:
-    """Outputs of FMI 1.0 that have a list of their direct dependencies."""
+    """Outputs of FMI 1.0 with a list of direct dependencies."""
     found = {}
     for variable in variables:
         for part in (part for part in variable if local(part) == "DirectDependency"):

@@ -11,11 +11,12 @@ from shipcosim.ssp.xml.document import is_true, local
 
 
 def interfaces_of(root: etree._Element) -> dict[str, dict[str, str]]:
-    """Attributes of the one form that an FMU has: co-simulation with an Implementation, model exchange without."""
+    """Attributes of the FMU's interface: co-simulation with an Implementation, else exchange."""
     attributes = {"modelIdentifier": root.get("modelIdentifier", "")}
     implementation = next((part for part in root if local(part) == "Implementation"), None)
     if implementation is None:
         return {"ModelExchange": attributes}
+    # Capabilities, and whether another tool must run the FMU.
     for part in implementation.iter():
         if local(part) == "Capabilities":
             attributes |= dict(part.attrib)
@@ -38,12 +39,15 @@ def traits_of(element: etree._Element, typed: etree._Element, kind: str) -> dict
     -------
     dict of str to (str or None)
     """
+    # FMI 1.0 marks parameters by variability, not by causality.
     causality = element.get("causality", "internal")
     variability = element.get("variability", "continuous")
     if variability == "parameter":
         return {"causality": "parameter", "variability": "fixed", "initial": "exact"}
+    # Only reals can be continuous.
     if variability == "continuous" and kind != "Real":
         variability = "discrete"
+    # FMI 1.0 states by `fixed` whether a start value is exact.
     initial = None
     if causality != "input" and typed.get("start") is not None:
         initial = "exact" if is_true(typed.get("fixed", "true")) else "approx"
@@ -55,12 +59,12 @@ def traits_of(element: etree._Element, typed: etree._Element, kind: str) -> dict
 
 
 def is_negated(element: etree._Element) -> bool:
-    """Whether a variable is the negative of the one whose value reference it shares."""
+    """True if a variable is the negative of the one with the same value reference."""
     return element.get("alias") == "negatedAlias"
 
 
 def items_of(declaration: etree._Element | None) -> dict[str, int]:
-    """Items of an enumeration, numbered from its least value on, which is 1 where nothing else is given."""
+    """Items of an enumeration, numbered from its least value, by default 1."""
     if declaration is None:
         return {}
     first = int(declaration.get("min") or 1)

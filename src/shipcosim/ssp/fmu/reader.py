@@ -1,4 +1,4 @@
-"""Reader of FMUs: their modelDescription.xml becomes an FmuDescription. No binary is ever loaded here.
+"""Reader of FMUs: modelDescription.xml becomes an FmuDescription. No binary is loaded here.
 
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """
@@ -47,7 +47,7 @@ def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescript
 def describe_fmu(
     path: str | PathLike[str], findings: Findings, shown: str | None = None
 ) -> FmuDescription | None:
-    """Description of an FMU, or None where nothing can be read; what is wrong is collected.
+    """Description of an FMU, or None if it cannot be read; problems are collected.
 
     Parameters
     ----------
@@ -59,6 +59,7 @@ def describe_fmu(
         Its name in messages, where it is not `path`.
     """
     shown = shown or str(path)
+    # The archive, and the description in it.
     try:
         data = read_entry(path, "modelDescription.xml", LARGEST_FILE, shown)
         names = entries(path, shown)
@@ -71,10 +72,12 @@ def describe_fmu(
         )
         return None
     file = f"{shown}/modelDescription.xml"
+    # The version decides which schema applies.
     root = parse(data, file, findings, utf8=False)
     if root is None or not _is_fmi(root, file, findings):
         return None
     version = root.get("fmiVersion", "")[:1]
+    # A description that breaks its schema is refused.
     before = len(findings.errors)
     validate(root, f"fmi{version}", file, findings)
     if len(findings.errors) > before:
@@ -106,6 +109,7 @@ def _description(
     root = document.root
     version = f"{root.get('fmiVersion', '')[:1]}.0"
     note_empty_units(document, parts_of(root, "UnitDefinitions"), findings)
+    # Platforms are the folders in binaries/.
     platforms = {
         parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"
     }

@@ -26,17 +26,20 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
     findings : Findings
         Takes what is wrong.
     """
+    # Declared types, and the variables that have a type we know.
     types = {part.get("name"): part for part in parts_of(document.root, "TypeDefinitions")}
     elements = [
         part
         for part in parts_of(document.root, "ModelVariables")
         if _type_element(part) is not None
     ]
+    # Dimensions can refer to variables by value reference.
     sizes = {part.get("valueReference"): (part.get("name"), part.get("start")) for part in elements}
     is_first = document.root.get("fmiVersion", "").startswith("1.")
     variables = {}
     for element in elements:
         for name, description in _names(element):
+            # A variable with a bad value is left out; the others are still read.
             try:
                 variable = _variable(element, name, description, types, sizes, is_first)
                 if name in variables:
@@ -92,6 +95,7 @@ def _variable(
     assert typed is not None  # the others were left out
     declared = types.get(typed.get("declaredType"))
     kind = KINDS[local(typed)]
+    # FMI 3.0 arrays have Dimension elements.
     written = [part for part in element if local(part) == "Dimension"]
     dimensions = tuple(_size(part, sizes) for part in written)
     traits = traits_of(element, typed, kind) if is_first else _traits(element, kind)
@@ -122,7 +126,7 @@ def _traits(element: etree._Element, kind: str) -> dict[str, Any]:
 
 
 def _size(dimension: etree._Element, sizes: Sizes) -> int:
-    """Size of one dimension of an array: given as such, or the start value of a structural parameter."""
+    """Size of one dimension: a number, or the start value of a structural parameter."""
     text = dimension.get("start") or sizes.get(dimension.get("valueReference"), (None, None))[1]
     if text is None:
         raise ValueError(
@@ -139,7 +143,7 @@ def _size_as_written(dimension: etree._Element, sizes: Sizes) -> int | str:
 
 
 def _declaration(declared: etree._Element | None) -> etree._Element | None:
-    """The element of a declared type that carries the attributes, which FMI 1.0 and 2.0 nest in another one."""
+    """Element of a declared type with its attributes, which FMI 1.0 and 2.0 nest in another one."""
     if declared is None or local(declared) not in ("SimpleType", "Type"):
         return declared
     return next((part for part in declared if local(part).removesuffix("Type") in KINDS), None)
@@ -166,7 +170,9 @@ def _items(declared: etree._Element | None, is_first: bool) -> dict[str, int]:
 
 
 def _start(typed: etree._Element, kind: str, dimensions: tuple[int, ...]) -> Value | None:
+    # Items of enumerations are numbers here.
     kind = "Integer" if kind == "Enumeration" else kind
+    # Strings and binaries of FMI 3.0 stand in elements of their own.
     nested = [part.get("value") for part in typed if local(part) == "Start"]
     if nested:
         values = tuple(read_value(kind, text) for text in nested)

@@ -60,9 +60,10 @@ class ConnectionReader:
         ] = {}  # where what feeds a target comes from
 
     def read(self, elements: Iterable[etree._Element]) -> list[Connection]:
-        """Connections of connection elements; what is wrong is left out, with an error."""
+        """Read connection elements; wrong ones are left out, with an error."""
         kinds = {"Signal": self._signal, "SignalGroup": self._signal_group}
         for element in elements:
+            # Both ends of a connection, in the order of the file.
             ends = {local(part): part for part in element if local(part)}
             shown = " - ".join(_shown(part) for part in element if local(part))
             place = self.document.place(element, shown)
@@ -70,12 +71,14 @@ class ConnectionReader:
                 self.findings.remark(
                     place, "powerBond is not used: it is for the algorithm ecco alone."
                 )
+            # One end is a signal of a function, or both ends are variables or groups.
             if kind := next((name for name in kinds if name in ends), None):
                 variable = ends["Variable" if kind == "Signal" else "VariableGroup"]
                 kinds[kind](variable, ends[kind], place)
             else:
                 one, other = (part for part in element if local(part))
                 self._pair(one, other, place)
+        # Connections through functions follow once all their signals are known.
         for signal, connection in self.wiring.connections():
             self._add(connection, signal)
         return self.connections
@@ -92,7 +95,8 @@ class ConnectionReader:
             self._join(groups, [one.get("simulator"), other.get("simulator")], place)
 
     def _join(self, groups: Sequence[Group], simulators: Sequence[str], place: str) -> None:
-        """Connect two groups: the groups in them by their order, and so their variables."""
+        """Connect two groups in order: their inner groups, then their variables."""
+        # Groups must have the same number of variables and inner groups.
         counts = [(len(group.variables), len(group.groups)) for group in groups]
         if counts[0] != counts[1]:
             names = [
@@ -102,6 +106,7 @@ class ConnectionReader:
             found = f"{names[0]} has {_counted(*counts[0])}, {names[1]} {_counted(*counts[1])}."
             self.findings.error(place, found, "Connect groups of one make.")
             return
+        # Kinds may differ, as long as the numbers agree.
         if groups[0].kind != groups[1].kind:
             found = f"A {groups[0].kind} is connected to a {groups[1].kind}, one variable after the other."
             self.findings.remark(place, found)
@@ -113,15 +118,17 @@ class ConnectionReader:
                 self._direct(ends[0], ends[1], place)
 
     def _direct(self, one: End, other: End, place: str) -> None:
-        """A connection in the direction that the causalities say."""
+        """Add a connection in the direction that the causalities give."""
         source, target = (one, other) if self._variable(one).causality in SOURCES else (other, one)
         self._add(Connection(source, target, place=place))
 
     def _add(self, connection: Connection, signal: tuple[str, str] | None = None) -> None:
-        """Keep a connection; `signal` is the one of a function that it comes from, which may add up several."""
+        """Add a connection; `signal` is its function signal, which may sum several."""
+        # Names and causalities of both ends.
         source, target = (self._variable(end) for end in (connection.source, connection.target))
         names = [".".join(filter(None, end)) for end in (connection.source, connection.target)]
         place = connection.place
+        # An input takes one connection, or the terms of one sum.
         feeding = self._fed.get(connection.target)
         self._fed[connection.target] = signal or (place,)
         if source.causality not in SOURCES or target.causality != "input":
@@ -136,11 +143,13 @@ class ConnectionReader:
                 place, f"A second connection into {names[1]}.", "Remove one of them."
             )
         else:
+            # Functions convert on purpose; plain connections in other units deserve a remark.
             if (connection.factor, connection.offset) == (1.0, 0.0):
                 self._compare_units(connection, names)
             self.connections.append(connection)
 
     def _compare_units(self, connection: Connection, names: Sequence[str]) -> None:
+        # OSP converts no units: differing units are a likely mistake.
         units = []
         for name, variable in (connection.source, connection.target):
             fmu = self._fmu(name)
@@ -157,6 +166,7 @@ class ConnectionReader:
             self.wiring.take(signal.get("function"), signal.get("name"), end, place)
 
     def _signal_group(self, group: etree._Element, signal: etree._Element, place: str) -> None:
+        # Both the group and the function's group must exist, with the same number of signals.
         found = self._group(group, place)
         if not self._has_function(signal, place):
             return
@@ -176,6 +186,7 @@ class ConnectionReader:
             )
             self.findings.error(place, f"{text}{function.name} the dimension {function.dimension}.")
             return
+        # Each variable of the group feeds the signal of the same number.
         for j, variable in enumerate(found.variables):
             end = group.get("simulator"), variable
             self.wiring.take(function.name, f"{name}[{j}]", end if self._has(end) else None, place)
@@ -189,6 +200,7 @@ class ConnectionReader:
         return name in self.functions
 
     def _group(self, element: etree._Element, place: str) -> Group | None:
+        # Groups of each FMU are read once.
         simulator = element.get("simulator")
         name = element.get("name")
         fmu = self.simulators.fmu_of(simulator, place)
@@ -207,7 +219,7 @@ class ConnectionReader:
         return (groups or {}).get(name)
 
     def _end(self, element: etree._Element, place: str) -> End | None:
-        """(simulator, variable) that an end means, or None with an error."""
+        """(simulator, variable) of an end, or None with an error."""
         simulator = element.get("simulator")
         name = element.get("name")
         fmu = self.simulators.fmu_of(simulator, place)

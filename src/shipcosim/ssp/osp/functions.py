@@ -1,4 +1,4 @@
-"""Functions of an OspSystemStructure.xml: their signals, and the connections between variables that they make."""
+"""Functions of an OspSystemStructure.xml: their signals, and the connections that they make."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ class Function:
 
     @property
     def rows(self) -> list[tuple[list[str], str]]:
-        """For each number that it gives: the names of the signals that go into it, and of its own."""
+        """For each output number: names of its input signals, and its own name."""
         if self.kind == "LinearTransformation":
             return [(["in"], "out")]
         inputs = [f"in[{i}]" for i in range(self.inputs)]
@@ -46,12 +46,12 @@ class Function:
 
     @property
     def signals(self) -> list[str]:
-        """Names that a SignalConnection can have."""
+        """Names allowed in a SignalConnection."""
         return [name for inputs, output in self.rows for name in (*inputs, output)]
 
     @property
     def groups(self) -> list[str]:
-        """Names that a SignalGroupConnection can have."""
+        """Names allowed in a SignalGroupConnection."""
         return (
             [f"in[{i}]" for i in range(self.inputs)] + ["out"] if self.kind == "VectorSum" else []
         )
@@ -78,6 +78,7 @@ def read_function(element: etree._Element, place: str, findings: Findings) -> Fu
     Function or None
     """
     inputs, dimension = (int(element.get(name, 1)) for name in ("inputCount", "dimension"))
+    # A few digits in a file can ask for more signals than memory holds.
     if inputs * dimension > MOST_SIGNALS:
         findings.error(
             place, f"It has {inputs * dimension} inputs.", f"At most {MOST_SIGNALS} are taken."
@@ -89,7 +90,7 @@ def read_function(element: etree._Element, place: str, findings: Findings) -> Fu
 
 
 class Wiring:
-    """Connections of variables with signals of functions, as they are found.
+    """Connections of variables with function signals, as they are read.
 
     Parameters
     ----------
@@ -106,11 +107,11 @@ class Wiring:
         self._given_up: set[str] = set()
 
     def give_up(self, function: str) -> None:
-        """Note that something is wrong with a function already, so that missing connections are not reported too."""
+        """Mark a function as faulty, so that its missing connections are not reported too."""
         self._given_up.add(function)
 
     def take(self, function: str, signal: str, end: tuple[str, str] | None, place: str) -> None:
-        """Note that a variable is connected with a signal of a function.
+        """Record that a variable is connected with a signal of a function.
 
         Parameters
         ----------
@@ -124,11 +125,14 @@ class Wiring:
         if end is None:
             self.give_up(function)
             return
+        # The signal must exist.
         known = self.functions[function]
         if signal not in known.signals:
             found = f"The {known.kind} '{function}' has no signal '{signal}'."
             self.findings.error(place, found, it_has(signal, known.signals))
             return
+        # An input takes one connection; an output may have several, of which libcosim makes the
+        # first.
         ends = self._ends.setdefault((function, signal), [])
         if ends and not signal.startswith("out"):
             self.findings.error(
@@ -142,9 +146,10 @@ class Wiring:
         ends.append((end, place))
 
     def connections(self) -> Iterator[tuple[tuple[str, str], Connection]]:
-        """(output signal, connection from variable to variable) of all functions; a sum is several into one."""
+        """(output signal, connection) of all functions; a sum has several into one target."""
         for function in self.functions.values():
             for inputs, output in function.rows if function.name not in self._given_up else ():
+                # A function needs all its signals.
                 missing = [
                     name for name in (*inputs, output) if (function.name, name) not in self._ends
                 ]
@@ -154,6 +159,7 @@ class Wiring:
                         function.place, found, "Connect every signal of it, or remove it."
                     )
                     continue
+                # Each source to each target, with the function's factor and offset.
                 sources = [self._ends[function.name, name][0][0] for name in inputs]
                 for target, place in self._ends[function.name, output]:
                     for source in sources:

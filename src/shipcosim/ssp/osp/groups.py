@@ -1,4 +1,4 @@
-"""Variable groups of an FMU, from the OspModelDescription.xml beside it."""
+"""Variable groups of an FMU, from the OspModelDescription.xml next to it."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Group:
 
 
 def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[str, Group] | None:
-    """Groups of an FMU by name; those within groups too, under the name of their own, as libcosim finds them.
+    """Groups of an FMU by name, inner groups too, as libcosim finds them.
 
     Parameters
     ----------
@@ -60,6 +60,7 @@ def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[s
     if document is None:
         return None
     found = {}
+    # Inner groups are found by their own names, so all names must differ.
     for listed in (part for part in document.root if local(part) == "VariableGroups"):
         for element in filter(local, listed):
             for group in _group(element, fmu, document, findings).all():
@@ -74,11 +75,12 @@ def read_groups(fmu: FmuDescription, folder: Path, findings: Findings) -> dict[s
 
 
 def file_names(fmu: FmuDescription) -> list[str]:
-    """Names that the file can have: by the model's name, as libcosim looks for it, or by the FMU's file."""
+    """Names of the file: by the model's name, as libcosim looks for it, or by the FMU's file."""
     return list(dict.fromkeys(f"{name}{ENDING}" for name in (fmu.model_name, fmu.path.stem)))
 
 
 def _file(fmu: FmuDescription, folder: Path, findings: Findings) -> Path | None:
+    # Next to the FMU, then next to the system structure.
     wanted, *others = file_names(fmu)
     places = [fmu.path.parent, Path(folder)]
     for name in (wanted, *others):
@@ -96,6 +98,7 @@ def _group(
 ) -> Group:
     variables = []
     groups = []
+    # Variables and inner groups in order: connections match them one by one.
     for part in filter(local, element):
         if local(part) == "Variable":
             name = part.get("ref", "")

@@ -1,6 +1,7 @@
 """Reader of OspSystemStructure.xml, the configuration file of the Open Simulation Platform.
 
-The result is a system ready to run. Elements mean what libcosim (tried: libcosimpy 0.0.6) makes of them, if known.
+The result is a system ready to run. Elements mean what libcosim (tried: libcosimpy 0.0.6) takes
+them for, where known.
 """
 
 from collections.abc import Iterable, Mapping
@@ -28,7 +29,7 @@ OSP_STRUCTURE = "OspSystemStructure.xml"
 
 
 def osp_file(path: str | PathLike[str]) -> Path | None:
-    """OspSystemStructure.xml that a path means, itself or in a folder without an SSD, or None."""
+    """OspSystemStructure.xml of a path: the file, or that in a folder without an SSD; or None."""
     path = Path(path)
     if path.is_dir() and not (path / "SystemStructure.ssd").is_file():
         path = path / OSP_STRUCTURE
@@ -61,6 +62,7 @@ def assemble_osp(
     -------
     System, None or incomplete where there are errors
     """
+    # Namespace and schema first: later steps rely on both.
     document = read_document(path, str(path), findings)
     if document is not None:
         _set_namespace(document, findings)
@@ -70,10 +72,12 @@ def assemble_osp(
     validate_osp(document, findings)
     if len(findings.errors) > before:
         return None
+    # Read the system once to learn which array sizes it sets.
     before = list(findings.problems)
     sets = list(parameter_sets(parameters, findings))
     folders = [Path(folder) for folder in fmus]
     system = _system(document, folders, sets, Hierarchy(findings, swapped=swapped))
+    # If sizes differ from the FMU's, read again with the arrays in these sizes.
     if any(found for component in system.components.values() for found in resized(component)):
         findings.problems[:] = before
         tree = Hierarchy(findings, sizes=sizes_wanted(system.components), swapped=swapped)
@@ -82,7 +86,7 @@ def assemble_osp(
 
 
 def _set_namespace(document: Document, findings: Findings) -> None:
-    """Put elements without a namespace into OSP's, where the outermost one has the name of an OSP structure."""
+    """Put elements without a namespace into OSP's, if the root is named as an OSP structure."""
     if document.root.tag == "OspSystemStructure":
         for element in document.root.iter("{}*"):
             element.tag = f"{{{NAMESPACE}}}{element.tag}"
@@ -102,7 +106,8 @@ def _is_osp(document: Document, findings: Findings) -> bool:
 def _system(
     document: Document, folders: list[Path], sets: Iterable[ParameterSet], tree: Hierarchy
 ) -> System:
-    """System of a document that keeps its schema."""
+    """System of a document that conforms to the schema."""
+    # Simulators first: functions and connections refer to them.
     findings = tree.findings
     simulators = Simulators(document, folders, tree, findings)
     for element in parts_of(document.root, "Simulators"):
@@ -111,11 +116,13 @@ def _system(
     connections = ConnectionReader(document, simulators, functions, findings).read(
         parts_of(document.root, "Connections")
     )
+    # Exchanged FMUs, then parameter sets over the initial values.
     take_swapped(tree)
     for values in sets:
         apply_set(tree, values)
     settings = Settings(tree, findings)
     settings.apply()
+    # Step sizes: each component's own step is a multiple of the base step in libcosim.
     experiment = read_experiment(document, findings)
     components = with_whole_steps(
         components_of(tree, settings), experiment.step_size, findings, as_libcosim=True
@@ -135,11 +142,12 @@ def _system(
 def _functions(
     document: Document, simulators: Iterable[str], findings: Findings
 ) -> dict[str, Function]:
-    """Functions by name; one that makes no sense is left out, with an error."""
+    """Functions by name; faulty ones are left out, with an error."""
     functions = {}
     for element in parts_of(document.root, "Functions"):
         name = element.get("name")
         place = document.place(element, name)
+        # Names are shared by functions and simulators.
         if name in functions or name in simulators:
             findings.error(
                 place, f"'{name}' is the name of something else already.", "Names must differ."

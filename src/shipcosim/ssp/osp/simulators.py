@@ -54,7 +54,7 @@ class Simulators:
         return [".".join(path) for path in self.tree.components]
 
     def fmu_of(self, simulator: str, place: str) -> FmuDescription | None:
-        """FMU of a simulator, or None, with an error unless there is one already."""
+        """FMU of a simulator, or None, with an error unless it was reported before."""
         if (simulator,) not in self.tree.components:
             found = f"There is no simulator '{simulator}'."
             self.findings.error(place, found, suggestion(simulator, self.names))
@@ -63,6 +63,7 @@ class Simulators:
 
     def take(self, element: etree._Element) -> None:
         """Collect a Simulator element with its FMU and its initial values."""
+        # Names must differ.
         name = element.get("name")
         place = self.document.place(element, name)
         if (name,) in self.tree.components:
@@ -70,17 +71,21 @@ class Simulators:
                 place, f"A second simulator is named '{name}'.", "Names must differ."
             )
             return
+        # The FMU, or the one that replaces it.
         fmu = self._fmu(element.get("source"), place, self.tree.swapped.get(name))
         step = own_step(self.document, element, self.findings)
         described = ComponentElement(name, element.get("source"), FMU, "any", (), (), step, place)
         fmu = fmu and without_arrays(fmu, place, self.findings, self.tree.sizes.get(name))
+        # Arrays as elements, with the sizes that the system sets.
         self.tree.components[name,] = described, fmu
         self.tree.arrays[name,] = {} if fmu is None else dict(fmu.arrays)
+        # Initial values act like a parameter set of this component.
         for initial in element.iter(f"{{{NAMESPACE}}}InitialValue"):
             self._initial(name, initial)
 
     def _initial(self, name: str, element: etree._Element) -> None:
         variable = element.get("variable")
+        # A value that cannot be read is reported at its place in the file.
         (typed,) = (part for part in element if local(part))
         place = self.document.place(element, f"{name}.{variable}")
         with reporting(self.document, element, self.findings, f"{name}.{variable}"):
@@ -97,8 +102,9 @@ class Simulators:
         return self._described[file]
 
     def _located(self, source: str, place: str) -> Path | None:
-        """File that a source means, or None with an error; it may lie anywhere, as in OSP's own examples."""
+        """File of a source address, or None with an error; any folder, as in OSP's examples."""
         try:
+            # A proxy address names a file and a process: only the file is used.
             parts = urlsplit(source)
             if parts.scheme == PROXY and (text := path_of(source)) is not None:
                 found = f"'{source}' is an FMU in a process of its own; {text} is run here."
@@ -107,12 +113,14 @@ class Simulators:
                 )
                 parts = urlsplit(text)
                 source = text
+            # Other addresses would need a server.
             elif parts.scheme not in HERE:
                 remedy = "Name the FMU's file: proxies and servers of FMUs are not supported."
                 self.findings.error(
                     place, f"'{source}' is an address of the kind '{parts.scheme}'.", remedy
                 )
                 return None
+            # As an address, as a plain name, then by file name in the searched folders.
             path = url2pathname(parts.path) if parts.scheme else unquote(parts.path)
             paths = [self.document.folder / path, self.document.folder / source]
             paths += [folder / Path(path).name for folder in self.searched]
@@ -120,6 +128,7 @@ class Simulators:
         except (ValueError, OSError) as error:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")
             return None
+        # Suggest a similar file of the same folder.
         if found is None:
             there = (
                 {file.name for file in paths[0].parent.glob("*.fmu")}

@@ -10,7 +10,7 @@ DEFAULT_STEP = 0.1  # s; libcosim's where a file states none
 
 
 def read_experiment(document: Document, findings: Findings) -> Experiment:
-    """Start, end and base step of an OspSystemStructure.xml, with remarks on what of it is not used.
+    """Read start, end and base step of an OspSystemStructure.xml; remark what is not used.
 
     Parameters
     ----------
@@ -24,8 +24,10 @@ def read_experiment(document: Document, findings: Findings) -> Experiment:
     Experiment
     """
     root = document.root
+    # OSP states its times as elements of the root.
     times = {local(part): part for part in root if local(part).endswith(("Time", "StepSize"))}
     read = {name: _seconds(document, part, part.text, findings) for name, part in times.items()}
+    # Without a base step libcosim takes its default: so do we.
     if "BaseStepSize" not in times:
         found = f"It has no BaseStepSize: {DEFAULT_STEP} s is taken, as libcosim does."
         findings.remark(document.place(root), found, "Add one.")
@@ -53,6 +55,7 @@ def own_step(document: Document, element: etree._Element, findings: Findings) ->
     -------
     float or None
     """
+    # Without a step size of its own a simulator takes the base step.
     if element.get("stepSize") is None:
         return None
     step = _seconds(document, element, element.get("stepSize"), findings)
@@ -63,6 +66,7 @@ def own_step(document: Document, element: etree._Element, findings: Findings) ->
 
 
 def _remark_algorithm(document: Document, findings: Findings) -> None:
+    # Only the fixed step algorithm is known to libcosim.
     parts = {local(part): part for part in document.root}
     if "Algorithm" not in parts:
         found = "It names no algorithm, and libcosim refuses such a file."
@@ -80,7 +84,7 @@ def _remark_algorithm(document: Document, findings: Findings) -> None:
 def _seconds(
     document: Document, element: etree._Element, text: str | None, findings: Findings
 ) -> float | None:
-    """Time in whole nanoseconds, in which OSP counts; None with an error. [s]"""
+    """Time in whole nanoseconds, as OSP counts; None with an error. [s]"""
     with reporting(document, element, findings, local(element)):
         return round(read_value("Real", text or "") * 1e9) / 1e9
     return None

@@ -1,4 +1,4 @@
-"""Writer of OspSystemStructure.xml, such that libcosim reads back every digit."""
+"""Writer of OspSystemStructure.xml, exact to the last digit that libcosim reads."""
 
 from collections import defaultdict
 from collections.abc import Container, Iterable, Mapping, Sequence
@@ -68,13 +68,14 @@ def structure_text(
 
 
 def seconds_text(seconds: float) -> str:
-    """Seconds as libcosim, which counts nanoseconds and cuts off fractions of one, reads them without losing one.
+    """Seconds as text that libcosim, which truncates to nanoseconds, reads exactly.
 
     Examples
     --------
     >>> seconds_text(0.29)
     '0.29000000025'
     """
+    # A quarter nanosecond more: truncation then gives the right nanosecond.
     nanoseconds = round(seconds * 1e9)
     return f"{nanoseconds // 10**9}.{nanoseconds % 10**9:09d}25"
 
@@ -94,15 +95,18 @@ def _lines(simulator: Simulator) -> list[str]:
 def _connections(
     connections: Iterable[Connection], taken: Container[str]
 ) -> tuple[list[str], list[str]]:
-    """Elements of the functions, in the order that libcosim requires, and of the connections."""
+    """Function elements, in the order that libcosim requires, and connection elements."""
     into = defaultdict(list)
     linear = []
     sums = []
     joined = []
+    # Group by target: several connections into one input are a sum.
     for connection in connections:
         into[connection.target].append(connection)
     for target, feeding in into.items():
         first = feeding[0]
+        # A Sum function for several sources, a linear one for a factor or offset, else a plain
+        # connection.
         if len(feeding) > 1:
             name = free_name(f"sum_{len(sums)}", taken)
             sums.append(f'<Sum name="{name}" inputCount="{len(feeding)}"/>')

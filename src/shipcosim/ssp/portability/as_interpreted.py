@@ -1,6 +1,6 @@
 """A system as a tool interprets its file: with the values and connections that the tool applies.
 
-What it refuses or crashes on is not looked at; see `shipcosim.ssp.portability.support_table`.
+Refusals and crashes are not considered; see `shipcosim.ssp.portability.support_table`.
 """
 
 from collections.abc import Container, Iterable, Mapping
@@ -19,7 +19,7 @@ from shipcosim.ssp.xml.values import Value
 
 @dataclass(frozen=True)
 class Taken:
-    """One respect in which a tool takes a system otherwise.
+    """One deviation in how a tool interprets a system.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Taken:
 
 
 def told_set(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> str | None:
-    """Name of the first parameter set on a component, which ecos is told, or None.
+    """Name of the first parameter set on a component, which ecos is given, or None.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def told_set(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] =
 def taken_by(
     host: str, path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()
 ) -> tuple[list[Taken], System | None]:
-    """Respects in which a tool takes a system otherwise, and the system with all of them together.
+    """Deviations in how a tool interprets a system, and the system with all of them.
 
     Parameters
     ----------
@@ -70,6 +70,7 @@ def taken_by(
     if subject is None:
         return [], None
     whole = subject.system
+    # Each kind of deviation alone, for its description, and all of them together.
     found = []
     for change in (_values, _connections, _steps, _forms):
         what, changed = change(host, subject, subject.system)
@@ -80,19 +81,22 @@ def taken_by(
 
 
 def _values(host: str, subject: Subject, system: System) -> tuple[str, System]:
-    """Start values: a component's first set or, in ecos, its last of the name told; each value as the number it is."""
+    """Start values as a tool applies them: of the first set, in ecos the last of that name."""
+    # Which set the tool takes for each component.
     applied = {name: {} for name in system.components}
     sets = list(subject.sets)
     for k, (part, fmu, _, values) in enumerate(sets):
         first = all(part is not other for other, *_ in sets[:k])
         if fmu is not None and (first if host == "libcosim" else values.name == sets[0][-1].name):
             applied[part.name] = {}
+            # Only values of kinds that the tool can apply.
             for value in values.values:
                 variable = fmu.variables.get(value.name)
                 if variable is not None and _takes(host, value, variable, fmu):
                     applied[part.name][value.name] = (
                         float(value.value) if variable.kind == "Real" else value.value
                     )
+    # Values that differ from ours, and components with the tool's values.
     other = [
         _instead(component, variable, applied[name])
         for name, component in system.components.items()
@@ -124,13 +128,15 @@ def _instead(component: Component, variable: str, applied: Mapping[str, Value]) 
 
 
 def _connections(host: str, subject: Subject, system: System) -> tuple[str, System]:
-    """Connections as they are written, without units and mappings; those written from input to output left out."""
+    """Connections as written, without units and mappings; those from input to output left out."""
+    # Connections of the file with the transformation that is written.
     links = {}
     for link, _, _ in subject.links:
         ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
         how = link.transformation
         linear = how if how is not None and how.kind == "Linear" else Transformation()
         links[ends] = (linear.factor, linear.offset), link.place
+    # ecos reads a missing factor as 0.
     if host == "ecos":
         misread = {place for place, _ in linear_without_factor(subject)}
         lines = {place.partition(": ")[0] for place in misread}
@@ -140,6 +146,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
         }
     taken = []
     other = []
+    # Compare each of our connections with what the tool makes of it.
     for connection in system.connections:
         arrow = " -> ".join(
             ".".join(filter(None, end)) for end in (connection.source, connection.target)
@@ -147,6 +154,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
         ends = (connection.source, connection.target)
         name = arrow
         if ends in links and not connection.initial:
+            # The same factor and offset, without a mapping: no deviation.
             (factor, offset), _ = links[ends]
             same = (factor, offset) == (
                 connection.factor,
@@ -155,6 +163,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
             if not same:
                 other.append(f"{name} is {_how(factor, offset, connection)}")
             taken.append(replace(connection, factor=factor, offset=offset, mapping=None))
+        # Connections of the outermost system's own connectors stay as they are.
         elif connection.source[0] is None or connection.target[0] is None:
             taken.append(connection)
         else:
@@ -165,7 +174,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
 
 
 def _holds(place: str, lines: Container[str]) -> bool:
-    """Whether a connection's place is that of a transformation in it, in the same line or the next one."""
+    """True if a connection's place is that of a transformation: in the same line or the next."""
     file, _, line = place.partition(": ")[0].rpartition(", line ")
     return (
         any(f"{file}, line {int(line) + more}" in lines for more in (0, 1))
@@ -181,7 +190,7 @@ def _how(factor: float, offset: float, connection: Connection) -> str:
 
 
 def _steps(host: str, subject: Subject, system: System) -> tuple[str, System]:
-    """Steps of components that only another tool's annotation states."""
+    """Component steps that only another tool's annotation states."""
     if not any(True for _ in hints_of_others(subject)):
         return "", system
     plain = {name: replace(part, step_size=None) for name, part in system.components.items()}
@@ -194,7 +203,7 @@ def _steps(host: str, subject: Subject, system: System) -> tuple[str, System]:
 
 
 def _forms(host: str, subject: Subject, system: System) -> tuple[str, System]:
-    """Co-simulation, whatever the system asks for."""
+    """Co-simulation in every case, even where the system asks for model exchange."""
     plain = {name: replace(part, implementation="any") for name, part in system.components.items()}
     other = [f"{name} runs as co-simulation" for name, _ in model_exchange_asked(subject)]
     return _listed("forms are not looked at", other), replace(system, components=plain)

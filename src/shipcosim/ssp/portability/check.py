@@ -1,4 +1,4 @@
-"""Checks of a system for a tool that reads its file itself: what it would ignore, misread, refuse or crash on."""
+"""Checks of a system for a tool that reads its file itself: features it ignores or misreads."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -13,7 +13,7 @@ from shipcosim.ssp.xml.document import Findings, read_document
 
 
 def check_host(host: str) -> None:
-    """Refuse a tool of which nothing is known.
+    """Refuse a tool that is not in the table.
 
     Raises
     ------
@@ -33,7 +33,7 @@ def check_for(
     fmus: Iterable[str | PathLike[str]] = (),
     components: Mapping[str, Path] | None = None,
 ) -> list[Problem]:
-    """What a tool that reads the file itself would ignore, misread, refuse or crash on.
+    """Features of a file that a tool would ignore, misread, refuse or crash on.
 
     Parameters
     ----------
@@ -56,6 +56,7 @@ def check_for(
     ShipcosimError
         If there is no such tool.
     """
+    # OSP files are libcosim's own; ecos does not read them.
     check_host(host)
     osp = osp_file(path)
     if osp is not None and host == "ecos":
@@ -66,6 +67,7 @@ def check_for(
     )
     if subject is None:
         return []
+    # Only features that this tool does not support.
     known = (feature for feature in FEATURES if host in feature.becomes)
     return list(
         dict.fromkeys(problem for feature in known for problem in _problems(host, feature, subject))

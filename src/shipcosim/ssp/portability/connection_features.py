@@ -1,6 +1,6 @@
-"""Where a system has connectors and connections that other tools read differently.
+"""Connectors and connections that other tools read differently.
 
-Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
+Each function takes a Subject and yields (place, description); an empty text: the feature's words.
 """
 
 from math import isclose
@@ -13,6 +13,7 @@ from shipcosim.ssp.xml.document import local
 def reversed_links(subject: Subject) -> Found:
     """A connection written from input to output."""
     if subject.tree is not None:
+        # Compare with the direction in which values flow.
         wires = {(wire.source, wire.target) for wire in subject.tree.wires}
         for link, _, _ in subject.links:
             start = Key((link.start_element or "",), link.start_connector)
@@ -22,6 +23,7 @@ def reversed_links(subject: Subject) -> Found:
 
 def undeclared_connectors(subject: Subject) -> Found:
     """A connector that only the FMU declares."""
+    # Connectors that the SSD declares; others exist in the FMU only.
     declared = {
         (part.name, connector.name)
         for part in subject.elements
@@ -66,6 +68,7 @@ def enumeration_connectors(subject: Subject) -> Found:
 def different_types(subject: Subject) -> Found:
     """A connection between different types."""
     for link, start, end in subject.links:
+        # Types as the FMUs declare them.
         kinds = [
             port.variable.kind
             for port in (start, end)
@@ -87,6 +90,7 @@ def enumeration_connections(subject: Subject) -> Found:
 
 def parameter_connections(subject: Subject) -> Found:
     """A connection into a parameter."""
+    # Connections that act at initialisation only.
     initial = {(c.source, c.target): c for c in subject.system.connections if c.initial}
     for link, _, _ in subject.links:
         ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
@@ -109,7 +113,8 @@ def linear_without_factor(subject: Subject) -> Found:
 
 
 def unit_conversions(subject: Subject) -> Found:
-    """Connections whose whole transformation is another than the one that is written."""
+    """Connections whose whole transformation differs from the written one."""
+    # The flat connection includes unit conversions; the written one does not.
     flat = {(c.source, c.target): c for c in subject.system.connections}
     for link, _, _ in subject.links:
         ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)

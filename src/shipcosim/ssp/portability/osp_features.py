@@ -1,6 +1,6 @@
-"""Where an OspSystemStructure.xml has something that libcosim reads differently.
+"""Features of an OspSystemStructure.xml that libcosim reads differently.
 
-Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
+Each function takes a Subject and yields (place, description); an empty text: the feature's words.
 """
 
 import lxml.etree as etree
@@ -26,6 +26,7 @@ def osp_without_algorithm(subject: Subject) -> Found:
 
 def osp_second_targets(subject: Subject) -> Found:
     """A second connection from the output of a function."""
+    # libcosim makes only the first connection from an output.
     seen = set()
     for part in _osp(subject, "Signal", "SignalGroup"):
         end = part.get("function"), part.get("name")
@@ -35,7 +36,7 @@ def osp_second_targets(subject: Subject) -> Found:
 
 
 def osp_group_files(subject: Subject) -> Found:
-    """Variable groups in a file that has not the model's name."""
+    """Variable groups in a file that does not have the model's name."""
     for name in dict.fromkeys(part.get("simulator") for part in _osp(subject, "VariableGroup")):
         fmu = subject.system.components[name].fmu
         places = [

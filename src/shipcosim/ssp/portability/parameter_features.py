@@ -1,6 +1,6 @@
-"""Where a system has parameter sets and values that other tools read differently.
+"""Parameter sets and values that other tools read differently.
 
-Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
+Each function takes a Subject and yields (place, description); an empty text: the feature's words.
 """
 
 import lxml.etree as etree
@@ -62,6 +62,7 @@ def sets_in_fmus(subject: Subject) -> Found:
 
 def set_units(subject: Subject) -> Found:
     """A value in another unit than the FMU's."""
+    # Only convertible units can change a value.
     for value, variable, fmu in subject.values:
         own = find_unit(variable.unit, fmu.units)
         if (
@@ -102,7 +103,7 @@ def integers_for_reals(subject: Subject) -> Found:
 
 
 def values_of_others(subject: Subject) -> Found:
-    """A value for a variable that is no parameter or input."""
+    """A value for a variable that is not a parameter or input."""
     for value, variable, _ in subject.values:
         if variable.causality not in ("parameter", "input"):
             yield value.place, f"a value for a variable of causality {variable.causality}"

@@ -1,6 +1,6 @@
-"""Where a system has files, nested systems, times and FMUs that other tools read differently.
+"""Files, nested systems, times and FMUs that other tools read differently.
 
-Each function takes a Subject and yields (place, what is there); an empty text stands for the feature's own words.
+Each function takes a Subject and yields (place, description); an empty text: the feature's words.
 """
 
 import re
@@ -23,6 +23,7 @@ DECLARING = re.compile(rb"<[\w.-]+:Algorithm\s[^>]*xmlns")
 
 def prefixes(subject: Subject) -> Found:
     """Other namespace prefixes than the standard's own."""
+    # The prefixes of the standard, by namespace.
     wanted = {uri: prefix for prefix, uri in NAMESPACES.items()}
     for document in subject.documents:
         for part in document.root.iter(etree.Element):
@@ -78,6 +79,7 @@ def system_connections(subject: Subject) -> Found:
 
 def _osp_steps(subject: Subject) -> Iterator[etree._Element]:
     """FixedStepAlgorithm elements that libcosim looks for, whatever their prefixes."""
+    # libcosim looks only into the default experiment, and only at its own type of annotation.
     experiment = child(subject.document.root, "ssd:DefaultExperiment")
     for annotation in (
         () if experiment is None else children(experiment, "ssd:Annotations", "ssc:Annotation")
@@ -109,7 +111,7 @@ def steps(subject: Subject) -> Found:
 
 
 def _stated(subject: Subject) -> Iterator[str]:
-    """Places where a base step is stated, and at last the file's own."""
+    """Places that state a base step, and finally the file itself."""
     for part in elements_of(subject, *STEP_SIZES):
         if part.get(STEP_SIZES[local(part)]) is not None:
             yield subject.document.place(part)
@@ -119,6 +121,7 @@ def _stated(subject: Subject) -> Iterator[str]:
 def osp_annotations(subject: Subject) -> Found:
     """OSP's algorithm with another prefix than osp:, or with the prefix declared on itself."""
     for step in _osp_steps(subject) if subject.package is not None else ():
+        # The prefix must be declared further up, and be exactly osp:.
         algorithm = step.getparent()
         declares = subject.package and DECLARING.search(
             (subject.package.folder / subject.package.ssd).read_bytes()
@@ -170,7 +173,7 @@ def without_co_simulation_1(subject: Subject) -> Found:
 
 
 def model_exchange_asked(subject: Subject) -> Found:
-    """Model exchange asked for of an FMU that offers co-simulation too."""
+    """Model exchange asked for, where the FMU also offers co-simulation."""
     for name, component in subject.system.components.items():
         if (
             component.implementation == "ModelExchange"
@@ -180,8 +183,9 @@ def model_exchange_asked(subject: Subject) -> Found:
 
 
 def same_guids(subject: Subject) -> Found:
-    """Components whose FMU has the GUID of another one with other variables."""
+    """Components whose FMU shares its GUID with another FMU that has other variables."""
     first = defaultdict(list)
+    # libcosim identifies FMUs by GUID: equal GUIDs with other variables are mixed up.
     for name, fmu in subject.fmus:
         others = [other for other in first[fmu.token] if other.path != fmu.path]
         if any(_variables(other) != _variables(fmu) for other in others):

@@ -58,7 +58,7 @@ class Subject:
 
     @property
     def is_ssp(self) -> bool:
-        """Whether it is an SSP rather than an OspSystemStructure.xml."""
+        """True for an SSP, false for an OspSystemStructure.xml."""
         return self.structure is not None
 
     @cached_property
@@ -73,7 +73,7 @@ class Subject:
 
     @cached_property
     def links(self) -> list[tuple[Link, Port | None, Port | None]]:
-        """Connections of the outermost system between its elements, with their ends' ports where they are known."""
+        """Connections between elements of the outermost system, with their ports if known."""
         found = []
         for link in () if self.structure is None else self.structure.system.links:
             if link.start_element and link.end_element:
@@ -101,7 +101,7 @@ class Subject:
         return found
 
     def _file(self, binding: Binding) -> Document | None:
-        """File of a set that is bound by its address in the package."""
+        """File of a set that is bound by an address in the package."""
         source = binding.values
         if self.package is None or not source.uri or source.in_component:
             return None
@@ -110,7 +110,7 @@ class Subject:
 
     @cached_property
     def documents(self) -> list[Document]:
-        """The SSD, and the files of the sets that are bound to its components; none for an OspSystemStructure.xml."""
+        """The SSD and the files of its components' sets; none for an OspSystemStructure.xml."""
         files = [self._file(binding) for part in self.components for binding in part.bindings]
         return (
             [document for document in (self.document, *files) if document is not None]
@@ -120,8 +120,9 @@ class Subject:
 
     @cached_property
     def values(self) -> list[tuple[ParameterValue, Variable, FmuDescription]]:
-        """(value, variable, fmu) of the values that are bound to components by their own names."""
+        """(value, variable, FMU) of values bound to components under their own names."""
         found = []
+        # A mapping renames parameters: these are not the FMU's names.
         for _, fmu, binding, values in self.sets:
             if fmu is None or binding.mapping is not None:
                 continue
@@ -142,7 +143,7 @@ def subject_of(
     fmus: Iterable[str | PathLike[str]] = (),
     components: Mapping[str, Path] | None = None,
 ) -> Subject | None:
-    """Subject of an SSP, or None where it has errors.
+    """Subject of an SSP, or None if it has errors.
 
     Parameters
     ----------
@@ -154,11 +155,13 @@ def subject_of(
     Subject or None
     """
     findings = Findings()
+    # The file as written, then as resolved.
     package = open_package(path, findings, fmus)
     document = None if package is None else package.document(findings)
     structure = None if document is None else read_structure(document, findings)
     if package is None or document is None or structure is None:
         return None
+    # Ports and wires of the hierarchy, then the flat system.
     tree = Hierarchy(findings, swapped=components)
     take_in(tree, structure, package)
     system = assemble_package(package, (), str(path), findings, swapped=components)
@@ -170,7 +173,7 @@ def subject_of(
 
 
 def elements_of(subject: Subject, *tags: str) -> Iterator[etree._Element]:
-    """Elements of an SSD of these local names; none of an OspSystemStructure.xml."""
+    """Elements of an SSD with these local names; none for an OspSystemStructure.xml."""
     if subject.is_ssp:
         yield from (
             part for part in subject.document.root.iter(etree.Element) if local(part) in tags
@@ -178,12 +181,12 @@ def elements_of(subject: Subject, *tags: str) -> Iterator[etree._Element]:
 
 
 def types_of_2(element: etree._Element) -> list[str]:
-    """Types of SSP 2.0 that an element of a connector or value has."""
+    """Types of SSP 2.0 in an element of a connector or value."""
     return [
         local(part) for part in element if local(part) in KINDS and local(part) not in SSP_1_TYPES
     ]
 
 
 def is_fmi_1(fmu: FmuDescription) -> bool:
-    """Whether an FMU is of FMI 1.0."""
+    """True for an FMU of FMI 1.0."""
     return fmu.fmi_version.startswith("1")

@@ -1,7 +1,7 @@
-"""The table of features of a system that tools which read its file themselves do not support as the standard means it.
+"""Table of features that tools which read system files themselves do not support as standardised.
 
-Every entry is what the tool did when it was tried (libcosimpy 0.0.6, ecospy 0.7.2); tests run them again and hold the
-table to it. `shipcosim simulate --engine` is another thing: it gives each engine the system as we read it.
+Every entry is what the tool did when tried (libcosimpy 0.0.6, ecospy 0.7.2); tests run them again
+and compare. `shipcosim simulate --engine` differs: each engine gets the system as we read it.
 """
 
 from collections.abc import Callable, Mapping

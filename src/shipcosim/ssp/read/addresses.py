@@ -1,4 +1,4 @@
-"""Addresses as files of the wild have them: outside the package, with backslashes, absolute, by a proxy of an FMU."""
+"""Non-standard addresses: outside the package, with backslashes, absolute, by a proxy of an FMU."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,7 +13,7 @@ ENDINGS = (".fmu", ".ssv", ".ssm", ".ssb", ".ssd", ".ssp")
 
 
 def path_of(uri: str) -> str | None:
-    """Path that an address of a file means, or None where it means no file of this machine.
+    """Path of a file address, or None if it is no file of this machine.
 
     Examples
     --------
@@ -21,17 +21,19 @@ def path_of(uri: str) -> str | None:
     ('../fmus/hull.fmu', 'resources/hull.fmu', None)
     """
     parts = urlsplit(uri)
+    # A proxy on this machine names a file.
     if parts.scheme == PROXY and (parts.hostname in (None, "localhost", "127.0.0.1")):
         return next(iter(parse_qs(parts.query).get("file", ())), None)
     if parts.scheme == "file":
         return url2pathname(parts.path) or None
+    # Any other scheme needs a network.
     if parts.scheme or parts.netloc:
         return None
     return unquote(uri).replace("\\", "/") or None
 
 
 def meant(uri: str, base: Path, folder: Path, outside: bool) -> Path | None:
-    """The one file that an address can mean which is none of the standard, or None.
+    """The only file that a non-standard address can mean, or None.
 
     Parameters
     ----------
@@ -44,6 +46,7 @@ def meant(uri: str, base: Path, folder: Path, outside: bool) -> Path | None:
     outside : bool
         Whether files outside the package can be meant: it is no archive.
     """
+    # Files outside a package only if it is no archive, and only of kinds that systems refer to.
     text = path_of(uri)
     if text is None:
         return None
@@ -55,7 +58,8 @@ def meant(uri: str, base: Path, folder: Path, outside: bool) -> Path | None:
 
 
 def _candidates(text: str, base: Path, folder: Path, rooted: bool) -> Iterator[Path]:
-    """Files that a path can mean, the likeliest first; a rooted one starts at the package's top."""
+    """Candidate files of a path, the likeliest first; a rooted path starts at the package's top."""
+    # As it stands, from the top of the package, then with other upper and lower case.
     yield (base / text).resolve()
     if rooted:
         yield (folder / text.lstrip("/")).resolve()

@@ -1,4 +1,4 @@
-"""Numbers in attributes of SSP files; one that makes no sense is an error, and read as None."""
+"""Numbers in attributes of SSP files; an invalid one is an error, and read as None."""
 
 from collections.abc import Mapping
 
@@ -17,7 +17,7 @@ def attribute(
     findings: Findings,
     what: str = "",
 ) -> Value | None:
-    """Value of an attribute; None where it is missing or, with an error, makes no sense.
+    """Value of an attribute; None if missing or, with an error, invalid.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def whole_numbers(
 def annotated_number(
     document: Document, owner: etree._Element, names: Mapping[str, str], findings: Findings
 ) -> float | None:
-    """Positive number that an annotation of any tool gives for an element, or None.
+    """Positive number that any tool's annotation gives for an element, or None.
 
     Parameters
     ----------
@@ -88,6 +88,7 @@ def annotated_number(
     findings : Findings
         Takes what is wrong.
     """
+    # The first annotation that gives it counts.
     element, name = next(stated(owner, names), (None, ""))
     if element is None:
         return None

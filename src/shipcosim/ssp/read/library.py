@@ -1,4 +1,4 @@
-"""Files of a system: each is read once, however often the system uses it, and its faults are noted once."""
+"""Files of a system: each is read once, and its faults are reported once."""
 
 from collections.abc import Callable, Hashable, Iterable
 from pathlib import Path
@@ -38,7 +38,7 @@ class InPackage(Protocol):
 
 
 class Library:
-    """Reads the files that a system refers to, and keeps what it has read.
+    """Reads the files that a system refers to, and caches them.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Library:
         return self._kept[key]
 
     def file(self, owner: Addressing, uri: str, place: InPackage) -> Path | None:
-        """File that an element's address means, or None with an error.
+        """File of an element's address, or None with an error.
 
         Parameters
         ----------
@@ -80,6 +80,7 @@ class Library:
         -------
         Path or None
         """
+        # Found files are shared by all owners; a missing one is reported for each owner.
         at = "at", place.package.folder, place.folder, uri
         if self._kept.get(at) is None:  # what is missing is said of each owner, once
             self._kept[at] = self._once((id(owner), uri), lambda: self._located(owner, uri, place))
@@ -108,7 +109,7 @@ class Library:
     def content(
         self, source: Source, place: InPackage, fmu: FmuDescription | None = None
     ) -> Document | None:
-        """Document of a parameter set, mapping or dictionary, inline or in a file, or None with an error.
+        """Document of a set, mapping or dictionary, inline or from a file; None with an error.
 
         Parameters
         ----------
@@ -123,6 +124,7 @@ class Library:
         -------
         Document or None
         """
+        # Inline, inside an FMU, or a file of the package.
         if source.inline is not None or source.uri is None:
             return source.inline
         if source.in_component:
@@ -164,6 +166,8 @@ class Library:
         return self._once(("fmu", file), lambda: self._description(file, package))
 
     def _description(self, file: Path, package: Package) -> FmuDescription | None:
+        # Cached by file and time of change; faulty descriptions are read again, so their faults are
+        # reported.
         key = file, file.stat().st_mtime_ns
         if key not in self._described:
             before = len(self.findings.problems)

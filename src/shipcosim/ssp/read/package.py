@@ -1,4 +1,4 @@
-"""Files of a system: a .ssp (unpacked into a temporary folder), a folder, or a .ssd with the files beside it."""
+"""Files of a system: a .ssp (unpacked temporarily), a folder, or a .ssd with its files."""
 
 import tempfile
 from collections.abc import Iterable
@@ -51,7 +51,7 @@ class Package:
     moved: dict[str, str] = field(default_factory=dict, repr=False, compare=False)
 
     def show(self, path: str | PathLike[str]) -> str:
-        """Name of a file of the package as the user knows it."""
+        """Name of a file of the package for messages."""
         path = Path(path).resolve()
         folder = self.folder.resolve()
         return (
@@ -65,7 +65,7 @@ class Package:
         return self.__dict__ | {"unpacked": None, "held": {}}
 
     def document(self, findings: Findings) -> Document | None:
-        """The SSD, or None where it cannot be read."""
+        """The SSD, or None if it cannot be read."""
         return self.read(self.folder / self.ssd, findings)
 
     def read(self, path: str | PathLike[str], findings: Findings) -> Document | None:
@@ -76,7 +76,7 @@ class Package:
         )
 
     def locate(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
-        """File that a relative address means, or None with an error.
+        """File of a relative address, or None with an error.
 
         Parameters
         ----------
@@ -100,13 +100,16 @@ class Package:
 
     def _located(self, uri: str, base: Path, place: str, findings: Findings) -> Path | None:
         folder = self.folder.resolve()
+        # A standard address is relative and stays within the package.
         parts = urlsplit(uri)
         wild = None
         plain = not (parts.scheme or parts.netloc or uri.startswith("/")) and bool(parts.path)
+        # As percent-encoded text, or with a literal percent sign.
         paths = (
             [(base / name).resolve() for name in (unquote(parts.path), parts.path)] if plain else []
         )
         inside = plain and all(path.is_relative_to(folder) for path in paths)
+        # FMUs may also lie in the searched folders.
         elsewhere = [
             folder / paths[0].name for folder in self.fmus if inside and paths[0].suffix == ".fmu"
         ]
@@ -115,8 +118,10 @@ class Package:
             if inside
             else None
         )
+        # Non-standard addresses are accepted if they can mean one file only.
         if found is None and (wild := meant(uri, base, folder, self.unpacked is None)) is not None:
             return self._taken(uri, wild, place, findings)
+        # Explain what is wrong with the address.
         if not plain:
             remedy = "Addresses are relative to the SSD, e.g. resources/name.fmu."
             findings.error(place, f"'{uri}' is no address within the package.", remedy)
@@ -133,6 +138,7 @@ class Package:
             what = "is a folder, not a file" if is_folder else "does not exist"
             findings.error(place, f"The file '{uri}' {what}.", self._present(paths[0]))
             return None
+        # An edited package may hold the file elsewhere; remember where it belongs.
         held = self.held.get(found)
         if isinstance(held, Path):
             found, name = held, found
@@ -142,15 +148,17 @@ class Package:
         return found
 
     def _taken(self, uri: str, found: Path, place: str, findings: Findings) -> Path | None:
-        """A file that an address means which is none of the standard; it is said, and kept for writing the package."""
+        """Accept the file of a non-standard address: report it, keep it for writing the package."""
         shown = self.show(found)
         findings.flaw(place, f"'{uri}' is no address within the package; {shown} is taken.", INSIDE)
         folder = self.folder.resolve()
+        # A file outside comes into resources/ when the package is written.
         name = (
             found.relative_to(folder).as_posix()
             if found.is_relative_to(folder)
             else f"resources/{found.name}"
         )
+        # Two different files must not get one name.
         if self.located.setdefault(name, found) != found:
             findings.error(
                 place,
@@ -180,7 +188,7 @@ def open_package(
     fmus: Iterable[str | PathLike[str]] = (),
     shown: str | None = None,
 ) -> Package | None:
-    """Package of a path, or None with an error.
+    """Open the package of a path, or None with an error.
 
     Parameters
     ----------
@@ -193,10 +201,12 @@ def open_package(
     shown : str, optional
         Name of the path in messages, where it is another.
     """
+    # A variant's SSD is named after '#'.
     text, _, variant = str(path).partition("#")
     path = Path(text)
     shown = shown or text
     fmus = tuple(Path(folder) for folder in fmus)
+    # A folder, a single SSD, or an archive that is unpacked for as long as the package lives.
     if path.is_dir():
         return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
     if not path.is_file():
@@ -215,6 +225,7 @@ def open_package(
         findings.problems += error.problems
         return None
     package = Package(Path(unpacked.name), shown, variant or SYSTEM_STRUCTURE, fmus, unpacked)
+    # The archive must contain the wanted SSD.
     if not (package.folder / package.ssd).is_file():
         there = [file.name for file in package.folder.glob("*.ssd")]
         findings.error(
@@ -227,7 +238,7 @@ def open_package(
 def read_in_component(
     fmu: FmuDescription, uri: str, place: str, findings: Findings
 ) -> Document | None:
-    """Document inside an FMU (``sourceBase="component"``), or None with an error.
+    """Read a document inside an FMU (``sourceBase="component"``), or None with an error.
 
     Parameters
     ----------

@@ -149,9 +149,9 @@ class DictionaryEntry:
 
 
 def has_root(document: Document, tag: str, findings: Findings) -> bool:
-    """Whether the outermost element of a document is the one of this tag, with an error if not.
+    """Check that the outermost element has this tag, with an error if not.
 
-    What of the document breaks the standard and has only one meaning is put right first, and said.
+    Deviations from the standard with only one possible meaning are corrected first, and reported.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def has_root(document: Document, tag: str, findings: Findings) -> bool:
 
 
 def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
-    """Values of an SSV document.
+    """Read the values of an SSV document.
 
     Parameters
     ----------
@@ -193,16 +193,19 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
     root = document.root
     if not has_root(document, "ssv:ParameterSet", findings):
         return ParameterSet("", (), document.file)
+    # Read values only from a document that keeps its schema.
     before = len(findings.errors)
     validate(root, "ssv", document.file, findings)
     values = {}
     sound = len(findings.errors) == before
+    # Units first: values refer to them.
     units = {}
     with reporting(document, root, findings):
         units = read_units(children(root, "ssv:Units", "ssc:Unit"))
         note_empty_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
     for element in children(root, "ssv:Parameters", "ssv:Parameter") if sound else ():
         value = _parameter(document, element, units, findings)
+        # The same parameter twice: equal values are a flaw, different ones an error.
         if value is not None and value.name in values:
             first = values[value.name]
             line = first.place.rpartition(", line ")[2].partition(":")[0]
@@ -231,6 +234,7 @@ def _parameter(
             "A parameter needs a name and one element with type and value.",
         )
         return None
+    # Arrays of SSP 2.0 have their sizes as elements.
     kind = KINDS[local(typed)]
     try:
         sizes = tuple(
@@ -255,13 +259,13 @@ def _parameter(
 
 
 def _values(kind: str, typed: etree._Element) -> tuple[Value, ...]:
-    """Values of an array: a list in one attribute, or elements of their own for what may hold blanks."""
+    """Values of an array: a list in one attribute, or an element each where blanks may occur."""
     listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
     return tuple(read_value(kind, text) for text in listed or typed.get("value", "").split())
 
 
 def _text(typed: etree._Element) -> str:
-    """Text of a single value, which may stand in an element of its own in SSP 2.0."""
+    """Text of a single value, which SSP 2.0 allows in an element of its own."""
     listed = [part.get("value") or part.text or "" for part in typed if local(part) == "Value"]
     return listed[0] if len(listed) == 1 and typed.get("value") is None else typed.get("value", "")
 
@@ -275,7 +279,7 @@ def tolerance_of(element: etree._Element) -> float | None:
 
 
 def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, ...]:
-    """Entries of a parameter mapping (SSM).
+    """Read the entries of a parameter mapping (SSM).
 
     Parameters
     ----------
@@ -290,6 +294,7 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
     """
     if not has_root(document, "ssm:ParameterMapping", findings):
         return ()
+    # Read entries only from a document that keeps its schema.
     before = len(findings.errors)
     validate(document.root, "ssm", document.file, findings)
     entries = {}
@@ -299,6 +304,7 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
         source = element.get("source", "")
         target = element.get("target", "")
         place = document.place(element, f"{source} -> {target}")
+        # A parameter takes one value only.
         suppressed = is_true(element.get("suppressUnitConversion"))
         if target in entries:
             findings.error(
@@ -315,7 +321,7 @@ def read_mapping(document: Document, findings: Findings) -> tuple[MappingEntry, 
 def read_transformation(
     document: Document, element: etree._Element, findings: Findings
 ) -> Transformation | None:
-    """Transformation that a connection or a mapping entry contains, or None.
+    """Transformation of a connection or mapping entry, or None.
 
     Parameters
     ----------
@@ -331,6 +337,7 @@ def read_transformation(
     Transformation or None
     """
     for part in element:
+        # Missing numbers are factor 1 and offset 0.
         if local(part) == "LinearTransformation":
             numbers = [
                 _attribute_of(document, part, name, "Real", findings)
@@ -348,6 +355,7 @@ def _table(
     document: Document, element: etree._Element, kind: str, findings: Findings
 ) -> Transformation:
     table = {}
+    # Each value is mapped once.
     for entry in children(element, "ssc:MapEntry"):
         source, target = (
             _attribute_of(document, entry, name, kind, findings) for name in ("source", "target")
@@ -371,7 +379,7 @@ def _attribute_of(
 
 
 def read_dictionary(document: Document, findings: Findings) -> dict[str, DictionaryEntry]:
-    """Entries of a signal dictionary (SSB) by name.
+    """Read the entries of a signal dictionary (SSB) by name.
 
     Parameters
     ----------
@@ -391,12 +399,14 @@ def read_dictionary(document: Document, findings: Findings) -> dict[str, Diction
     validate(root, "ssb", document.file, findings)
     if len(findings.errors) > before:
         return {}
+    # Units and enumerations first: entries refer to them.
     units = {}
     enumerations = {}
     with reporting(document, root, findings):
         units = read_units(children(root, "ssb:Units", "ssc:Unit"))
         enumerations = read_enumerations(children(root, "ssb:Enumerations", "ssc:Enumeration"))
     entries = {}
+    # Names must differ; entries without a type are left out.
     for element in children(root, "ssb:DictionaryEntry"):
         typed = next((part for part in element if local(part) in KINDS), None)
         if element.get("name") in entries:

@@ -1,4 +1,4 @@
-"""The SSD as it is written: systems, elements, connectors, connections and bindings, nothing resolved.
+"""The SSD as written: systems, elements, connectors, connections and bindings, unresolved.
 
 Reference: System Structure and Parameterization 1.0, section 5; type names of 2.0 are understood too.
 """
@@ -65,7 +65,7 @@ class Connector:
 
 @dataclass(frozen=True)
 class Link:
-    """A Connection element: it joins two connectors; which way values go follows from their kinds.
+    """A Connection element between two connectors; their kinds give the direction.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Source:
-    """A parameter set, mapping or dictionary as an SSD gives it: inline or by address.
+    """A parameter set, mapping or dictionary in an SSD: inline or by address.
 
     Parameters
     ----------
@@ -225,5 +225,5 @@ class Structure:
 
 
 def signal(element: str | None, connector: str) -> str:
-    """Name of a connector as users write it: ``component.connector``, or the connector alone on the system itself."""
+    """Name of a connector for users: ``component.connector``; on the system its name alone."""
     return connector if element is None else f"{element}.{connector}"

@@ -39,7 +39,7 @@ from shipcosim.units import find_unit
 
 
 def read_structure(document: Document, findings: Findings) -> Structure | None:
-    """Structure of an SSD document, or None where it breaks the schema.
+    """Structure of an SSD document, or None if it breaks the schema.
 
     Parameters
     ----------
@@ -50,6 +50,7 @@ def read_structure(document: Document, findings: Findings) -> Structure | None:
     """
     if not has_root(document, "ssd:SystemStructureDescription", findings):
         return None
+    # A missing system is reported once, by the schema or here.
     root = document.root
     before = len(findings.errors)
     validate(root, "ssd", document.file, findings)
@@ -60,6 +61,7 @@ def read_structure(document: Document, findings: Findings) -> Structure | None:
                 document.place(root), "There is no System in it.", "Add <System name=...>."
             )
         return None
+    # The outermost system contains all others.
     reader = _Reader(document, findings)
     structure = Structure(
         name=root.get("name", ""),
@@ -70,20 +72,23 @@ def read_structure(document: Document, findings: Findings) -> Structure | None:
         enumerations=reader.enumerations,
         document=document,
     )
+    # Algorithms and steps in annotations that are not used deserve a remark.
     remark_ignored(document, findings)
     return structure
 
 
 class _Reader:
-    """Reads the elements of one document, with its units and enumerations at hand."""
+    """Reads the elements of one document, with its units and enumerations."""
 
     def __init__(self, document: Document, findings: Findings):
         self.document = document
         self.findings = findings
         self.units = {}
         self.enumerations = {}
+        # The schema checks kinds of connectors in version 1 only.
         self.validated = not document.root.get("version", "").startswith("2.")
         root = document.root
+        # Units and enumerations first: connectors refer to them.
         with reporting(document, root, findings):
             self.units = read_units(children(root, "ssd:Units", "ssc:Unit"))
             note_empty_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
@@ -100,12 +105,14 @@ class _Reader:
             "SignalDictionaryReference": self.reference,
             "System": self.system,
         }
+        # Components, dictionary references and nested systems, in the order of the file.
         parts = child(element, "ssd:Elements")
         elements = (
             []
             if parts is None
             else [readers[local(part)](part) for part in parts if local(part) in readers]
         )
+        # Names are unique within a system.
         name = element.get("name", "")
         self.distinct(elements, "element", name)
         return SystemElement(
@@ -155,6 +162,7 @@ class _Reader:
         return tuple(found)
 
     def connector(self, element: etree._Element, owner: str) -> Connector:
+        # The type is an element; without one the SSD leaves it open.
         typed = next((part for part in element if local(part) in KINDS), None)
         name = element.get("name", "")
         kind = element.get("kind", "")
@@ -184,6 +192,7 @@ class _Reader:
         if typed is None or local(typed) != "Enumeration":
             return {}
         name = typed.get("name", "")
+        # A similar name is a typing error; otherwise the FMU's items are used.
         if name not in self.enumerations:
             what = (
                 f"The enumeration '{name}' is not defined in this file."
@@ -207,6 +216,7 @@ class _Reader:
             seen.add(one.name)
 
     def link(self, element: etree._Element) -> Link:
+        # Both ends, with the element or without one for the system itself.
         ends = [
             element.get(key)
             for key in ("startElement", "startConnector", "endElement", "endConnector")
@@ -239,6 +249,7 @@ class _Reader:
         )
 
     def source(self, element: etree._Element, container: etree._Element | None, tag: str) -> Source:
+        # Exactly one of source and inline content.
         inline = None if container is None else child(container, tag)
         place = self.place(element, local(element))
         if element.get("source") and inline is not None:
@@ -260,6 +271,7 @@ class _Reader:
         element = child(self.document.root, "ssd:DefaultExperiment")
         if element is None:
             return Experiment()
+        # A run needs a stop after its start.
         start, stop = (
             attribute(self.document, element, name, "Real", self.findings)
             for name in ("startTime", "stopTime")

@@ -1,7 +1,7 @@
-"""Annotations of other tools: step sizes, which are used, and algorithms, which are reported as not used.
+"""Annotations of other tools: step sizes, which are used, and algorithms, which are reported.
 
-The standard leaves step size and algorithm to the tools. Known are those of OSP (libcosim), ecos and Vico, and
-OMSimulator; elements are found by their names in any namespace, since ecos and older versions of OSP use their own.
+The standard leaves step size and algorithm to the tools. Those of OSP (libcosim), ecos, Vico and
+OMSimulator are known; elements match in any namespace, since ecos and older OSP use their own.
 """
 
 import re
@@ -37,7 +37,7 @@ def step_sizes(root: etree._Element) -> Iterator[tuple[etree._Element, str]]:
 def stated(
     owner: etree._Element | None, names: Mapping[str, str]
 ) -> Iterator[tuple[etree._Element, str]]:
-    """Elements and attributes in an element's own annotations that give a number under one of these names."""
+    """Elements and attributes in an element's annotations that give a number under such a name."""
     for annotation in () if owner is None else children(owner, "ssd:Annotations", "ssc:Annotation"):
         for part in annotation.iter("{*}*"):
             attribute = names.get(local(part))
@@ -46,7 +46,7 @@ def stated(
 
 
 def remark_ignored(document: Document, findings: Findings) -> None:
-    """Add a remark on each algorithm, step size and connection that annotations of an SSD ask for and do not get.
+    """Remark each algorithm, step size and connection in annotations that is not used.
 
     Parameters
     ----------
@@ -55,9 +55,12 @@ def remark_ignored(document: Document, findings: Findings) -> None:
     findings : Findings
         Takes what is wrong.
     """
+    # The first stated base step and each component's own step are used.
     honoured = [part for part, _ in list(step_sizes(document.root))[:1]]
     for component in document.root.iter(qualified("ssd:Component")):
         honoured += [part for part, _ in list(stated(component, STEP_SIZE_HINTS))[:1]]
+    # Everything else that asks for an algorithm or a step is reported, unless it repeats the base
+    # step.
     for annotation in document.root.iter(qualified("ssc:Annotation")):
         for part in annotation.iter("{*}*"):
             if _asks(part) and part not in honoured and not _repeats(part, honoured[:1]):
@@ -65,13 +68,13 @@ def remark_ignored(document: Document, findings: Findings) -> None:
 
 
 def _asks(part: etree._Element) -> bool:
-    """Whether an element asks for an algorithm or a step itself, rather than through one in it."""
+    """True if the element itself asks for an algorithm or a step, not one inside it."""
     within = [inner for inner in part.iterdescendants("{*}*") if ASKS.search(local(inner))]
     return bool(ASKS.search(local(part))) and not within
 
 
 def _repeats(part: etree._Element, honoured: list[etree._Element]) -> bool:
-    """Whether an element states the step size that holds anyway."""
+    """True if an element states the step size that applies anyway."""
     sizes = [one.get(STEP_SIZES.get(local(one), "stepSize")) for one in (part, *honoured)]
     return len(sizes) == 2 and sizes[0] is not None and sizes[0] == sizes[1]
 
@@ -80,6 +83,7 @@ def _remark(
     part: etree._Element, annotation: etree._Element, document: Document, findings: Findings
 ) -> None:
     owner = parent_of(parent_of(annotation))
+    # Tell which element asks for what, with its number or description.
     numbers = STEP_SIZES | STEP_SIZE_HINTS
     attribute = (
         "description" if part.get("description") else numbers.get(local(part), "description")

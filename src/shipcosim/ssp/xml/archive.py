@@ -1,4 +1,4 @@
-"""Archives (.ssp, .fmu) unpacked within limits and packed to the same bytes every time."""
+"""Archives (.ssp, .fmu): unpacked within limits, and packed to the same bytes every time."""
 
 import os
 import stat
@@ -36,7 +36,7 @@ CANNOT = (
 def unpack(
     path: str | PathLike[str], folder: str | PathLike[str], shown: str | None = None
 ) -> None:
-    """Unpack an archive into a folder, nothing outside it and nothing beyond the limits.
+    """Unpack an archive into a folder, within the limits and not outside the folder.
 
     Parameters
     ----------
@@ -53,6 +53,7 @@ def unpack(
         If the archive is damaged, too large, has an entry that would land outside the folder, or finds no room there.
     """
     shown = shown or str(path)
+    # Check all entries before the first one is written.
     with _opened(path, shown) as archive:
         _check(archive, shown)
         try:
@@ -68,7 +69,7 @@ def unpack(
 
 
 def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
-    """Names of an archive's files, without unpacking it.
+    """Names of an archive's files, read without unpacking.
 
     Raises
     ------
@@ -84,7 +85,7 @@ def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
 def read_entry(
     path: str | PathLike[str], name: str, limit: int, shown: str | None = None
 ) -> bytes | None:
-    """Bytes of one file of an archive, or None where the archive has no such file.
+    """Bytes of one file of an archive, or None if it is missing.
 
     Parameters
     ----------
@@ -110,6 +111,7 @@ def read_entry(
     with _opened(path, shown) as archive:
         if name not in archive.namelist():
             return None
+        # The stated size first: a large file is never read.
         if archive.getinfo(name).file_size > limit:
             raise ShipcosimError(Problem(shown, f"{name} is larger than {limit >> 20} MiB."))
         try:
@@ -125,6 +127,7 @@ def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
         raise _damaged(shown, error) from None
     except OSError as error:
         raise ShipcosimError(Problem(shown, f"Cannot be read: {error.strerror}.")) from None
+    # The first entry must start at 0: otherwise this is the tail of another archive.
     if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:
         archive.close()  # cut off within an archive that it contains, whose directory was taken for its own
         raise _damaged(shown, "its start belongs to no entry")
@@ -140,6 +143,7 @@ def _damaged(shown: str, error: object) -> ShipcosimError:
 
 
 def _check(archive: zipfile.ZipFile, shown: str) -> None:
+    # Entries outside the folder, too many, too large, or with absurd compression.
     listed = archive.infolist()
     problems = [Problem(shown, found) for entry in listed if (found := _unsafe(entry))]
     total = sum(e.file_size for e in listed)
@@ -166,6 +170,7 @@ def _check(archive: zipfile.ZipFile, shown: str) -> None:
                 shown, f"It unpacks to {total // max(packed, 1)} times its size; this is no model."
             )
         )
+    # Two entries of one name: which one counts would depend on the tool.
     counts = Counter(entry.filename for entry in listed)
     problems += [
         Problem(shown, f"{n} entries are named '{name}'.") for name, n in counts.items() if n > 1
@@ -175,7 +180,8 @@ def _check(archive: zipfile.ZipFile, shown: str) -> None:
 
 
 def _unsafe(entry: zipfile.ZipInfo) -> str | None:
-    """Sentence on what makes an entry unsafe, or None."""
+    """Reason why an entry is unsafe, or None."""
+    # Paths out of the folder, links and encrypted entries are refused.
     name = PurePosixPath(entry.orig_filename.replace("\\", "/"))
     if (
         name.is_absolute()
@@ -194,7 +200,7 @@ def _unsafe(entry: zipfile.ZipInfo) -> str | None:
 
 
 def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None:
-    """Write an archive whose bytes depend on names and contents alone; complete or not at all.
+    """Write an archive whose bytes depend only on names and contents; complete or not at all.
 
     Parameters
     ----------
@@ -211,12 +217,14 @@ def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None
     path = Path(path)
     partial = path.with_name(path.name + ".part")
     try:
+        # Fixed order, date and attributes: the same files give the same bytes.
         path.parent.mkdir(parents=True, exist_ok=True)
         with zipfile.ZipFile(partial, "w") as archive:
             for name in sorted(files):
                 entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
                 entry.create_system = 3
                 entry.external_attr = 0o644 << 16
+                # FMUs and SSPs are compressed already.
                 entry.compress_type = (
                     zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
                 )

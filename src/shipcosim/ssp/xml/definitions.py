@@ -1,4 +1,4 @@
-"""Units and enumerations that a file of SSP or FMI defines: read, and added to it."""
+"""Units and enumerations that an SSP or FMI file defines: reading and adding."""
 
 from collections.abc import Iterable, Mapping
 
@@ -11,9 +11,10 @@ from shipcosim.units import BASE_UNITS, Unit, relation, spelled_unit
 
 
 def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
-    """Units by name from Unit elements of an SSP file or model description; those without a base unit are left out.
+    """Units by name from Unit elements; those without a base unit are left out.
 
-    A base unit that says nothing is none, where the unit's common spelling says more: some tools write it everywhere.
+    An empty base unit is ignored if the unit's common spelling has a dimension: some tools write it
+    everywhere.
 
     Raises
     ------
@@ -22,6 +23,7 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
     """
     units = {}
     for element in elements:
+        # Exponents of the SI base units, with factor and offset.
         base = next((part for part in element if local(part) == "BaseUnit"), None)
         if (
             base is not None
@@ -35,7 +37,7 @@ def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
 
 
 def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
-    """Whether a unit's base unit is empty although its name commonly means something that has a dimension."""
+    """True if the base unit is empty although the unit's name commonly has a dimension."""
     known = spelled_unit(element.get("name", ""))
     return not base.attrib and known is not None and any(known.exponents or ())
 
@@ -43,7 +45,7 @@ def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
 def note_empty_units(
     document: Document, elements: Iterable[etree._Element], findings: Findings
 ) -> None:
-    """Note as flaws the units whose base unit says nothing and that are therefore taken by their common spelling."""
+    """Report as flaws the units with an empty base unit, which get their common meaning."""
     for element in elements:
         for base in (part for part in element if local(part) == "BaseUnit"):
             if _says_nothing(element, base):
@@ -71,7 +73,7 @@ def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str,
 
 
 def define_unit(root: etree._Element, tag: str, unit: Unit) -> bool:
-    """Define a unit in a file, if it is not; false where its name means another unit there.
+    """Define a unit in a file if it is missing; false if its name means another unit there.
 
     Parameters
     ----------
@@ -83,6 +85,7 @@ def define_unit(root: etree._Element, tag: str, unit: Unit) -> bool:
         One that is defined nowhere stays so.
     """
     defined = read_units(children(root, tag, "ssc:Unit"))
+    # An existing definition must mean the same unit.
     if unit.name in defined:
         return relation(unit, defined[unit.name]) in ("same", "unknown")
     if unit.exponents is not None:
@@ -92,7 +95,7 @@ def define_unit(root: etree._Element, tag: str, unit: Unit) -> bool:
 
 
 def define_enumeration(root: etree._Element, name: str, items: Mapping[str, int]) -> str:
-    """Name of an enumeration with these items in an SSD, which gets one if it has none.
+    """Name of an enumeration with these items in an SSD; one is added if it is missing.
 
     Parameters
     ----------
@@ -104,6 +107,7 @@ def define_enumeration(root: etree._Element, name: str, items: Mapping[str, int]
         Values by the items' names.
     """
     defined = read_enumerations(children(root, "ssd:Enumerations", "ssc:Enumeration"))
+    # The same items serve under any name.
     for known, its in defined.items():
         if its == dict(items):
             return known
