@@ -92,7 +92,7 @@ def capability_of(vessel: Vessel, groups: Iterable[Sequence[str]] = ()) -> Capab
 def level_1_share(
     hull: Hull, working: Sequence[Thruster], failed: Sequence[Thruster], condition: Condition
 ) -> NDArray:
-    """Share of the load of a condition that is balanced at most, by the formulae of Level 1.
+    """Largest balanced share of a condition's load, by the formulae of Level 1.
 
     Parameters
     ----------

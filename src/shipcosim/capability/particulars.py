@@ -1,4 +1,4 @@
-"""What DNV-ST-0111 Level 1 asks of a ship beyond her parameter set: files `capability*.toml` in her folder."""
+"""Particulars that DNV-ST-0111 Level 1 needs beyond the parameter set: `capability*.toml`."""
 
 from dataclasses import dataclass
 
@@ -43,7 +43,7 @@ class Hull(HullParticulars):
 
 @dataclass(frozen=True, kw_only=True)
 class ThrusterParticulars:
-    """What counts of a thruster, `capability-NAME.toml`; position and power stand in the parameter set."""
+    """Particulars of a thruster, `capability-NAME.toml`; position and power are parameters."""
 
     shaft_height: float = required("m", "propeller's shaft above the base line")
     diameter: float = quantity(

@@ -36,7 +36,7 @@ class Case:
     failed: tuple[str, ...]
 
     def split(self, thrusters: Iterable[Thruster]) -> tuple[list[Thruster], list[Thruster]]:
-        """Those that work, and those that do not."""
+        """Split thrusters into those that work and those that do not."""
         listed = list(thrusters)
         return [t for t in listed if t.name not in self.failed], [
             t for t in listed if t.name in self.failed
@@ -45,7 +45,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Capability:
-    """Static capability of a ship.
+    """Static DP capability of a ship.
 
     Attributes
     ----------

@@ -33,7 +33,7 @@ _THRUSTER = {"x", "power_max", "thrust_min", "thrust_max"}
 
 @dataclass(frozen=True)
 class Limits:
-    """What a thruster of the simulator may be asked for. [N]"""
+    """Thrust limits of a thruster of the simulator. [N]"""
 
     ahead: float
     astern: float

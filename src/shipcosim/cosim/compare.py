@@ -91,7 +91,7 @@ class Comparison:
 
     @property
     def agree(self) -> bool:
-        """Whether all engines that started agree on every signal."""
+        """True if all engines that started agree on every signal."""
         return not self.failed and all(signal.worst <= self.tolerance for signal in self.signals)
 
 

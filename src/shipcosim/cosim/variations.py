@@ -37,7 +37,7 @@ Reduce = Callable[["xarray.Dataset"], Any]
 
 @dataclass(frozen=True)
 class Variation:
-    """What one run has of its own.
+    """The values and scenario of one run.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Variation:
 
 @dataclass
 class Done:
-    """What is kept of one run.
+    """The result of one run.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ SUFFIX = ".dll" if sys.platform == "win32" else ".dylib" if sys.platform == "dar
 
 
 def is_installed() -> bool:
-    """Whether there is a compiler."""
+    """True if a compiler is installed."""
     return importlib.util.find_spec("ziglang") is not None
 
 

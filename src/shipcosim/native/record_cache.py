@@ -49,7 +49,7 @@ class KeptCall(NamedTuple):
 
 @dataclass(frozen=True)
 class Record:
-    """What belongs to a compiled step.
+    """The record of a compiled step.
 
     Parameters
     ----------

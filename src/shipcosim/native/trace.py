@@ -26,7 +26,7 @@ STANDS = (
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """What is a number in a component.
+    """Numbers and structure of a component.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """What one step does to the memory: numbers, time at the start of the step, step size.
+    """Effect of one step on the memory: numbers, time at the start of the step, step size.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ MOST_SHAPES = 200
 
 @lru_cache(maxsize=200)
 def _structure_of(cls):
-    """Names of parameters that are whole numbers, of what belongs to the structure, of dataclasses of parameters."""
+    """Names of the integer parameters, the structural variables and the parameter groups."""
     parameters = [variable for variable in cls.variables if variable.causality == "parameter"]
     # Texts and flags are structure. Integers are numbers that may become part of the code.
     whole = frozenset(variable.name for variable in parameters if variable.type == "Integer")

@@ -21,13 +21,13 @@ FEWEST = 4
 
 
 def has_indices(plan: Plan) -> bool:
-    """Whether the samples of a plan are those of Sobol indices."""
+    """True if the samples of a plan are for Sobol indices."""
     sample = plan.study.sample
     return plan.samples is not None and sample is not None and sample.method == "saltelli"
 
 
 def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, list[str]]:
-    """Sobol indices of each quantity to each sampled parameter, the largest first.
+    """Sobol indices of each quantity for each sampled parameter, the largest first.
 
     A failed run, or one in which the quantity has no value, takes its block with it: without one of its runs the
     others of a block say nothing.

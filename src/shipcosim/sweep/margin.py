@@ -69,7 +69,7 @@ def margin_of(quantity: Quantity, system: System) -> Margin:
 
 
 def complaint_of_margin(study: Study, number: int, system: System) -> Problem | None:
-    """What is wrong with the component of a margin."""
+    """Problem of the component of a margin."""
     name = study.quantity[number].component
     # A controller is recognised by its parameters, not by its name.
     having = [

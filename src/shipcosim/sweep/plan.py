@@ -33,7 +33,7 @@ Swapped = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """A run: what it has of its own over what all have in common.
+    """A run: what differs from the part that all runs share.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class PlannedRun:
 
 @dataclass(frozen=True)
 class ColumnOf:
-    """What a column of the tables is."""
+    """Description of a column of the tables."""
 
     name: str
     role: str

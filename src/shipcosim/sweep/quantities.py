@@ -62,12 +62,12 @@ class Measure:
 
     @property
     def is_truth(self) -> bool:
-        """Whether it is true or false."""
+        """True if the quantity is a verdict."""
         return not self.reduce and self.margin is None
 
     @property
     def may_never_be(self) -> bool:
-        """Whether NaN says that a run never gets there, which is later than any time."""
+        """True if NaN means never, which counts as later than any time."""
         return self.reduce == "time_beyond"
 
     def of(self, table: xarray.Dataset) -> float | bool:

@@ -22,7 +22,7 @@ LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title
 
 @dataclass
 class Source:
-    """What a study was read from.
+    """Source of a study: content, files, origins.
 
     Parameters
     ----------

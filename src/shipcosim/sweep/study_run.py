@@ -28,7 +28,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Swept:
-    """What there is of a study after its runs.
+    """The results of a study after its runs.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def run_study(
 def _further(
     plan: Plan, runs: pandas.DataFrame, search: Search | None
 ) -> tuple[dict[str, pandas.DataFrame], list[str]]:
-    """Tables beside the summary, and what must be known of them."""
+    """Tables in addition to the summary, and remarks on them."""
     if search is not None:
         return {"trials": search.table(runs)}, []
     if not has_indices(plan):

@@ -31,7 +31,7 @@ MOST_SYSTEMS = 4
 
 @dataclass(frozen=True)
 class Row:
-    """What is kept of a run.
+    """The result of a run.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Job:
 
 @dataclass(frozen=True)
 class PackedJob:
-    """A job as bytes, with their hash, by which a worker knows that it has it."""
+    """A job as bytes with their hash, by which workers recognise it."""
 
     digest: str
     content: bytes = field(repr=False)

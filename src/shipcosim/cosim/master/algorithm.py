@@ -281,7 +281,7 @@ def _transferred(connection, *arguments):
 
 @contextmanager
 def _failing(component, when):
-    """Turn what a slave says into a Failure of its component."""
+    """Turn an error of a slave into a Failure of its component."""
     try:
         yield
     except SlaveError as error:

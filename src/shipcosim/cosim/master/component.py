@@ -14,7 +14,7 @@ from shipcosim.ssp import Variable
 
 @dataclass
 class DiscreteSetter:
-    """Prepared call that sets inputs of a type other than Real, which is made only when a value has changed.
+    """Prepared call that sets inputs other than Real, only when a value has changed.
 
     Parameters
     ----------

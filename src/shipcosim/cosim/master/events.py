@@ -58,7 +58,7 @@ def changes(scenario: Scenario, plan: Plan, grid: TimeGrid) -> Iterator[SignalCh
 def event_actions(
     scenario: Scenario, plan: Plan, exchanges: Mapping[str, Exchange], grid: TimeGrid
 ) -> dict[int, list[Callable[[], None]]]:
-    """Calls that events on components' variables make, by the number of the step before which they are due."""
+    """Calls of the events on components' variables, by the step before which they are due."""
     actions = defaultdict(list)
     for change in changes(scenario, plan, grid):
         # Events on the system's own inputs are part of the external values, see `external_values`.
@@ -129,7 +129,7 @@ def external_values(
 def modifiers_after(
     scenario: Scenario, plan: Plan, grid: TimeGrid, active: Mapping[str, Modifier]
 ) -> dict[str, Modifier]:
-    """Overrides and biases of the system's inputs that act just before the events at the end of a time grid.
+    """Overrides and biases of the system's inputs, just before the events at the grid's end.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ def _is_inner(connection: Connection, plan: Plan) -> bool:
 def exchanged_at_steps(
     plan: Plan, inner: Sequence[Connection], how: str, step_size: float
 ) -> list[str]:
-    """What is to be known of components in model exchange that are wired together and not integrated as one system.
+    """Remarks on model-exchange components that are connected but not integrated as one system.
 
     Parameters
     ----------

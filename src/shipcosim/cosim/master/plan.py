@@ -67,7 +67,7 @@ class Layout:
 
 @dataclass(frozen=True)
 class Plan:
-    """What a run will do.
+    """The plan of a run.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ Modifier = tuple[float, float]
 
 @dataclass(frozen=True)
 class InputConnection:
-    """What feeds an input: ``factor * source + offset``, passed on at every multiple of `period` base steps.
+    """The source of an input: ``factor * source + offset``, at multiples of `period` base steps.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ class RemoteSlave(Slave):
 
     @property
     def messages(self) -> list[tuple[int, str]]:
-        """What it logged: (status, text)."""
+        """Logged messages: (status, text)."""
         return self._process.messages
 
     def setter(

@@ -76,7 +76,7 @@ class LibrarySlave(Slave):
 
     @property
     def messages(self) -> list[tuple[int, str]]:
-        """What the FMU logged beyond status "ok": (status, text)."""
+        """Messages of the FMU beyond status "ok": (status, text)."""
         return self._messages
 
     def call(self, function: str, *arguments: Any) -> None:

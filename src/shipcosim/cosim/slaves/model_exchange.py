@@ -175,7 +175,7 @@ class ModelExchange(LibrarySlave):
 
     @property
     def has_indicators(self) -> bool:
-        """Whether it has event indicators; known from the end of the initialisation on."""
+        """True if it has event indicators; known from the end of the initialisation on."""
         return self._n_indicators > 0
 
     @property

@@ -42,7 +42,7 @@ class Slave:
 
     @property
     def messages(self) -> list[tuple[int, str]]:
-        """What the FMU logged beyond status "ok": (status, text)."""
+        """Messages of the FMU beyond status "ok": (status, text)."""
         raise NotImplementedError
 
     def remarks(self) -> list[str]:

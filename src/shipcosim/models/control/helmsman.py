@@ -155,7 +155,7 @@ class Mind(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What he sees.
+    """The view from the bridge: measured motion and wind.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ class Seen(NamedTuple):
 
 @dataclass(frozen=True)
 class Helmsman:
-    """A helmsman.
+    """A helmsman: his model of the ship, the fairway, and his manner.
 
     Parameters
     ----------

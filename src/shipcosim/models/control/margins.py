@@ -275,7 +275,7 @@ def wave_suppression(
 
 
 def is_stable(loop: OpenLoop) -> bool:
-    """Whether the closed loop is stable.
+    """True if the closed loop is stable.
 
     Parameters
     ----------

@@ -189,7 +189,7 @@ class ObserverConstants(NamedTuple):
 
 @kept(8)
 def design(ship: DpShip, parameters: ObserverParameters) -> ObserverConstants:
-    """Gains, wave models and inverse of the mass matrix for a ship.
+    """Gains, wave models and inverse mass matrix for a ship.
 
     Parameters
     ----------

@@ -239,7 +239,7 @@ def step(
 def faded(
     state: PositionVote, dt: float, *, parameters: PositionVotingParameters
 ) -> tuple[PositionVote, Arithmetic, Arithmetic]:
-    """State with the shift of some time later, and how far that moves the estimate.
+    """State with the shift faded over some time, and the movement of the estimate by it.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from shipcosim.models.core.parameters import quantity, required
 
 @dataclass(frozen=True, kw_only=True)
 class ReferenceParameters:
-    """How quickly the reference follows its setpoint."""
+    """Speed with which the reference follows its setpoint."""
 
     position_frequency: float = required(
         "rad/s", "natural frequency of the position reference", minimum=1e-4

@@ -230,7 +230,7 @@ def measurement(state: VotingState) -> Measurement:
 def dead_reckoning_time(
     t: float, state: VotingState, *, parameters: VotingParameters
 ) -> Arithmetic:
-    """Time since the last trusted position while the controller rides on its model, else 0.
+    """Time since the last trusted position while the controller uses its model, else 0.
 
     Parameters
     ----------

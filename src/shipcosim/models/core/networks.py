@@ -30,7 +30,7 @@ class Layer(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What an LSTM layer keeps from sample to sample.
+    """State of an LSTM layer between samples.
 
     Parameters
     ----------

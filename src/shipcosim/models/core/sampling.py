@@ -130,7 +130,7 @@ def _block(purpose, seed, block, width):
 
 @lru_cache(maxsize=2)
 def _blocks(purpose, seeds, block, width):
-    """(256, width, m) array: the block of every seed."""
+    """(256, width, m) array: the block of each seed."""
     return np.stack(
         [generator(purpose, seed, block).standard_normal((_BLOCK, width)) for seed in seeds],
         axis=-1,

@@ -13,7 +13,7 @@ from shipcosim.models.environment.gusts import gust
 
 @dataclass(frozen=True)
 class EnvironmentParameters:
-    """How fast the weather changes, its gusts, its sea."""
+    """Rates of change of the weather, its gusts and its sea."""
 
     wind_speed_rate: float = quantity(
         0.5,

@@ -38,7 +38,7 @@ class WindParameters:
 
     @cached_property
     def turned(self):
-        """Whether the wind comes from elsewhere than given."""
+        """True if the wind comes from another direction than given."""
         return acts(self.apparent_wind_offset)
 
 

@@ -41,7 +41,7 @@ NEAR = 20.0
 
 
 class Own(NamedTuple):
-    """What the predictor has of its own record.
+    """State that the predictor keeps of the ship's own record.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Own(NamedTuple):
 
 
 class Trained(NamedTuple):
-    """What training gives.
+    """Trained weights and scaling.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ class Trained(NamedTuple):
 
 
 def trained_of(arrays: Mapping[str, np.ndarray]) -> Trained:
-    """What training gives, from its arrays.
+    """Trained weights and scaling, from arrays.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ def follow(
 
 
 def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> np.ndarray:
-    """Inputs of the ensemble, all in the ship's axes.
+    """Inputs of the ensemble, in the ship's axes.
 
     Parameters
     ----------
@@ -412,7 +412,7 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
 def regions(
     widths: np.ndarray, errors: tuple[Arithmetic, Arithmetic]
 ) -> tuple[list[Arithmetic], list[Arithmetic]]:
-    """Regions about predictions, widened by the predictor's own record as `regions.widening`.
+    """Regions about predictions, widened by the predictor's own record as in `regions.widening`.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ from shipcosim.models.ship.hull import HullParameters
 
 
 class Model(NamedTuple):
-    """The ship's model of herself.
+    """The ship's model of herself: hull, wind loads, thrusters.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Model(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a law carries from second to second.
+    """State of a law from second to second.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Kinetic:
 
 @dataclass(frozen=True)
 class PaperIii(Kinetic):
-    """The networks of paper III on top.
+    """The equations of motion with the networks of paper III.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ class PaperIii(Kinetic):
 
 @dataclass(frozen=True)
 class Ours(Kinetic):
-    """Our hybrid.
+    """Our hybrid predictor.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ VARIANTS = ("kinetic", "paper-iii", "ours")
 
 
 def law_of(variant: str, arrays: Mapping[str, np.ndarray]) -> Any:
-    """A law from what training left.
+    """Make a law from its trained arrays.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ MEASURES = (
 
 
 class Trained(NamedTuple):
-    """What training gives.
+    """Trained prior and limits.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Hybrid(NamedTuple):
 
 
 def trained_of(arrays: Mapping[str, np.ndarray]) -> Trained:
-    """What training gives, from its arrays.
+    """Trained prior and limits, from arrays.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def step(
     ship: DpShip,
     parameters: SurroundingsParameters,
 ) -> Hybrid:
-    """State a sample later.
+    """State one sample later.
 
     Parameters
     ----------

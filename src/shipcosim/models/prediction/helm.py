@@ -93,7 +93,7 @@ class HelmParameters:
 
 
 class Aboard(NamedTuple):
-    """What is known aboard, each a float or a (...) array.
+    """Values measured aboard, each a float or a (...) array.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ KNOWN = (
 
 
 def aboard_of(known: Mapping[str, Arithmetic], mast: MastParameters) -> Aboard:
-    """What is known aboard, from the inputs of a predictor.
+    """Measured values aboard, from the inputs of a predictor.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from shipcosim.models.core.maths import Arithmetic, sqrt
 
 
 class Measured(NamedTuple):
-    """What is aboard at one time.
+    """Measurements aboard at one time.
 
     Parameters
     ----------

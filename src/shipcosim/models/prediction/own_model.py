@@ -47,7 +47,7 @@ _TINY = 1e-6
 
 
 class Learned(NamedTuple):
-    """What is learned over many ships, and believed before the record of this one.
+    """Prior knowledge learned over many ships, valid before this ship's record.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Learned(NamedTuple):
 
 
 class Thrust(NamedTuple):
-    """Thrust as it is delivered: across at the bow, along and across at the stern.
+    """Delivered thrust: across at the bow, along and across at the stern.
 
     Parameters
     ----------

@@ -63,7 +63,7 @@ _TINY = 1e-12
 
 
 class Record(NamedTuple):
-    """What the record up to now says.
+    """The estimate from the record up to now.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ def step(
     hull: HullParameters,
     wind: WindParameters,
 ) -> Record:
-    """The record a sample later.
+    """The record one sample later.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ INPUTS = (
 
 
 class Ensemble(NamedTuple):
-    """What training gives.
+    """Trained weights and scaling.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Ensemble(NamedTuple):
 
 
 def ensemble_of(arrays: Mapping[str, np.ndarray]) -> Ensemble:
-    """What training gives, from its arrays.
+    """Trained weights and scaling, from arrays.
 
     Parameters
     ----------

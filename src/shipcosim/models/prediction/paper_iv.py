@@ -43,7 +43,7 @@ class Ensemble(NamedTuple):
 
 
 class Past(NamedTuple):
-    """What the predictor remembers.
+    """Memory of the predictor.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a ship knows of herself and the weather: the inputs of all predictors.
+"""Inputs of all predictors: a ship's knowledge of herself and of the weather.
 
 A predictor is a state and two functions: `step` takes the state and a `Known` to the next sample, `predict` gives the
 motion to come from both. Dead reckoning has its state in `surroundings`, and `predict` in `dead_reckoning`.
@@ -13,7 +13,7 @@ from shipcosim.models.core.motion import Load, Motion
 
 
 class Known(NamedTuple):
-    """What the DP system of a ship knows at one time.
+    """Inputs of a predictor at one time: the DP system's knowledge of ship and weather.
 
     Parameters
     ----------

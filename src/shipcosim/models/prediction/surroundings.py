@@ -26,7 +26,7 @@ _ARM = 0.42  # of the length, bow and stern thrusters from midships: assumed
 
 @dataclass(frozen=True, kw_only=True)
 class SurroundingsParameters:
-    """What is assumed of current, remaining force and wind before they are seen."""
+    """Prior assumptions on current, remaining force and wind."""
 
     current_std: float = quantity(
         0.4,

@@ -105,7 +105,7 @@ class AzimuthParameters(PropellerParameters):
 
     @cached_property
     def loses(self):
-        """Whether some of the thrust of the propeller is lost."""
+        """True if some of the propeller's thrust is lost."""
         return any(
             map(acts, (self.thrust_loss, self.reverse_loss, self.angle_loss, self.interaction_loss))
         )

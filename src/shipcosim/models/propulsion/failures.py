@@ -9,7 +9,7 @@ PLENTY = 1e8
 
 
 class Failures(NamedTuple):
-    """What has failed in a thruster. The default is a sound one.
+    """Failures of a thruster. The default is a sound one.
 
     Parameters
     ----------

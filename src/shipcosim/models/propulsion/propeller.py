@@ -133,7 +133,7 @@ class PropellerParameters:
 
     @cached_property
     def disc(self):
-        """C over the squared speed of the reference section, ρ/2 π D²/4. [kg/m]"""
+        """Dynamic factor ρ/2 π D²/4: C over the squared speed of the reference section. [kg/m]"""
         return 0.5 * _AREA * self.diameter**2 * self.water_density
 
     @property

@@ -174,7 +174,7 @@ class HullParameters:
 
     @cached_property
     def contributions(self):
-        """Names of the contributions that this hull has coefficients for."""
+        """Names of the contributions for which this hull has coefficients."""
         return tuple(
             name
             for name, (_, names) in CONTRIBUTIONS.items()

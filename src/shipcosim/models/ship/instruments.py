@@ -115,7 +115,7 @@ def true_motion(
 def history_with(
     history: tuple[tuple[float, Motion], ...], t: float, values: Motion, since: float
 ) -> tuple[tuple[float, Motion], ...]:
-    """History of a motion with one more entry, without entries that are older than needed.
+    """History of a motion with a new entry, without entries older than needed.
 
     Parameters
     ----------

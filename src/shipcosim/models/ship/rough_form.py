@@ -30,7 +30,7 @@ _NO_WIND = "0 1 1 1; 360 1 1 1"
 
 @dataclass(frozen=True, kw_only=True)
 class RoughFormParameters:
-    """How a ship's form differs from that of the hull's law; by default not at all."""
+    """Differences between a ship's form and the hull model; none by default."""
 
     strip_factors: str = quantity(
         _NO_STRIPS,
@@ -89,7 +89,7 @@ class RoughFormParameters:
 
     @cached_property
     def strips(self):
-        """Place over half the length and factor of each strip; none where the cross flow is that of the hull's law."""
+        """Place over half length and factor of each strip; empty if as in the hull model."""
         if self.strip_factors == _NO_STRIPS and not acts(self.cross_flow_power, 2.0):
             return ()
         table = columns(self.strip_factors, 2)
@@ -99,7 +99,7 @@ class RoughFormParameters:
 
     @cached_property
     def memory(self):
-        """Shares of the added mass in surge, sway and yaw; none where nothing is remembered."""
+        """Shares of the added mass in surge, sway and yaw; empty if there is no memory."""
         shares = self.memory_surge, self.memory_sway, self.memory_yaw
         return shares if any(map(acts, shares)) else ()
 

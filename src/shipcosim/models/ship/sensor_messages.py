@@ -11,7 +11,7 @@ from shipcosim.models.core.maths import Arithmetic
 
 
 class Fix(NamedTuple):
-    """What a position reference gives out.
+    """Message of a position reference.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Fix(NamedTuple):
 
 
 class Heading(NamedTuple):
-    """What a compass gives out.
+    """Message of a compass.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Heading(NamedTuple):
 
 
 class Wind(NamedTuple):
-    """What the anemometer gives out.
+    """Message of the anemometer.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Wind(NamedTuple):
 
 
 class Telegrams(NamedTuple):
-    """What all sensors give out at one time.
+    """Messages of all sensors at one time.
 
     Parameters
     ----------

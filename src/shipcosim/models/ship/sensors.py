@@ -81,7 +81,7 @@ class SensorParameters:
 
     @cached_property
     def clocks(self):
-        """Of positions, headings, wind: ticks from sample to sample, and from a sample to when it is given out."""
+        """Ticks between samples and ticks of latency, of positions, headings and wind."""
         periods = self.position_period, self.period, self.wind_period
         latencies = self.position_latency, self.heading_latency, self.wind_latency
         return tuple(
@@ -91,7 +91,7 @@ class SensorParameters:
 
     @cached_property
     def position_wander(self):
-        """Factors of the Gauss-Markov error and of a random number, from one sample to the next."""
+        """Factors of the Gauss-Markov error and of a random number, per sample."""
         return _wander(self.position_period, self.position_drift_std, self.position_drift_time)
 
     @cached_property
@@ -124,7 +124,7 @@ class Truth(NamedTuple):
 
 
 class ReferenceFailure(NamedTuple):
-    """What is wrong with a position reference.
+    """Failure of a position reference.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ class ReferenceFailure(NamedTuple):
 
 
 class CompassFailure(NamedTuple):
-    """What is wrong with a compass.
+    """Failure of a compass.
 
     Parameters
     ----------
@@ -164,7 +164,7 @@ class CompassFailure(NamedTuple):
 
 
 class WindFailure(NamedTuple):
-    """What is wrong with the anemometer.
+    """Failure of the anemometer.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ class WindFailure(NamedTuple):
 
 
 class SensorFailures(NamedTuple):
-    """What is wrong with the sensors; nothing by default.
+    """Failures of the sensors; none by default.
 
     Parameters
     ----------

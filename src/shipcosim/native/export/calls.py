@@ -18,7 +18,7 @@ class ExportRecording(Recording):
 
 @dataclass(frozen=True, eq=False)
 class Procedure:
-    """A function whose results are kept, as a recording.
+    """A recorded function with cached results.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ Dimensions = tuple[int, ...]
 def element_connectors(
     connectors: Iterable[Connector], arrays: Mapping[str, Dimensions], findings: Findings
 ) -> tuple[list[Connector], dict[str, Dimensions]]:
-    """Connectors with elements in place of arrays.
+    """Connectors, with elements in place of arrays.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from shipcosim.ssp.xml.values import Value
 
 @dataclass(frozen=True)
 class Connection:
-    """What a component's variable or an output of the system gets, and from where.
+    """The value of a component's variable or of a system output, and its source.
 
     Values: ``target = factor * mapping.get(source, source) + offset``; factor and offset for a real target alone.
     Several connections into one target add up, in their order: a Sum of OSP. SSP has none.

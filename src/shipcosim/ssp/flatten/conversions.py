@@ -23,7 +23,7 @@ Items = Mapping[str, int]
 
 @dataclass(frozen=True)
 class Flow:
-    """A value on its way: factor * mapping[source] + offset, in `unit`.
+    """A value under way: factor * mapping[source] + offset, in `unit`.
 
     Parameters
     ----------

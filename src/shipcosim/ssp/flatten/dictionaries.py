@@ -38,7 +38,7 @@ def dictionaries_of(
 def take_reference(
     tree: Hierarchy, element: DictionaryReference, path: ElementPath, place: Surroundings
 ) -> None:
-    """Collect the ports of a dictionary reference, each joined later with the dictionary's.
+    """Collect the ports of a dictionary reference; they are joined with the dictionary later.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ def _port(connector: Connector, fmu: FmuDescription | None, findings: Findings) 
 def _compare(
     connector: Connector, variable: Variable, fmu: FmuDescription, findings: Findings
 ) -> None:
-    """Note where a connector is of another kind, type or unit than its variable."""
+    """Report a connector whose kind, type or unit differs from its variable's."""
     name = fmu.path.name
     place = connector.place
     if connector.kind in KIND_NAMES and connector.kind != variable.causality:

@@ -79,7 +79,7 @@ class Hierarchy:
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What is around an element: its file, the signal dictionaries in sight, and the systems that it is in.
+    """The surroundings of an element: its file, visible dictionaries, and enclosing systems.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ def with_whole_steps(
     findings: Findings,
     as_libcosim: bool = False,
 ) -> dict[str, Component]:
-    """Components whose own steps are multiples of the base step, as far as a file leaves no doubt about them.
+    """Components with own steps as multiples of the base step, where the file is clear.
 
     Parameters
     ----------

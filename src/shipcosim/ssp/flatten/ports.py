@@ -82,7 +82,7 @@ class Wire:
 
 @dataclass(frozen=True)
 class Setting:
-    """A value for a name within a system or component; settings come in the order in which they are applied.
+    """A value for a name in a system or component; settings are in the order of application.
 
     Parameters
     ----------

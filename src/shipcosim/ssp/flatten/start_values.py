@@ -137,7 +137,7 @@ class Settings:
     def _number(
         self, value: str, flow: Flow, step: Wire | Setting, port: Port, place: str
     ) -> tuple[Value | None, Flow, Wire | Setting]:
-        """Number of an enumeration's item, at the first port that knows its items; a mapping of names comes before.
+        """Number of an enumeration's item, at the first port that knows its items.
 
         None with an error where there is no such item.
         """
@@ -256,7 +256,7 @@ def _differ_in_number(one: str, other: str) -> bool:
 def check_bounds(
     value: Value, variable: Variable, place: str, name: str, findings: Findings
 ) -> bool:
-    """Whether a variable can have a value, with an error if not.
+    """True if a variable can have a value, else an error.
 
     Parameters
     ----------

@@ -144,7 +144,7 @@ def _take_other_file(
 def _system_of(
     tree: Hierarchy, element: ComponentElement, place: Surroundings
 ) -> tuple[Structure, SystemElement, Package] | None:
-    """System that a component stands for, with its SSD and package, or None with an error."""
+    """System that a component stands for, with its SSD and package; None with an error."""
     # An address without a file means a system in this SSD, by its id.
     uri, _, fragment = (element.source or "").partition("#")
     if not uri:
