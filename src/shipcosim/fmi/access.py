@@ -12,7 +12,7 @@ Getter = Callable[[Mapping[str, Any]], tuple]
 
 
 class Found(NamedTuple):
-    """Variables behind the value references of one call.
+    """Variables of the value references in one call.
 
     Attributes
     ----------
@@ -46,6 +46,7 @@ class Access(dict):
         self.kind = kind
 
     def __missing__(self, references: tuple[int, ...]) -> Found:
+        # Each reference must exist, and have the type of the call.
         found = []
         for reference in references:
             if (
@@ -54,18 +55,20 @@ class Access(dict):
             ):
                 raise FmuError(f"there is no {self.kind} variable with value reference {reference}")
             found.append(self.variables[reference])
+        # Fixed parameters cannot be set during the run: remember one for the message.
         fixed = [
             variable.name
             for variable in found
             if variable.causality == "parameter" and not variable.tunable
         ]
         names = tuple(variable.name for variable in found)
+        # Kept for the next call with the same references.
         self[references] = Found(names, fixed[0] if fixed else "", getter(names))
         return self[references]
 
 
 def getter(names: Sequence[str]) -> Getter:
-    """Function that takes the values of some names from a mapping, as a tuple.
+    """Make a function that takes the values of some names from a mapping, as a tuple.
 
     Parameters
     ----------
@@ -76,6 +79,7 @@ def getter(names: Sequence[str]) -> Getter:
     -------
     callable
     """
+    # itemgetter returns a bare value for one name.
     if len(names) == 1:
         (name,) = names
         return lambda values: (values[name],)
@@ -83,7 +87,7 @@ def getter(names: Sequence[str]) -> Getter:
 
 
 def refuse_not_finite_outputs(names: Sequence[str], values: Mapping[str, Any]) -> None:
-    """Raise for the first output whose value is no finite number.
+    """Raise for the first output that is not a finite number.
 
     Parameters
     ----------
@@ -133,7 +137,7 @@ def refuse_not_finite_inputs(
 
 
 def whole_number(name: str, value: Any) -> int:
-    """A value as the 32-bit integer of FMI.
+    """Convert a value to FMI's 32-bit integer.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ STATUSES = ("ok", "warning", "discard", "error")
 
 
 class FmuError(Exception):
-    """Why an FMU cannot go on, in words for its user. The host's logger takes its text for a printf format."""
+    """Reason why an FMU cannot go on. The host's logger reads its text as a printf format."""
 
     def __repr__(self) -> str:
         return str(self).replace("%", "%%")
@@ -36,7 +36,7 @@ class Message(NamedTuple):
 
 
 def message_of(text: str, status: str) -> Message:
-    """A text as message, with the percent signs doubled.
+    """Message of a text, with percent signs doubled.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def message_of(text: str, status: str) -> Message:
 
 
 def text_of(error: BaseException) -> str:
-    """Text of an error: that of an `FmuError`, else the traceback below the shell.
+    """Text of an error: that of an `FmuError`, else the FMU's traceback.
 
     Parameters
     ----------
@@ -70,7 +70,8 @@ def text_of(error: BaseException) -> str:
 
 
 def _traceback(error: BaseException) -> str:
-    """Traceback as Python prints it, without frames of host and shell, files named from the FMU's own folder."""
+    """Traceback without frames of host and shell, with paths relative to the FMU's folder."""
+    # Skip the outer frames, which belong to host and shell.
     trace = error.__traceback__
     while trace and trace.tb_next and not _is_fmus_own(trace.tb_frame.f_code.co_filename):
         trace = trace.tb_next

@@ -9,7 +9,7 @@ from shipcosim.fmi.variables import leave_start_values, variables_of
 
 
 class Fmu(Fmi2Slave):
-    """A component: declare its variables on the class, and write `step`, `start` too where it needs one.
+    """A component: declare variables on the class, write `step`, and `start` if needed.
 
     Variables are plain attributes of the instance. Any other attribute is state: it is kept, saved and restored with
     the FMU. The class works without FMI as well, see the example.
@@ -51,16 +51,19 @@ class Fmu(Fmi2Slave):
     default_step_size = 0.05
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
+        # State is created in start(), which the host may repeat.
         if "__init__" in vars(cls):
             raise TypeError(
                 f"{cls.__name__} has an __init__: an FMU makes its state in start(self)"
             )
+        # Names of the shell would be overwritten by variables.
         cls.variables, cls.groups = variables_of(cls)
         taken = sorted({item.name for item in (*cls.variables, *cls.groups)} & set(dir(Fmu)))
         if taken:
             raise TypeError(
                 f"{cls.__name__} names a variable {', '.join(taken)}, which the shell uses itself"
             )
+        # Instances read their start values from the class.
         leave_start_values(cls)
         if "start" in vars(cls):
             cls.start = _with_fresh_groups(cls.start)
@@ -75,9 +78,9 @@ class Fmu(Fmi2Slave):
         _drop_groups(self)
 
     def repeat(self, going: Callable[[], Any], turn: Callable[[], None]) -> None:
-        """Take turns, which change attributes, while a condition on attributes holds: a while loop.
+        """Repeat a turn, which changes attributes, while a condition holds: a while loop.
 
-        A step that says its loops so can be written as compiled code.
+        A step with its loops in this form can be exported as compiled code.
 
         Parameters
         ----------
@@ -86,6 +89,7 @@ class Fmu(Fmi2Slave):
         turn : callable
             ``turn()`` takes it.
         """
+        # While a step is recorded, the condition is a symbol: the recorder writes the loop.
         condition = going()
         if (maths := getattr(condition, "maths", None)) is not None:
             maths.repeat_of(self, going, turn)
@@ -108,7 +112,7 @@ class Fmu(Fmi2Slave):
 
 
 def _drop_groups(fmu: Fmu) -> None:
-    """Forget the dataclasses of parameters that are of other values: the next access makes them of the present ones."""
+    """Drop dataclasses of parameters with outdated values; the next access makes new ones."""
     values = fmu.__dict__
     for group in fmu.groups:
         if group.name in values and not group.holds(values):

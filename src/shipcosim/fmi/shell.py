@@ -26,14 +26,14 @@ from shipcosim.fmi.variables import Parameters, Variable, text_of_left_out
 
 
 class State(NamedTuple):
-    """FMU state as the host holds it. The owner is not part of the stored state."""
+    """FMU state for the host. The owner is not part of the stored state."""
 
     owner: Any
     content: tuple
 
 
 def _guarded(method: Callable) -> Callable:
-    """Whatever a method raises reaches the binary as an `FmuError` that names component and time."""
+    """Turn any exception of a method into an `FmuError` that names component and time."""
 
     @functools.wraps(method)
     def call(self, *arguments):
@@ -46,7 +46,7 @@ def _guarded(method: Callable) -> Callable:
 
 
 def _differ(slave: Any, found: Found, values: Sequence) -> bool:
-    """Whether values are others than the slave's own: `start` follows from the variables alone."""
+    """True if values differ from the slave's: `start` depends only on the variables."""
     return found.values(slave.__dict__) != tuple(values)
 
 
@@ -85,9 +85,11 @@ class Fmi2Slave:
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
+        # Access by value references, for each type of FMI.
         cls._real, cls._integer, cls._boolean, cls._string = (
             Access(cls.variables, kind) for kind in ("Real", "Integer", "Boolean", "String")
         )
+        # Real outputs are checked after each step; a prepared getter makes this fast.
         cls._real_outputs = tuple(
             v.name for v in cls.variables if v.causality == "output" and v.type == "Real"
         )
@@ -122,7 +124,7 @@ class Fmi2Slave:
         self._initialised = True
 
     def advance(self, time: float, step_size: float) -> bool:
-        """`do_step` for a master in this process that can call it by itself; errors as of `real_setter`."""
+        """`do_step` for a master in this process; errors as in `real_setter`."""
         self._time = time
         self.step(time, step_size)
         self._time = time + step_size
@@ -139,6 +141,7 @@ class Fmi2Slave:
     @_guarded
     def set_real(self, references: Sequence[int], values: Sequence[float]) -> None:
         found = self._real[tuple(references)]
+        # One check of the sum is fast; the culprit is searched only if it fails.
         if not math.isfinite(sum(values)):
             refuse_not_finite_inputs(self.variables, found.names, values)
         self._set(found, values)
@@ -176,11 +179,12 @@ class Fmi2Slave:
         return [str(value) for value in self._get(self._string[tuple(references)])]
 
     def real_setter(self, references: tuple[int, ...]) -> Callable[[Sequence[float]], None]:
-        """`set_real` for the same variables every time, for a master in this process that can call it by itself.
+        """`set_real` for the same variables at every call, for a master in this process.
 
-        What goes wrong is raised as it is; `failure` turns it into what `set_real` raises. The same holds for
+        Errors are raised as they are; `failure` turns them into those of `set_real`. The same in
         `prepared_getter`.
         """
+        # Everything that does not change between calls is looked up once.
         found = self._real[references]
         put = self.__dict__.update
         names = found.names
@@ -199,7 +203,8 @@ class Fmi2Slave:
         return set_values
 
     def prepared_getter(self, kind: str, references: tuple[int, ...]) -> Callable[[], Sequence]:
-        """`get_real`, `get_integer` or `get_boolean` for the same variables every time; see `real_setter`."""
+        """`get_real`, `get_integer` or `get_boolean` for the same variables at every call."""
+        # As in `real_setter`, look up once what does not change.
         found = getattr(self, f"_{kind.lower()}")[references]
         values = self.__dict__
         take = found.values
@@ -221,8 +226,10 @@ class Fmi2Slave:
         return {"Real": get_values, "Integer": get_integers, "Boolean": get_booleans}[kind]
 
     def _set(self, found: Found, values: Sequence) -> None:
+        # Fixed parameters may be set before the run only.
         if found.fixed and self._initialised:
             self._refuse(found)
+        # A changed value during initialisation makes the start outdated.
         self._stale = self._initialising and (self._stale or _differ(self, found, values))
         self.__dict__.update(zip(found.names, values, strict=True))
 
@@ -245,6 +252,7 @@ class Fmi2Slave:
     def _set_fmu_state(self, stored: State | FmuError) -> None:
         if isinstance(stored, FmuError):
             raise stored
+        # Deep copies: the stored state must not change with the running FMU.
         phase, values = stored.content
         self._time, self._initialising, self._initialised, self._stale = phase
         self.__dict__.clear()
@@ -259,7 +267,7 @@ class Fmi2Slave:
 
     @classmethod
     def _fmu_state_from_bytes(cls, data: bytes) -> State | FmuError:
-        """The state, or why there is none: an exception here, where no instance is known, would crash the binary."""
+        """The state, or an error: without an instance, an exception would crash the binary."""
         try:
             return State(None, state.from_bytes(data, cls.__module__, cls._packages()))
         except Exception as error:
@@ -289,8 +297,9 @@ class Fmi2Slave:
         )
 
     def failure(self, error: BaseException) -> FmuError:
-        """The error to raise in place of another: component and time, earlier messages, traceback below the shell."""
+        """Error to raise in place of another: component, time, earlier messages, traceback."""
         text = f"{self.instance_name} at t = {self._time:.9g} s: {text_of(error)}"
+        # The binary loses its queue after an exception, so the messages go into the error.
         if self._in_binary:
             text = "\n".join([*(message.msg.replace("%%", "%") for message in self.messages), text])
             self.messages.clear()
@@ -300,6 +309,7 @@ class Fmi2Slave:
     # checks
 
     def _start(self) -> None:
+        # All missing or impossible parameters in one message.
         values = self.__dict__
         parameters = [variable for variable in self.variables if variable.causality == "parameter"]
         missing = [
@@ -311,12 +321,14 @@ class Fmi2Slave:
                 problems.append(f"parameter '{variable.name}' is {problem}")
         if problems:
             raise FmuError("; ".join(problems))
+        # Outputs at the start must be finite, as after a step.
         self.start()
         self._stale = False
         self._check_outputs()
 
     def _check_outputs(self) -> None:
         values = self.__dict__
+        # One check of the sum is fast; the culprit is searched only if it fails.
         try:
             if math.isfinite(sum(self._real_output_values(values))):
                 return

@@ -1,4 +1,4 @@
-"""The state of an FMU as bytes, which another process may restore without trusting whoever hands them over."""
+"""State of an FMU as bytes, which another process can restore without trusting the sender."""
 
 import io
 import pickle
@@ -36,15 +36,17 @@ PLAIN = {
 
 
 class _Unpickler(pickle.Unpickler):
-    """Makes plain data, NumPy's arrays and generators, and classes of the FMU's own packages; nothing else."""
+    """Unpickles plain data, NumPy arrays and generators, and classes of the FMU; nothing else."""
 
     def __init__(self, data: bytes, packages: Set[str]):
         super().__init__(io.BytesIO(data))
         self.packages = packages
 
     def find_class(self, module: str, name: str) -> Any:
+        # NumPy and plain containers are harmless.
         if name in NUMPY.get(module, ()) or name in PLAIN.get(module, ()):
             return super().find_class(module, name)
+        # Classes of the FMU, but nothing that these modules only import.
         if module.partition(".")[0] in self.packages:
             found = super().find_class(module, name)
             if isinstance(found, type) and found.__module__.partition(".")[0] in self.packages:
@@ -55,7 +57,7 @@ class _Unpickler(pickle.Unpickler):
 
 
 def to_bytes(state: Any, label: str, packages: Set[str]) -> bytes:
-    """Bytes of a state, sure to be readable by `from_bytes`.
+    """Bytes of a state; `from_bytes` can read them.
 
     Parameters
     ----------
@@ -75,19 +77,21 @@ def to_bytes(state: Any, label: str, packages: Set[str]) -> bytes:
     pickle.PicklingError, pickle.UnpicklingError, TypeError, AttributeError
         The state holds something that cannot be stored or would be refused.
     """
+    # The label says which code the state belongs to; the test reading finds refused content early.
     data = label.encode() + b"\n" + pickle.dumps(state, protocol=4)
     from_bytes(data, label, packages)
     return data
 
 
 def from_bytes(data: bytes, label: str, packages: Set[str]) -> Any:
-    """The state that `to_bytes` stored; see there.
+    """State that `to_bytes` stored.
 
     Raises
     ------
     pickle.UnpicklingError
         The bytes belong to other code, or ask for something that is not data.
     """
+    # Another version of the FMU may have another state.
     found, _, content = data.partition(b"\n")
     if found != label.encode():
         raise pickle.UnpicklingError(

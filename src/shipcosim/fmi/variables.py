@@ -1,4 +1,4 @@
-"""What an FMU declares on its class: inputs, outputs and parameters."""
+"""Declarations on an FMU's class: inputs, outputs and parameters."""
 
 import dataclasses
 import math
@@ -52,9 +52,11 @@ class Variable:
         origin: str = "",
         tolerance: float = 0.0,
     ):
+        # A type in place of a value: the parameter has no default, and a mark stands for it.
         self.required = start in (float, str)
         if self.required:
             start = "" if start is str else LEFT_OUT if maximum is None else -LEFT_OUT
+        # The type of the start value is that of the variable.
         if type(start) not in TYPES:
             raise TypeError(
                 f"start value {start!r} of '{description}': give a float, an int, a bool or a str"
@@ -87,11 +89,11 @@ class Variable:
         return f"<{self.causality} {self.name}: {self.type}, {self.start!r} {self.unit}>"
 
     def is_left_out(self, value: Any) -> bool:
-        """Whether a value is the start value of a parameter that has none of its own."""
+        """True if a value is the mark of a parameter without a default."""
         return self.required and left_out(value)
 
     def outside(self, value: Any) -> str:
-        """Why a value cannot be one of this variable, as text; empty if it can."""
+        """Reason why a value is impossible for this variable; empty if it is possible."""
         if self.type not in ("Real", "Integer"):
             return ""
         if not math.isfinite(value):
@@ -104,7 +106,7 @@ class Variable:
 
 
 class Input(Variable):
-    """What the FMU is given at every step: ``thrust_cmd = Input("N", "commanded thrust")``."""
+    """Input at every step: ``thrust_cmd = Input("N", "commanded thrust")``."""
 
     causality = "input"
 
@@ -121,7 +123,7 @@ class Input(Variable):
 
 
 class Output(Variable):
-    """What the FMU computes: ``thrust = Output("N", "delivered thrust")``."""
+    """Result of the FMU: ``thrust = Output("N", "delivered thrust")``."""
 
     causality = "output"
 
@@ -138,9 +140,9 @@ class Output(Variable):
 
 
 class Parameter(Variable):
-    """What is set before the run: ``thrust_max = Parameter(40e3, "N", "largest thrust")``.
+    """Set before the run: ``thrust_max = Parameter(40e3, "N", "largest thrust")``.
 
-    One that describes a ship has no start value but a type: ``thrust_max = Parameter(float, "N", "largest thrust")``.
+    A ship's parameter has a type in place of a start value: ``Parameter(float, "N", "thrust")``.
     """
 
     causality = "parameter"
@@ -175,14 +177,16 @@ class Parameters:
         self.name = name
 
     def __get__(self, instance: Any, owner: type | None = None) -> Any:
-        """The dataclass; the first access makes it and leaves it on the instance, where it is found faster."""
+        """The dataclass; the first access makes it and stores it on the instance for speed."""
         if instance is None:
             return self
         values = instance.__dict__
+        # Parameters without a value of their own must have been set.
         if missing := [
             variable for variable in self.variables if variable.is_left_out(values[variable.name])
         ]:
             raise ValueError(text_of_left_out(missing))
+        # Fields have the names of the variables without the prefix.
         start = len(self.prefix)
         group = self.kind(
             **{variable.name[start:]: values[variable.name] for variable in self.variables}
@@ -191,7 +195,7 @@ class Parameters:
         return group
 
     def holds(self, values: Mapping[str, Any]) -> bool:
-        """Whether the dataclass among the values of an instance is the one that they make."""
+        """True if the stored dataclass has the present values of the instance."""
         made = values[self.name]
         start = len(self.prefix)
         pairs = (
@@ -204,12 +208,14 @@ class Parameters:
         )
 
     def _variable(self, field: dataclasses.Field) -> "Parameter":
+        # Unit, bounds and origin are in the field's metadata.
         about = field.metadata
         if "unit" not in about:
             raise TypeError(
                 f"{self.kind.__name__}.{field.name}: make it with quantity(default, unit, description, origin), or "
                 "required(unit, description)"
             )
+        # Without a default the type stands for it: the parameter is required.
         default: Any = about["kind"] if field.default is dataclasses.MISSING else field.default
         default = (
             float(default) if field.type in (float, "float") and default is not float else default
@@ -226,7 +232,7 @@ class Parameters:
 
 
 def text_of_left_out(variables: Iterable[Variable]) -> str:
-    """What an FMU says of parameters that were left out, all of them."""
+    """Message on all parameters that were left out."""
     names = ", ".join(v.name if v.type == "String" else f"{v.name} [{v.unit}]" for v in variables)
     return f"parameters left out, which have no value of their own: {names}. Give them, as a ship's parameter set does"
 
@@ -245,12 +251,14 @@ def variables_of(cls: type) -> tuple[tuple[Variable, ...], tuple[Parameters, ...
     TypeError
         Two variables have one name.
     """
+    # Base classes first: a derived class may replace their variables.
     declared = {}
     for base in reversed(cls.__mro__):
         declared |= _declared_on(base)
     groups = tuple(item for item in declared.values() if isinstance(item, Parameters))
     found = [item for item in declared.values() if isinstance(item, Variable)]
     found += [variable for group in groups for variable in group.variables]
+    # A name may occur once, in groups too.
     names = [variable.name for variable in found] + [group.name for group in groups]
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
@@ -262,9 +270,10 @@ def variables_of(cls: type) -> tuple[tuple[Variable, ...], tuple[Parameters, ...
 
 
 def leave_start_values(cls: type) -> None:
-    """Leave the start value of each variable that a class declares in its place on the class.
+    """Put the start value of each declared variable in its place on the class.
 
-    Python reads an instance's attribute five times as fast where a number and not an object of our own is behind it.
+    Python reads attributes five times as fast if a number stands behind them, not an object of
+    ours.
     """
     cls._declared = _declared_on(cls)
     for name, item in cls._declared.items():

@@ -1,4 +1,4 @@
-"""Packs FMUs: `build_fmu` one, `build_all` those of a folder. The only door to pythonfmu, whose binaries are used."""
+"""Packs FMUs: `build_fmu` one, `build_all` those of a folder. Only this module uses pythonfmu."""
 
 import ast
 import contextlib
@@ -50,6 +50,8 @@ def build_fmu(source: Path | str, out: Path | str) -> Path:
     ShipcosimError
         The script is missing, not Python, does not hold exactly one FMU, or the FMU cannot be written.
     """
+    # Code, entry module, binaries and documentation; the description last, since its GUID needs
+    # them.
     with fmu_class(source) as (cls, script, bundled):
         files = {f"resources/{path}": data for path, data in bundled.files.items()}
         files[f"resources/{bundled.entry}.py"] = entry_module(bundled, cls.__name__)
@@ -61,7 +63,7 @@ def build_fmu(source: Path | str, out: Path | str) -> Path:
 
 @contextlib.contextmanager
 def fmu_class(source: Path | str) -> Iterator[tuple[type[Fmu], Path, Bundle]]:
-    """The class of an FMU as the FMU will have it, its script, and what comes along; forgotten afterwards.
+    """Class of an FMU as it will run, its script and its files; unloaded afterwards.
 
     Parameters
     ----------
@@ -103,6 +105,7 @@ def build_all(
     ShipcosimError
         With the problems of all of them; those without problems are built nevertheless.
     """
+    # Problems of all FMUs together; the others are built in any case.
     root = Path(root)
     known = sorted(
         folder.name for folder in root.glob("*") if (folder / f"{folder.name}.py").is_file()
@@ -114,6 +117,7 @@ def build_all(
     ]
     built = []
     stems = {}
+    # Names must differ also where file systems ignore case.
     for name in sorted(set(names or known) & set(known)):
         other = stems.setdefault(name.lower(), name)
         if other != name:
@@ -135,6 +139,7 @@ def build_all(
 
 
 def _script(source: Path) -> Path:
+    # A folder holds the script of its own name.
     script = source / f"{source.resolve().name}.py" if source.is_dir() else source
     if not script.is_file():
         raise ShipcosimError(
@@ -144,6 +149,7 @@ def _script(source: Path) -> Path:
                 "An FMU is a folder NAME with NAME.py in it.",
             )
         )
+    # The name becomes a Python module and the name of a binary.
     if not (script.stem.isidentifier() and script.stem.isascii()):
         raise ShipcosimError(
             Problem(
@@ -157,8 +163,9 @@ def _script(source: Path) -> Path:
 
 @contextlib.contextmanager
 def _imported(bundled: Bundle) -> Iterator[ModuleType]:
-    """The script's module as the FMU will have it, forgotten afterwards."""
+    """The script's module as the FMU will contain it; unloaded afterwards."""
     before = set(sys.modules)
+    # Import from a copy: what the bundle lacks is then missing here too.
     with tempfile.TemporaryDirectory() as folder:
         for path, data in bundled.files.items():
             file = Path(folder, path)
@@ -170,6 +177,7 @@ def _imported(bundled: Bundle) -> Iterator[ModuleType]:
             yield _import(bundled, folder)
         finally:
             sys.path.remove(folder)
+            # Unload the private package, so that the next FMU starts clean.
             for name in set(sys.modules) - before:
                 if name.partition(".")[0] == bundled.package:
                     del sys.modules[name]
@@ -180,6 +188,7 @@ def _import(bundled: Bundle, folder: str) -> ModuleType:
     try:
         return importlib.import_module(f"{bundled.package}.{bundled.script}")
     except Exception as error:
+        # Point at the FMU's own line, not at the importing machinery.
         frames = [
             frame
             for frame in traceback.extract_tb(error.__traceback__)
@@ -201,12 +210,13 @@ def _import(bundled: Bundle, folder: str) -> ModuleType:
 
 
 def _fmu_class(module: ModuleType, script: Path) -> type[Fmu]:
-    """The one class of the script that is an FMU and no base of another."""
+    """The only class of the script that is an FMU and no base class of another."""
     own = [
         item
         for item in vars(module).values()
         if isinstance(item, type) and item.__module__ == module.__name__
     ]
+    # Classes defined in the script, without those that others extend.
     own = [cls for cls in own if any(base.__name__ == "Fmi2Slave" for base in cls.__mro__)]
     leaves = [
         cls for cls in own if not any(cls is not other and issubclass(other, cls) for other in own)
@@ -225,6 +235,7 @@ def _fmu_class(module: ModuleType, script: Path) -> type[Fmu]:
 
 
 def _check_class(cls: type[Fmu], script: Path) -> None:
+    # An FMU needs an output and a step.
     problems = []
     if not any(variable.causality == "output" for variable in cls.variables):
         problems.append("has no output: name = Output(unit, description).")
@@ -237,6 +248,7 @@ def _check_class(cls: type[Fmu], script: Path) -> None:
         raise ShipcosimError(
             [Problem(f"{script}, class {cls.__name__}", problem) for problem in problems]
         )
+    # Try the start values once: a bad default is found here, not in the host.
     try:
         instance = cls()
         for group in cls.groups:
@@ -248,11 +260,13 @@ def _check_class(cls: type[Fmu], script: Path) -> None:
 
 
 def _never_read(cls: type[Fmu], script: Path) -> list[str]:
-    """Attributes that the script sets but neither declares nor reads: outputs that were forgotten or misspelt."""
+    """Attributes that the script sets but neither declares nor reads: likely misspelt outputs."""
+    # Uses of self.NAME in the script.
     nodes = [
         node for node in ast.walk(ast.parse(script.read_bytes())) if isinstance(node, ast.Attribute)
     ]
     nodes = [node for node in nodes if isinstance(node.value, ast.Name) and node.value.id == "self"]
+    # Read anywhere, declared, or inherited.
     read = {node.attr for node in nodes if isinstance(node.ctx, ast.Load)} | set(dir(cls))
     read |= {variable.name for variable in cls.variables}
     outputs = [variable.name for variable in cls.variables if variable.causality == "output"]
@@ -265,8 +279,9 @@ def _never_read(cls: type[Fmu], script: Path) -> list[str]:
 
 
 def _description(cls: type[Fmu], script: Path, files: dict[str, bytes]) -> bytes:
-    """The model description, with a GUID that follows from it and all other files."""
+    """The model description, with a GUID from its content and all other files."""
     try:
+        # Hash the description without GUID and all files: a changed file gives a new GUID.
         blank = model_description(cls, script.stem, "")
         digest = hashlib.sha256(blank)
         for path, data in sorted(files.items()):
@@ -277,7 +292,7 @@ def _description(cls: type[Fmu], script: Path, files: dict[str, bytes]) -> bytes
 
 
 def _binaries(identifier: str) -> dict[str, bytes]:
-    """Our loader under the name that FMI asks for, beside it pythonfmu's binary, which it loads, and its licence."""
+    """Our loader under FMI's name, with pythonfmu's binary, which it loads, and its licence."""
     folder = (
         Path(str(importlib.metadata.distribution("pythonfmu").locate_file("pythonfmu")))
         / "resources"
@@ -295,7 +310,7 @@ def _binaries(identifier: str) -> dict[str, bytes]:
 
 
 def documentation(script: Path) -> dict[str, bytes]:
-    """What comes along to be read: README.md, also as a page, and reference.csv."""
+    """Documentation in the FMU: README.md, also as a page, and reference.csv."""
     files = {}
     for name in ("README.md", "reference.csv"):
         path = script.parent / name
@@ -309,7 +324,8 @@ def documentation(script: Path) -> dict[str, bytes]:
 
 
 def write_archive(path: Path, files: dict[str, bytes]) -> Path:
-    """Write an archive whose bytes depend on the files alone: sorted, not compressed, one date, one mode."""
+    """Write an archive whose bytes depend only on the files: sorted, uncompressed, fixed dates."""
+    # Fixed order, date and mode: the same source gives the same bytes.
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_STORED) as archive:
         for name, data in sorted(files.items()):
@@ -317,6 +333,7 @@ def write_archive(path: Path, files: dict[str, bytes]) -> Path:
             info.create_system = 3
             info.external_attr = 0o644 << 16
             archive.writestr(info, data)
+    # Write next to the target, then replace it in one step.
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-")

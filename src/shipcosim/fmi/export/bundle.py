@@ -1,4 +1,4 @@
-"""The Python code that an FMU carries: what its script needs, under names that no other FMU and no package has."""
+"""Python code inside an FMU, under names that no other FMU and no package uses."""
 
 import ast
 import hashlib
@@ -68,14 +68,17 @@ def bundle(script: Path) -> Bundle:
     ShipcosimError
         A file cannot be read or parsed, or imports what neither Python, NumPy nor the FMU has.
     """
+    # All modules that the script needs, and its trained weights.
     modules = _collect(script)
     weights = _weights(script.parent)
+    # The hash in the package name keeps versions of an FMU apart in one process.
     digest = hashlib.sha256()
     contents = {module.archive_path: module.source for module in modules.values()} | weights
     for path, content in contents.items():
         digest.update(f"{path} {len(content)}\n".encode() + content)
     entry = f"{script.stem}_{digest.hexdigest()[:16]}"
     package = f"{entry}_code"
+    # Rename imports to the private package.
     files = {f"{package}/__init__.py": PACKAGE.format(script=script.name).encode()}
     for module in modules.values():
         files[f"{package}/{module.archive_path}"] = _renamed(module, package, modules)
@@ -116,7 +119,7 @@ finally:
 
 
 def entry_module(bundled: Bundle, cls: str) -> bytes:
-    """Source of the module that the binary imports, which holds nothing but the class."""
+    """Source of the module that the binary imports; it holds only the class."""
     code = [path for path in sorted(bundled.files) if path.endswith(".py")]
     paths = (path.removesuffix(".py").removesuffix("/__init__") for path in code)
     modules = ", ".join(path.replace("/", ".") for path in paths)
@@ -131,13 +134,14 @@ def entry_module(bundled: Bundle, cls: str) -> bytes:
 
 
 def _weights(folder: Path) -> dict[str, bytes]:
-    """Files of trained weights beside a script, by their path."""
+    """Files of trained weights next to a script, by path."""
     files = [file for kind in ("npz", "toml") for file in (folder / WEIGHTS).glob(f"*.{kind}")]
     return {f"{WEIGHTS}/{file.name}": file.read_bytes() for file in sorted(files)}
 
 
 def _collect(script: Path) -> dict[str, Module]:
-    """All modules that the script reaches by imports, sorted by name."""
+    """All modules that the script imports, directly or indirectly, sorted by name."""
+    # Follow imports until no new module turns up.
     found = {}
     waiting = [(script.stem, script)]
     problems = []
@@ -150,6 +154,7 @@ def _collect(script: Path) -> dict[str, Module]:
         except ShipcosimError as error:
             problems += error.problems
             continue
+        # Imports of ours are carried along; others must exist in every host.
         for statement, needed, always in _imports(module):
             located = _locate(needed, script.parent)
             if located:
@@ -173,6 +178,7 @@ def _read(name: str, path: Path) -> Module:
     if name == "shipcosim":  # its own `__init__` would lead to the whole package
         return Module(name, path, ROOT, ast.parse(ROOT))
     try:
+        # The same bytes on every platform: no byte order mark, line ends of Unix.
         source = path.read_bytes().removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
         return Module(name, path, source, ast.parse(source, str(path)))
     except OSError as error:
@@ -185,10 +191,11 @@ def _read(name: str, path: Path) -> Module:
 
 
 def _locate(name: str, folder: Path) -> list[tuple[str, Path]]:
-    """Modules to read for a dotted name, its packages included; empty if it is not ours.
+    """Modules for a dotted name, its packages included; empty if it is not ours.
 
-    For "shipcosim.models.core.maths" that is three; what is a name inside a module rather than a module is left out.
+    For "shipcosim.models.core.maths" these are three; a name inside a module is left out.
     """
+    # Packages from the outside in, as Python imports them.
     parts = name.split(".")
     found = []
     base = SHIPCOSIM.parent if parts[0] == "shipcosim" else folder
@@ -205,7 +212,7 @@ def _locate(name: str, folder: Path) -> list[tuple[str, Path]]:
 
 
 def _imports(module: Module) -> Iterator[tuple[Import, str, bool]]:
-    """(statement, dotted name, whether it runs when the module is imported) for each import in a module."""
+    """(statement, dotted name, True if it runs on import) for each import in a module."""
     for node, always in _running(module.tree, True):
         if isinstance(node, ast.Import):
             yield from ((node, alias.name, always) for alias in node.names)
@@ -215,8 +222,9 @@ def _imports(module: Module) -> Iterator[tuple[Import, str, bool]]:
 
 
 def _absolute(node: ast.ImportFrom, module: Module) -> str:
-    """Full name of what "from ... import" names."""
+    """Full name that a "from ... import" refers to."""
     if not node.level:
+        # Relative imports count from the package of the module.
         return node.module or ""
     package = module.name.split(".")
     package = package[: len(package) - node.level + module.is_package]
@@ -224,7 +232,7 @@ def _absolute(node: ast.ImportFrom, module: Module) -> str:
 
 
 def _running(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
-    """All nodes below one, and whether they run on import; what never runs in an FMU is left out."""
+    """All nodes below one, and whether they run on import; code that never runs is left out."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.If) and ast.unparse(child.test).startswith(
             ("__name__ ==", "TYPE_CHECKING", "typing.TYPE_")
@@ -236,9 +244,10 @@ def _running(node: ast.AST, always: bool) -> Iterator[tuple[ast.AST, bool]]:
 
 
 def _renamed(module: Module, package: str, modules: Mapping[str, Module]) -> bytes:
-    """Source with its absolute imports of bundled modules leading into the package, line for line as it was."""
+    """Source with absolute imports of bundled modules redirected into the package; lines stay."""
     lines = module.source.splitlines(keepends=True)
     statements = {(node.lineno, node.col_offset): node for node in module.imports}
+    # From the end, so that positions of earlier statements stay valid.
     for _, node in sorted(statements.items(), reverse=True):
         if isinstance(node, ast.ImportFrom) and node.level:
             continue
@@ -249,6 +258,7 @@ def _renamed(module: Module, package: str, modules: Mapping[str, Module]) -> byt
         old = b"".join([*lines[first:last], lines[last][: node.end_col_offset]])[
             node.col_offset :
         ].decode()
+        # The number of lines must not change: tracebacks then show the right line.
         new = (
             _renamed_from(old, package)
             if isinstance(node, ast.ImportFrom)
@@ -263,6 +273,7 @@ def _renamed_from(old: str, package: str) -> str:
 
 
 def _renamed_import(node: ast.Import, package: str, modules: Mapping[str, Module]) -> str:
+    # Keep names that the code uses, whatever the import is called inside.
     names = []
     for alias in node.names:
         root = alias.name.partition(".")[0]

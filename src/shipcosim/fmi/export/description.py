@@ -1,4 +1,4 @@
-"""modelDescription.xml of an FMU class, and the table of its variables for a README."""
+"""modelDescription.xml of an FMU class, and its table of variables for a README."""
 
 import math
 from xml.etree import ElementTree as xml
@@ -37,7 +37,7 @@ LONGEST_SHOWN = 24  # characters of a start value in a table for readers
 
 
 def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
-    """The model description as bytes, the same for the same class.
+    """Model description as bytes; the same class gives the same bytes.
 
     Parameters
     ----------
@@ -57,6 +57,7 @@ def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
     ValueError
         A unit cannot be read; the text names the variable.
     """
+    # Attributes of the FMU, with this version of shipcosim as its tool.
     attributes = dict(
         fmiVersion="2.0",
         modelName=identifier,
@@ -69,6 +70,7 @@ def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
         variableNamingConvention="flat",
         numberOfEventIndicators="0",
     )
+    # Elements in the order that the schema requires.
     root = xml.Element("fmiModelDescription", attributes)
     _co_simulation(root, identifier)
     units = sorted({variable.unit for variable in cls.variables if variable.type == "Real"})
@@ -81,6 +83,7 @@ def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
     xml.SubElement(
         root, "DefaultExperiment", startTime="0.0", stepSize=repr(float(cls.default_step_size))
     )
+    # The value reference is the position in the list.
     listed = xml.SubElement(root, "ModelVariables")
     for reference, variable in enumerate(cls.variables):
         listed.append(_scalar_variable(reference, variable))
@@ -143,6 +146,7 @@ def _co_simulation(root, identifier):
 
 
 def _unit_definitions(root, variables, units):
+    # Each unit with its exponents of SI base units; degrees for display.
     definitions = xml.SubElement(root, "UnitDefinitions")
     for unit in units:
         try:
@@ -157,6 +161,7 @@ def _unit_definitions(root, variables, units):
 
 
 def _type_definitions(root, units):
+    # Types name the physical quantity of common units.
     named = [unit for unit in units if unit in QUANTITIES]
     if named:
         definitions = xml.SubElement(root, "TypeDefinitions")
@@ -172,6 +177,7 @@ def _displayed(unit: str) -> dict[str, str]:
 
 
 def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
+    # Causality and variability as FMI defines them.
     element = xml.Element(
         "ScalarVariable",
         name=variable.name,
@@ -180,6 +186,7 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
         causality=variable.causality,
         variability=_variability(variable),
     )
+    # Type, unit and bounds; outputs are calculated and have no start value.
     value = {}
     if variable.type == "Real":
         if variable.unit in QUANTITIES:
@@ -196,6 +203,7 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
     if variable.causality == "parameter":
         element.set("initial", "exact")
     xml.SubElement(element, variable.type, value)
+    # Tolerance and "required" are ours: they go into an annotation.
     about = {"tolerance": repr(float(variable.tolerance))} if variable.tolerance else {}
     about |= {"required": "true"} if variable.required else {}
     if about:
@@ -227,6 +235,7 @@ def _text(value):
 
 
 def _structure(root, variables):
+    # Outputs depend on no input within a step; at the start they may depend on all.
     structure = xml.SubElement(root, "ModelStructure")
     indices = [
         str(index) for index, variable in enumerate(variables, 1) if variable.causality == "output"

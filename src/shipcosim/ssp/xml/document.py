@@ -1,4 +1,4 @@
-"""XML read safely and checked against its schema: no entities, no network, every finding with file and line."""
+"""XML read safely: no entities, no network, every finding with file and line."""
 
 import re
 from collections.abc import Iterator
@@ -38,7 +38,7 @@ LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild a
 
 
 class Findings:
-    """Problems found so far, collected so that a user sees all of them at once."""
+    """Problems collected so far, so that a user sees all of them at once."""
 
     def __init__(self):
         self.problems: list[Problem] = []
@@ -49,7 +49,7 @@ class Findings:
         )  # by a schema: what else is wrong with a value there has been said
 
     def error(self, where: str, found: str, remedy: str = "") -> None:
-        """Note what makes the input unusable.
+        """Add an error: it makes the input unusable.
 
         Parameters
         ----------
@@ -59,7 +59,7 @@ class Findings:
         self.problems.append(Problem(where, found, remedy))
 
     def remark(self, where: str, found: str, remedy: str = "") -> None:
-        """Note what a user should know although it stops nothing.
+        """Add a remark: a user should know it, but it stops nothing.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class Findings:
         self.problems.append(Problem(where, found, remedy, severity="remark"))
 
     def flaw(self, where: str, found: str, remedy: str = "") -> None:
-        """Note what breaks the standard and can mean one thing only: a remark, and an error for `--strict`.
+        """Add a flaw: a deviation with one possible meaning, an error only with `--strict`.
 
         Parameters
         ----------
@@ -86,7 +86,8 @@ class Findings:
 
     @property
     def errors(self) -> list[Problem]:
-        """Those of the problems that make the input unusable."""
+        """Problems that make the input unusable."""
+        # Only problems added since the last call: the list can be long.
         self._errors += [
             problem for problem in self.problems[self._looked_at :] if problem.severity == "error"
         ]
@@ -121,7 +122,7 @@ class Document:
     flaws: list[Problem] = field(default_factory=list, compare=False)
 
     def place(self, element: etree._Element, what: str = "") -> str:
-        """Where an element stands, for the user to look it up."""
+        """Place of an element, for the user to look it up."""
         line = (
             f", line {element.sourceline}" if element.sourceline else ""
         )  # none where it was made in memory
@@ -148,12 +149,13 @@ def reporting(
     try:
         yield
     except ValueError as error:
+        # The schema may have refused this line already: report it once.
         if document.place(element) not in findings.refused_lines:
             findings.error(document.place(element, what), str(error), remedy_for(str(error)))
 
 
 def remedy_for(found: str) -> str:
-    """What would be right instead of a value of the wrong form.
+    """Remedy for a value of the wrong form.
 
     Examples
     --------
@@ -175,7 +177,7 @@ def child(element: etree._Element, tag: str) -> etree._Element | None:
 
 
 def children(element: etree._Element, *path: str) -> list[etree._Element]:
-    """Children of the last tag of a path, ``"ssd:Connectors", "ssd:Connector"``; none where the path ends early."""
+    """Children of the last tag of a path, ``"ssd:Connectors", "ssd:Connector"``; may be empty."""
     return element.findall("/".join(qualified(tag) for tag in path))
 
 
@@ -228,6 +230,7 @@ def parse(
     -------
     lxml element, or None where there is no usable one.
     """
+    # Limit the size before anything is parsed.
     if len(data) > LARGEST_FILE:
         findings.error(
             file, "The file is too large.", f"At most {LARGEST_FILE >> 20} MiB are read."
@@ -238,12 +241,14 @@ def parse(
             file, "The file is not UTF-8.", "SSP files must be: save it with this encoding."
         )
         return None
+    # No entities, no network, no DTD: a file must not read other files.
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False
     )
     try:
         root = etree.fromstring(data, parser)
     except (etree.XMLSyntaxError, ValueError) as error:
+        # The parser names the line in its message; put it where our messages have it.
         line = getattr(error, "lineno", None)
         text = re.sub(r", line \d+, column \d+.*", "", str(error), flags=re.DOTALL)
         findings.error(
@@ -252,6 +257,7 @@ def parse(
             "Correct or export anew.",
         )
         return None
+    # Entities could expand without limit.
     if root.getroottree().docinfo.internalDTD is not None:
         findings.error(
             file,
@@ -280,6 +286,7 @@ def read_document(path: str | PathLike[str], shown: str, findings: Findings) -> 
     """
     path = Path(path)
     try:
+        # One byte more than allowed shows that the file is too large.
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
     except OSError as error:
@@ -302,6 +309,7 @@ def parsed(data: bytes, shown: str, findings: Findings, folder: Path = Path()) -
     folder : Path
         Folder that relative addresses in it start from.
     """
+    # First as it is; undeclared prefixes are the one error that can be repaired in the text.
     flaws = Findings()
     tried = Findings()
     root = parse(data, shown, tried)
@@ -314,13 +322,15 @@ def parsed(data: bytes, shown: str, findings: Findings, folder: Path = Path()) -
 
 
 def with_prefixes(data: bytes, shown: str, findings: Findings) -> bytes:
-    """An XML text in which every prefix is declared; those of SSP mean what they mean everywhere."""
+    """Declare every undeclared prefix; those of SSP have their usual meaning."""
+    # Prefixes in use, outside comments.
     first, *others = data.split(b"<!--")
     text = b"".join(
         [first, *(part.partition(b"-->")[2] for part in others)]
     )  # prefixes in comments are none
     used = set(re.findall(rb"</?([A-Za-z_][\w.-]{0,30}):[A-Za-z_]", text))
     missing = sorted(prefix for prefix in used - {b"xml"} if b"xmlns:" + prefix not in text)
+    # Add the missing declarations to the outermost element.
     start = re.search(rb"<[A-Za-z_][^\s/>]*", data)
     if not missing or start is None or len(missing) > MOST_PREFIXES:
         return data

@@ -1,4 +1,4 @@
-"""Editing of XML in place: elements are added where the schema requires them, and all else stays as it is.
+"""Editing of XML in place: added elements stand where the schema requires, all else stays.
 
 Added elements are indented like their neighbours.
 """
@@ -42,7 +42,7 @@ OSP_MARK = "opensimulationplatform"
 
 
 def add(parent: etree._Element, tag: str, **attributes: str | None) -> etree._Element:
-    """Add a new element to a parent where the schema requires it: after others of its tag, before later ones.
+    """Add a new element where the schema requires it: after its kind, before later kinds.
 
     Parameters
     ----------
@@ -64,10 +64,12 @@ def add(parent: etree._Element, tag: str, **attributes: str | None) -> etree._El
 
 
 def put(parent: etree._Element, element: etree._Element) -> None:
-    """Add an element to a parent where the schema requires it."""
+    """Insert an element into a parent where the schema requires it."""
+    # Before the first element that the schema orders after it.
     order = ORDER.get(local(parent), ())
     later = order[order.index(local(element)) + 1 :] if local(element) in order else ()
     index = next((parent.index(part) for part in parent if local(part) in later), len(parent))
+    # Indent the new element, and the white space around it, as its neighbours.
     level = sum(1 for _ in parent.iterancestors())
     before = parent[index - 1] if index else None
     parent.insert(index, element)
@@ -80,7 +82,7 @@ def put(parent: etree._Element, element: etree._Element) -> None:
 
 
 def ensure(parent: etree._Element, *tags: str) -> etree._Element:
-    """Child of the last tag of a path, made if it is not there."""
+    """Child of the last tag of a path, created if missing."""
     for tag in tags:
         found = child(parent, tag)
         parent = add(parent, tag) if found is None else found
@@ -88,7 +90,8 @@ def ensure(parent: etree._Element, *tags: str) -> etree._Element:
 
 
 def drop(element: etree._Element) -> None:
-    """Remove an element, and the list that it was the last one of: the schema has no empty ones."""
+    """Remove an element, and its list if that is then empty: the schema forbids empty lists."""
+    # White space after the element moves to the one before.
     parent = parent_of(element)
     before = element.getprevious()
     if element.getnext() is None and before is not None:
@@ -110,6 +113,7 @@ def add_osp(root: etree._Element, parent: etree._Element, *names: str, **attribu
     **attributes : str
         Of the last of them.
     """
+    # One annotation of OSP's type holds all of its elements.
     listed = ensure(parent, "ssd:Annotations")
     marked = [part for part in children(listed, "ssc:Annotation") if part.get("type") == OSP_TYPE]
     element = marked[0] if marked else add(listed, "ssc:Annotation", type=OSP_TYPE)
@@ -122,10 +126,10 @@ def add_osp(root: etree._Element, parent: etree._Element, *names: str, **attribu
 
 
 def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
-    """File of an element, with the prefixes of the standard declared on the root.
+    """Serialise an element, with the standard prefixes declared on the root.
 
-    libcosim knows elements by these very prefixes, and those of OSP only where the root declares theirs. Everything
-    else, also what no schema knows, comes out as it is.
+    libcosim identifies elements by these very prefixes, and OSP's only if declared on the root.
+    Everything else, also what no schema knows, stays unchanged.
 
     Parameters
     ----------
@@ -134,17 +138,20 @@ def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
     *prefixes : str
         Declared whether they are used or not; those in use are anyway.
     """
+    # Prefixes of the standard that are in use, that of the root first.
     used = {etree.QName(element).namespace for element in root.iter(etree.Element)}
     known = NAMESPACES | {"osp": osp_namespace(root)}
     known = dict(
         sorted(known.items(), key=lambda item: item[1] != etree.QName(root).namespace)
     )  # its own one first
     names = {prefix: uri for prefix, uri in known.items() if prefix in prefixes or uri in used}
+    # Foreign prefixes stay, unless they would clash.
     foreign = {
         p: uri
         for p, uri in root.nsmap.items()
         if p and p not in names and uri not in names.values()
     }
+    # Copy into a root with these declarations, with comments around it.
     copied = etree.Element(root.tag, dict(root.attrib), names | foreign)
     copied.text = root.text
     copied.extend(
@@ -161,7 +168,7 @@ def to_bytes(root: etree._Element, *prefixes: str) -> bytes:
 
 
 def osp_namespace(root: etree._Element) -> str:
-    """Namespace of the OSP annotations in a file, first of all of the algorithm; the usual one where there are none."""
+    """Namespace of OSP's annotations in a file, the algorithm's first; the usual one if none."""
     found = [
         element.tag for element in root.iter("{*}Algorithm", "{*}*") if OSP_MARK in element.tag
     ]
@@ -170,7 +177,7 @@ def osp_namespace(root: etree._Element) -> str:
 
 
 def free_name(name: str, taken: Container[str]) -> str:
-    """The name, with a number behind it where it is taken.
+    """The name, with a number behind it if taken.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Flaws of form that can mean one thing only, put right in the tree: what reads on finds what the standard has.
+"""Flaws with only one possible meaning, corrected in the tree before it is read.
 
-Files of the wild have them: namespaces left out, empty attributes, empty lists, parts in another order. Each is said as
-a flaw of the document.
+Files in the wild have them: missing namespaces, empty attributes or lists, parts in another order.
+Each is reported as a flaw of the document.
 """
 
 import re
@@ -70,7 +70,7 @@ ONCE = ("MappingEntry", "MapEntry", "Unit", "Enumeration", "Item")
 
 
 def mend(document: Document, tag: str) -> None:
-    """Put right what has only one meaning, if a document is of a kind; it goes among the document's flaws.
+    """Correct a document of a kind in place; corrections become flaws of the document.
 
     Parameters
     ----------
@@ -82,6 +82,7 @@ def mend(document: Document, tag: str) -> None:
     prefix, name = tag.split(":")
     if local(document.root) != name:
         return
+    # Namespaces first: all other corrections find elements by them.
     noted = Findings()
     _set_namespaces(document, prefix, noted)
     _complete(document, noted)
@@ -103,7 +104,7 @@ def mend(document: Document, tag: str) -> None:
 
 
 def _own(element: etree._Element) -> Iterator[etree._Element]:
-    """An element and those in it that the standard describes: not what annotations hold."""
+    """An element and its parts that the standard describes, without contents of annotations."""
     ahead = [element]
     while ahead:
         element = ahead.pop()
@@ -113,7 +114,8 @@ def _own(element: etree._Element) -> Iterator[etree._Element]:
 
 
 def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
-    """Namespaces that are missing or those of another part of the standard, by the place of an element."""
+    """Correct namespaces that are missing or of another part of the standard, by place."""
+    # Walk down with the kind of file, which changes within bindings.
     said = set()
     ahead = [(document.root, prefix)]
     known = names_of("ssd").elements
@@ -121,9 +123,11 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
         element, kind = ahead.pop()
         name = local(element)
         space = etree.QName(element).namespace or ""
+        # Variants of our namespaces, such as https, count as ours.
         plain = space.replace("https:", "http:").rstrip("/")
         ours = not space or plain in NAMESPACES.values()
         right = NAMESPACES[_prefix_of(element, kind)]
+        # Report each pair of wrong and right namespace once.
         if ours and space != right and name in known:
             if (space, right) not in said:
                 its = f"the namespace '{space}'" if space else "no namespace"
@@ -140,7 +144,7 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
 
 
 def _prefix_of(element: etree._Element, kind: str) -> str:
-    """Prefix of an element of a kind of file."""
+    """Prefix of an element in a kind of file."""
     name = local(element)
     parent = element.getparent()
     if name in COMMON or name.endswith("Transformation"):
@@ -151,7 +155,7 @@ def _prefix_of(element: etree._Element, kind: str) -> str:
 
 
 def _kind_within(element: etree._Element, part: etree._Element, kind: str) -> str:
-    """Kind of file that a part of an element is of: another one within the bindings of an SSD."""
+    """Kind of a part of an element: it changes within the bindings of an SSD."""
     inline = (
         kind == "ssd"
         and local(part) in PREFIXES
@@ -161,7 +165,8 @@ def _kind_within(element: etree._Element, part: etree._Element, kind: str) -> st
 
 
 def _complete(document: Document, noted: Findings) -> None:
-    """Version and name, where the outermost element or a set in it has none."""
+    """Add version and name where the outermost element or a set has none."""
+    # A set without a version has that of the file.
     outer = document.root.get("version") or "1.0"
     for element in document.root.iter(
         *(f"{{{NAMESPACES[p]}}}{name}" for name, p in PREFIXES.items())
@@ -195,6 +200,7 @@ def _prefix_in(element: etree._Element) -> str:
 
 def _drop_empty_attributes(document: Document, element: etree._Element, noted: Findings) -> None:
     for name in EMPTY_IS_ABSENT:
+        # An empty attribute counts as absent, except where an empty text means something.
         if element.get(name) == "" and not (
             name == "source" and local(element) in ("Component", "MapEntry")
         ):
@@ -209,7 +215,7 @@ def _drop_empty_attributes(document: Document, element: etree._Element, noted: F
 
 
 def _move_source(document: Document, element: etree._Element, noted: Findings) -> None:
-    """The address of a parameter set stands at its binding, not at the element within that would hold the set."""
+    """Move the address of a parameter set from ParameterValues to its binding."""
     parent = element.getparent()
     if local(element) == "ParameterValues" and element.get("source") and parent is not None:
         if parent.get("source") in (None, "", element.get("source")):
@@ -220,7 +226,7 @@ def _move_source(document: Document, element: etree._Element, noted: Findings) -
 
 
 def _mend_boolean(document: Document, element: etree._Element, noted: Findings) -> None:
-    """True and FALSE, as programs write them that do not know XML."""
+    """Correct True and FALSE, as programs without XML libraries write them."""
     for name in ("value", "suppressUnitConversion"):
         text = element.get(name)
         of_type = name != "value" or local(element) == "Boolean"
@@ -239,7 +245,7 @@ def _mend_boolean(document: Document, element: etree._Element, noted: Findings) 
 
 
 def _drop_unknown(document: Document, element: etree._Element, noted: Findings) -> None:
-    """Elements that SSP 1.0 does not know and that do not look like a misspelt one of it."""
+    """Remove elements unknown to SSP 1.0 that are no misspelt known ones."""
     if (document.root.get("version") or "").startswith("2"):
         return  # what is unknown there may be something of 2.0
     known = names_of("ssd").elements | set(KINDS) | {"Dimension", "MetaData", "Signature"}
@@ -257,6 +263,7 @@ def _drop_unknown(document: Document, element: etree._Element, noted: Findings) 
 
 
 def _sort(document: Document, element: etree._Element, noted: Findings) -> None:
+    # Only elements all of whose parts are known can be sorted.
     order = ORDER.get(local(element), "").split()
     parts = [part for part in element if local(part)]
     if not order or any(local(part) not in order for part in parts):
@@ -284,7 +291,7 @@ def _drop_empty_lists(document: Document, element: etree._Element, noted: Findin
 
 
 def _drop_repeated(document: Document, element: etree._Element, noted: Findings) -> None:
-    """Elements that say again what one before them says."""
+    """Remove elements that repeat an earlier one."""
     seen = {}
     for part in [part for part in element if local(part) in ONCE]:
         said = _said(part)
@@ -296,7 +303,7 @@ def _drop_repeated(document: Document, element: etree._Element, noted: Findings)
 
 
 def _said(element: etree._Element) -> tuple:
-    """What an element says, without how it is drawn and described."""
+    """Content of an element, without drawing and description."""
     attributes = {
         name: text for name, text in element.attrib.items() if name not in ("id", "description")
     }

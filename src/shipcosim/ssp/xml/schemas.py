@@ -1,4 +1,4 @@
-"""Schemas of SSP 1.0 and FMI, as FMPy brings them; where a file breaks one is said in words that an engineer knows."""
+"""Schemas of SSP 1.0 and FMI from FMPy; violations are reported in plain words."""
 
 import re
 from collections.abc import Collection
@@ -46,7 +46,7 @@ class Names:
 
 
 def is_slip(name: str, known: Collection[str]) -> bool:
-    """Whether an unknown name looks like a known one that is misspelt.
+    """True if an unknown name looks like a misspelt known one.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def is_slip(name: str, known: Collection[str]) -> bool:
 def report_schema(
     checker: etree.XMLSchema, names: Names, root: etree._Element, file: str, findings: Findings
 ) -> None:
-    """Note every place where an element breaks a schema; unknown attributes that are no slip are flaws.
+    """Report every violation of a schema; unknown attributes that are no slip are flaws.
 
     Parameters
     ----------
@@ -79,6 +79,7 @@ def report_schema(
     """
     if checker.validate(root):
         return
+    # Translate the message of the schema checker into plain words.
     for entry in checker.error_log:
         text = re.sub(r"\{(http|urn)[^}]*\}", "", entry.message)
         for kind, word in WORDS.items():
@@ -90,6 +91,7 @@ def report_schema(
             " Expected is "
         )
         where = f"{file}, line {entry.line}" if entry.line else file
+        # A flaw has one possible meaning; everything else is an error.
         if _is_flaw(text, names):
             findings.flaw(
                 where,
@@ -97,6 +99,7 @@ def report_schema(
                 "Correct its name or remove it.",
             )
             continue
+        # Values on this line are not checked again.
         findings.refused_lines.add(where)
         if choice:
             expected = f"one of: {choice.strip('{}.')}."
@@ -104,7 +107,7 @@ def report_schema(
 
 
 def _is_flaw(text: str, names: Names) -> bool:
-    """Whether what breaks a schema has only one meaning."""
+    """True if a violation has only one possible meaning."""
     unknown = re.search(
         r"^Element '(\w+)', attribute '([^']+)': The attribute '\2' is not allowed\.", text
     )
@@ -122,13 +125,13 @@ def schema_of(name: str) -> etree.XMLSchema:
 
 @cache
 def names_of(name: str) -> Names:
-    """Names that a schema of SCHEMAS and those beside it know."""
+    """Names in a schema of SCHEMAS and in its neighbours."""
     beside = sorted(_file_of(name).parent.glob("*.xsd"))
     return names_in("".join(file.read_text(encoding="utf-8") for file in beside))
 
 
 def names_in(text: str) -> Names:
-    """Names that the text of a schema declares."""
+    """Names that a schema's text declares."""
     return Names(
         *(
             frozenset(re.findall(rf'<xs:{kind} name="([^"]+)"', text))

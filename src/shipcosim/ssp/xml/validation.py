@@ -1,4 +1,4 @@
-"""Validation of elements against their schema, whatever version of SSP or FMI they are of."""
+"""Validation of elements against the schema of their version of SSP or FMI."""
 
 import lxml.etree as etree
 

@@ -1,4 +1,4 @@
-"""Types and values of variables as SSP and FMI write them."""
+"""Types and values of variables as written in SSP and FMI."""
 
 import math
 from collections.abc import Callable
@@ -77,7 +77,7 @@ def _number(convert: Callable[[str], float], text: str, name: str) -> float:
 
 
 def text_of(value: Value) -> str:
-    """Text of a value, which `read_value` makes the same value of.
+    """Text of a value, from which `read_value` makes the same value.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Validation of SSP 2.0 by the schema of 1.0: in a copy, what 2.0 has added is removed, and the rest must be as in 1.0.
+"""Validation of SSP 2.0 by the schema of 1.0: additions are removed in a copy.
 
-No package brings the schemas of 2.0. What is unknown here may be something of 2.0 that this module does not know, so it
-is a remark, that it is not used; what is missing or has a wrong value is an error.
+No package contains the schemas of 2.0. Unknown parts may be of 2.0, so they are remarks; missing
+parts and wrong values are errors.
 
 Reference: System Structure and Parameterization 2.0, sections 4 to 8.
 """
@@ -23,12 +23,14 @@ UNKNOWN = ("is not expected", "is not allowed")
 
 def validate_2(root: etree._Element, schema: str, file: str, findings: Findings) -> None:
     """Check an element of SSP 2.0; see `shipcosim.ssp.xml.validation.validate`."""
+    # Reduce a copy to what 1.0 has, checking ranges of integers on the way.
     reduced = deepcopy(root)
     for element in list(reduced.iter("{*}*")):
         if element.tag.startswith(tuple(f"{{{uri}}}" for uri in NAMESPACES.values())):
             if wrong := _out_of_range(element):
                 findings.error(f"{file}, line {element.sourceline}", *wrong)
             _reduce(element)
+    # Check the copy, and sort the findings: unknown parts are only remarks.
     found = Findings()
     report_schema(schema_of(schema), names_of(schema), reduced, file, found)
     findings.refused_lines |= found.refused_lines
@@ -42,12 +44,14 @@ def validate_2(root: etree._Element, schema: str, file: str, findings: Findings)
 
 
 def _reduce(element: etree._Element) -> None:
-    """Make an element one of SSP 1.0 or, where that has nothing of the kind, take it out."""
+    """Turn an element into one of SSP 1.0, or remove it if 1.0 has nothing like it."""
     name = local(element)
     parent = element.getparent()
+    # Elements that only 2.0 has.
     if name in ADDED and parent is not None:
         parent.remove(element)
         return
+    # Version, attributes and values that 1.0 does not know.
     if (element.get("version") or "").startswith("2."):
         element.set("version", "1.0")
     for attribute in ADDED_ATTRIBUTES:
@@ -63,8 +67,9 @@ def _reduce(element: etree._Element) -> None:
 
 
 def _reduce_type(element: etree._Element, name: str) -> None:
-    """A type under its name in 1.0, with one value that has its form where there are several."""
+    """Rename a type as in 1.0, with one representative value of several."""
     space = element.tag.partition("}")[0]
+    # Values as elements of their own become one attribute.
     listed = [part for part in element if local(part) == "Value"]
     for part in listed:
         element.remove(part)
@@ -73,6 +78,7 @@ def _reduce_type(element: etree._Element, name: str) -> None:
     kind = KINDS[name]
     text = element.get("value")
     if text is not None and kind in ("Real", "Integer", "Boolean"):
+        # A wrong value stands for all, so that the schema reports it.
         texts = text.split() or [""]
         bad = [one for one in texts if not _is(kind, one)]
         element.set("value", bad[0] if bad else "0" if kind == "Integer" else texts[0])
@@ -87,7 +93,7 @@ def _is(kind: str, text: str) -> bool:
 
 
 def _out_of_range(element: etree._Element) -> tuple[str, str] | None:
-    """Found and remedy where an integer of so many bits cannot have a value that it is given, or None."""
+    """Found and remedy if an integer cannot have its value in so many bits, or None."""
     low, high = RANGES.get(local(element), (0, 0))
     texts = (element.get("value") or "").split() if high else []
     bad = [

@@ -41,7 +41,7 @@ OPTIONS_FOR = {
 
 
 def digest(platform: str) -> str:
-    """SHA-256 of all that the loader for a platform is compiled from; the loader holds it as text."""
+    """SHA-256 of the sources and options of a platform's loader, which contains it as text."""
     files = [*SOURCES[platform], "interpreter.h", "system.h"]
     texts = [(FOLDER / name).read_bytes().replace(b"\r\n", b"\n") for name in files]
     options = repr((OPTIONS, OPTIONS_FOR[platform])).encode()
@@ -49,7 +49,7 @@ def digest(platform: str) -> str:
 
 
 def compile_loader(platform: str, out: Path) -> Path:
-    """Compile the loader.
+    """Compile the loader of a platform.
 
     Parameters
     ----------
