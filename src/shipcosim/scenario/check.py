@@ -149,8 +149,8 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = max(1, round(time / step)) * step
             yield keys, found, f"The nearest would be {nearest:g} s.", "error"
-        # An event at or after the end has no effect: worth a remark.
         elif keys[0] == "events" and time >= stop:
+            # An event at or after the end has no effect: worth a remark.
             yield (
                 keys,
                 f"the event at {time:g} s never acts: the run ends at {stop:g} s.",
