@@ -183,7 +183,7 @@ def train(recipe: PaperITraining, progress: Progress) -> Trained:
     Trained
         Weights and report.
     """
-    # Ranges of the commands in the exercise: the allocator keeps within them.
+    # Ranges of the commands in the exercise: beyond them the thrust stays constant.
     loads, commands = read_exercise()
     arrays: dict[str, np.ndarray] = {"least": commands.min(axis=0), "most": commands.max(axis=0)}
     settings: dict = {"hidden neurons": NEURONS, "cutoff of the pseudo-inverse": recipe.cutoff}

@@ -1,4 +1,4 @@
-"""Amounts with a unit in events and expectations (``"45 deg"``), brought to the units of their signals."""
+"""Amounts with a unit in events and expectations (``"45 deg"``), converted to signal units."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def units_of(system: System) -> UnitOf:
 
 
 def with_numbers(scenario: Scenario, unit_of: UnitOf) -> Scenario:
-    """Scenario whose events and expectations hold plain numbers in the units of their signals.
+    """Convert the events and expectations of a scenario to plain numbers in signal units.
 
     Parameters
     ----------
@@ -35,19 +35,21 @@ def with_numbers(scenario: Scenario, unit_of: UnitOf) -> Scenario:
     UnitError
         If an amount measures another thing than its signal.
     """
+    # Texts with units become numbers; everything else stays.
     events = [_event(event, unit_of) for event in scenario.events]
     expect = [expectation_in_numbers(one, unit_of) for one in scenario.expect]
     return scenario.model_copy(update={"events": events, "expect": expect})
 
 
 def _event(event: Event, unit_of: UnitOf) -> Event:
+    # A bias is a difference: an offset between units does not apply.
     override = {signal: _number(value, signal, unit_of) for signal, value in event.override.items()}
     bias = {signal: _number(value, signal, unit_of, True) for signal, value in event.bias.items()}
     return event.model_copy(update={"override": override, "bias": bias})
 
 
 def expectation_in_numbers(expect: Expectation, unit_of: UnitOf) -> Expectation:
-    """Expectation with plain numbers: those of `near` in the units of its signals, the others in that of the first.
+    """Expectation in plain numbers: `near` in the units of its signals, all else in the first unit.
 
     Raises
     ------
@@ -55,6 +57,7 @@ def expectation_in_numbers(expect: Expectation, unit_of: UnitOf) -> Expectation:
         If an amount measures another thing than its signal.
     """
     values = {}
+    # `within` is a difference, as a bias is.
     for key, signal, value in _amounts(expect):
         number = _number(value, signal, unit_of, key == "within")
         values[key] = [*values.get(key, ()), number] if key == "near" else number
@@ -63,6 +66,7 @@ def expectation_in_numbers(expect: Expectation, unit_of: UnitOf) -> Expectation:
 
 def _amounts(expect: Expectation) -> Iterator[tuple[str, str, Any]]:
     """(key, signal, value) of each value of an expectation, names of signals in `near` included."""
+    # Targets belong to their signals, limits to the first one.
     for signal, value in zip(expect.signal, expect.near or (), strict=False):
         yield "near", signal, value
     for key in ("within", "at_least", "at_most"):
@@ -71,14 +75,14 @@ def _amounts(expect: Expectation) -> Iterator[tuple[str, str, Any]]:
 
 
 def _number(value: Any, signal: str, unit_of: UnitOf, difference: bool = False) -> Any:
-    """A value with its unit converted; other texts, such as items of enumerations, as they are."""
+    """Convert a value with a unit; other texts, such as enumeration items, stay as they are."""
     if not isinstance(value, str) or amount(value) is None:
         return value
     return number_in(value, unit_of(signal), difference=difference)
 
 
 def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str, str, str]]:
-    """What is wrong with the units of an expectation: (its key, what was found, what would be right).
+    """Problems with the units of an expectation: (key, found, remedy).
 
     Parameters
     ----------
@@ -87,17 +91,20 @@ def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str,
     unit_of : callable
         Unit of a signal.
     """
+    # Signals of one distance must have one kind of unit.
     first = expect.signal[0]
     for other in expect.signal[1:]:
         if _differ(first, other, unit_of):
             found = f"{_in(first, unit_of)} and {_in(other, unit_of)}: no distance spans the two."
             yield "signal", found, "Write an expectation for each."
+    # A target signal must measure the same as its signal.
     for key, signal, value in _amounts(expect):
         if key == "near" and value in expect.signals and _differ(signal, value, unit_of):
             found = (
                 f"{_in(signal, unit_of)} and {_in(value, unit_of)}: they measure different things."
             )
             yield key, found, f"Compare {signal} with a signal of its unit."
+        # Amounts must be convertible to the unit of their signal.
         try:
             _number(value, signal, unit_of, key == "within")
         except UnitError as error:
@@ -105,7 +112,7 @@ def unit_complaints(expect: Expectation, unit_of: UnitOf) -> Iterator[tuple[str,
 
 
 def _differ(one: str, other: str, unit_of: UnitOf) -> bool:
-    """Whether two signals cannot be compared; signals without a unit can be, since nothing is known of them."""
+    """True if two signals cannot be compared; without a unit they can, as nothing is known."""
     units = unit_of(one), unit_of(other)
     return (
         units[0] is not None

@@ -1,4 +1,4 @@
-"""Checks of a scenario: in itself, and against the system that it runs."""
+"""Checks of a scenario: alone, and against the system that it runs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ MOST_STEPS = 1e8
 
 
 def check_files(scenario: Scenario) -> list[Problem]:
-    """What a scenario names and what is not there: its system, its parameter sets, its components' FMUs."""
+    """Find missing files of a scenario: its system, parameter sets and components' FMUs."""
+    # Without a system nothing else can be checked.
     if not scenario.system:
         return [
             problem_at(
@@ -40,11 +41,13 @@ def check_files(scenario: Scenario) -> list[Problem]:
         known = _systems(scenario)
         found = f"there is no system '{scenario.system}', by this name or beside the scenario."
         return [problem_at(scenario, ("system",), found, suggestion(scenario.system, known))]
+    # Parameter sets in the system's resources or next to the scenario.
     for name, path in zip(scenario.parameters, scenario.parameter_paths, strict=True):
         if not path.exists():
             known = [file.stem for file in (system / "resources").glob("*.ssv")]
             found = f"there is no parameter set '{name}', in {system / 'resources'} or beside the scenario."
             problems.append(problem_at(scenario, ("parameters",), found, suggestion(name, known)))
+    # FMUs are looked for, not built.
     for name, fmu in scenario.components.items():
         try:
             scenario.model_copy(update={"components": {name: fmu}}).component_paths(build=False)
@@ -61,7 +64,7 @@ def _systems(scenario: Scenario) -> list[str]:
 
 
 def whole_steps(duration: float, step_size: float) -> int | None:
-    """How many steps make up a duration; None if it is no whole number, to a millionth of a step.
+    """Number of steps in a duration; None if it is not whole, to a millionth of a step.
 
     Examples
     --------
@@ -70,6 +73,7 @@ def whole_steps(duration: float, step_size: float) -> int | None:
     >>> whole_steps(0.12, 0.05) is None
     True
     """
+    # Rounding errors of decimal step sizes are allowed, half steps are not.
     count = round(duration / step_size)
     return count if abs(duration / step_size - count) <= 1e-6 else None
 
@@ -99,7 +103,9 @@ def step_times(step_size: float, first: int, last: int, start_time: float = 0.0)
     >>> step_times(0.05, 0, 1, start_time=0.15).tolist() == step_times(0.05, 3, 4).tolist()
     True
     """
+    # As a fraction, so that 0.05 s times 3 is 0.15 s and no error accumulates.
     step = Fraction(step_size).limit_denominator(10**12)
+    # Count from time 0: a run that starts on a step of another has the same times.
     before = whole_steps(start_time, step_size)
     if before is None:
         return start_time + step_times(step_size, first, last)
@@ -111,15 +117,16 @@ def step_times(step_size: float, first: int, last: int, start_time: float = 0.0)
 
 
 def check_times(scenario: Scenario) -> Iterator[Problem]:
-    """Times of a scenario that do not fall on its steps, or lie after its end."""
+    """Find times of a scenario that miss its steps or lie after its end."""
     for complaint in time_complaints(scenario):
         yield problem_at(scenario, *complaint)
 
 
 def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
-    """What is wrong with the times of a scenario: (keys, what was found, what would be right, severity)."""
+    """Problems with the times of a scenario: (keys, found, remedy, severity)."""
     step = scenario.step_size
     stop = scenario.stop_time
+    # Too many steps would fill the memory before anything runs.
     if stop / step > MOST_STEPS:
         found = f"stop_time = {stop:g} s takes {stop / step:.3g} steps of {step:g} s."
         yield (
@@ -129,6 +136,7 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
             "error",
         )
         return
+    # Every time in the file must fall on a step.
     times: list[tuple[tuple[str | int, ...], float]] = [
         (("stop_time",), stop),
         (("output_interval",), scenario.output_interval or step),
@@ -136,17 +144,20 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
     ]
     for keys, time in times:
         count = whole_steps(time, step)
+        # No step at all is wrong for lengths of time, but an event may be at 0.
         if count is None or (count == 0 and keys[0] != "events"):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = max(1, round(time / step)) * step
             yield keys, found, f"The nearest would be {nearest:g} s.", "error"
         elif keys[0] == "events" and time >= stop:
+            # An event at or after the end has no effect: worth a remark.
             yield (
                 keys,
                 f"the event at {time:g} s never acts: the run ends at {stop:g} s.",
                 "",
                 "remark",
             )
+    # A window beyond the end is judged only as far as the run goes.
     for number, expect in enumerate(scenario.expect):
         if expect.during and expect.during[1] > stop:
             found = f"during = {expect.during} reaches beyond the end of the run at {stop:g} s."
@@ -154,7 +165,8 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
 
 
 def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
-    """Parameters that describe a ship and that nothing gives: every component's, all of them."""
+    """Find required ship parameters without a value, in all components."""
+    # Values come from the scenario or from a connection.
     given = {
         *scenario.set,
         *(".".join(filter(None, connection.target)) for connection in system.connections),
@@ -183,12 +195,14 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
     system : System
         That it runs. Start values are checked by `shipcosim.ssp.with_values`.
     """
+    # Times and parameters first; then events and expectations, each at its line.
     problems = [*check_times(scenario), *check_parameters(scenario, system)]
     wrong_changes = [
         problem_at(scenario, ("events", number, verb, signal), *complaint)
         for number, event in enumerate(scenario.events)
         for verb, signal, *complaint in event_complaints(event, system)
     ]
+    # Odd values are only checked once the events themselves are right.
     problems += wrong_changes or odd_values(scenario, system)
     changed = {signal for event in scenario.events for _, signal, _ in event.changes}
     for number, expect in enumerate(scenario.expect):
@@ -203,7 +217,7 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
 def expectation_complaints(
     expect: Expectation, system: System, changed: Collection[str] = ()
 ) -> list[tuple[str, str, str]]:
-    """What is wrong with an expectation of a system: (its key, what was found, what would be right).
+    """Problems of an expectation with a system: (key, found, remedy).
 
     Parameters
     ----------
@@ -213,6 +227,7 @@ def expectation_complaints(
     changed : collection of str
         Signals that events change.
     """
+    # Units can be compared only if all signals exist.
     complaints = [
         c for signal in expect.signals if (c := _expect_complaint(system, signal, changed))
     ]
@@ -222,7 +237,7 @@ def expectation_complaints(
 
 
 def event_complaints(event: Event, system: System) -> Iterator[tuple[str, str, str, str]]:
-    """What is wrong with an event of a system: (verb, signal, what was found, what would be right)."""
+    """Problems of an event with a system: (verb, signal, found, remedy)."""
     for verb, signal, value in event.changes:
         if complaint := _event_complaint(system, verb, signal, value):
             yield verb, signal, *complaint
@@ -231,7 +246,8 @@ def event_complaints(event: Event, system: System) -> Iterator[tuple[str, str, s
 def _event_complaint(
     system: System, verb: str, signal: str, value: Value | None
 ) -> tuple[str, str] | None:
-    """What is wrong with a change of a signal, as (found, remedy), or None."""
+    """Problem of a change of a signal, as (found, remedy), or None."""
+    # The signal must exist, as an input of the system or a variable of a component.
     try:
         component, name = system.split(signal)
     except ShipcosimError as error:
@@ -241,6 +257,7 @@ def _event_complaint(
             f"'{signal}' is no input of the system.",
             f"Inputs: {', '.join(system.inputs) or 'none'}.",
         )
+    # Type of the signal, and whether it may change during a run.
     if component is None:
         kind = system.inputs[name].type or ""
         items = system.inputs[name].items
@@ -258,6 +275,7 @@ def _event_complaint(
         if not may_change:
             remedy = "Events change inputs, outputs and tunable parameters; [set] sets parameters before the start."
             return f"'{signal}' is a {variable.variability} {variable.causality}.", remedy
+    # An amount with a unit must be convertible; any other value must fit the type.
     if kind == "Real" and isinstance(value, str) and amount(value) is not None:
         return _unit_complaint(system, verb, signal, value, (component, name))
     if verb != "reset" and not _fits(value, kind, items, verb):
@@ -300,14 +318,16 @@ def _fits(value: Value | None, kind: str, items: Mapping[str, int], verb: str) -
 def _expect_complaint(
     system: System, signal: str, changed: Collection[str]
 ) -> tuple[str, str] | None:
-    """Why a signal will not be in the table, as (found, remedy), or None."""
+    """Reason why a signal will not be in the table, as (found, remedy), or None."""
     try:
         component, name = system.split(signal)
     except ShipcosimError as error:
         return error.problems[0].found, error.problems[0].remedy
+    # Inputs of the system and changed signals are always recorded.
     if component is None or signal in changed:
         return None
     variable = system.components[component].fmu.variables[name]
+    # A connected input repeats its source and is not recorded.
     feeding = next((c.source for c in system.connections if c.target == (component, name)), None)
     if variable.causality == "input" and feeding is not None:
         source = ".".join(filter(None, feeding))
@@ -315,6 +335,7 @@ def _expect_complaint(
             f"'{signal}' is not recorded: it is what {source} puts out.",
             f"Expect something of {source}.",
         )
+    # Only inputs and outputs that are numbers are recorded.
     if variable.causality not in ("input", "output") or variable.kind == "String":
         return (
             f"'{signal}' is not recorded: it is a {variable.kind} {variable.causality}.",

@@ -1,4 +1,4 @@
-"""Verdicts: whether a run's table meets the expectations of a scenario."""
+"""Verdicts on a run: does its table meet the expectations of the scenario?"""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ class Verdict:
 def within_run(
     scenario: Scenario, table: xarray.Dataset, planned: float = 0.0
 ) -> tuple[list[Expectation], list[Expectation]]:
-    """Expectations of a scenario that lie within a table's times, and the others.
+    """Expectations of a scenario within a table's times, and the others.
 
-    One about every row holds for a part of a run, too; a statistic of the whole run does not.
+    An expectation on every row also holds for part of a run; a statistic of the whole run does not.
 
     Parameters
     ----------
@@ -64,10 +64,12 @@ def within_run(
     planned : float
         Stop time for which the expectations were written, where the scenario's is shorter. [s]
     """
+    # The whole run contains every expectation.
     first, last = table["time"].values[[0, -1]]
     is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
     found: tuple[list[Expectation], list[Expectation]] = [], []
     for expect in scenario.expect:
+        # A part contains those whose window it covers, or that look at every row.
         lies_within = (
             first <= expect.during[0] and expect.during[1] <= last
             if expect.during
@@ -87,6 +89,7 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     ShipcosimError
         If a signal is not in the table, or an expectation takes different things together: metres and radians.
     """
+    # Expected signals must be in the table.
     missing = [
         Problem(
             scenario.name,
@@ -99,6 +102,7 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
     ]
     if missing:
         raise ShipcosimError(missing)
+    # Units as the table states them, since it may come from another tool.
     unit_of = lambda signal: find_unit(table[signal].attrs.get("units") or None)  # noqa: E731
     wrong = [
         problem_at(scenario, ("expect", number, key), *complaint)
@@ -115,21 +119,25 @@ def judge(table: xarray.Dataset, scenario: Scenario) -> list[Verdict]:
 
 def verdict_on(table: xarray.Dataset, expect: Expectation, unit_of: UnitOf) -> Verdict:
     """Verdict on an expectation in plain numbers whose signals are all in the table; see `judge`."""
+    # Without a row in its window an expectation fails.
     times = table["time"].values
     rows = rows_of(table, expect)
     if len(rows) == 0:
         return Verdict(expect, False, np.nan, np.nan)
+    # Apply the statistic, then look for the row that misses the most.
     rows, values = _reduced(rows, values_of(table, expect, rows, unit_of), expect.statistic)
     excess = _excess(values, expect)
+    # A value that is not finite is worse than any other.
     worst = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
     measure = values[worst, 0] if expect.near is None else np.linalg.norm(values[worst])
     return Verdict(expect, bool(excess[worst] <= 0.0), float(measure), float(times[rows[worst]]))
 
 
 def rows_of(table: xarray.Dataset, expect: Expectation) -> np.ndarray:
-    """Rows of the window of an expectation, all where it has none."""
+    """Rows in the window of an expectation; all rows without a window."""
     times = table["time"].values
     start, end = expect.during or (-np.inf, np.inf)
+    # Times from files are rounded: rows at the edge count.
     tolerance = 1e-9 * max(1.0, abs(times[-1])) if len(times) else 0.0
     return np.flatnonzero((times >= start - tolerance) & (times <= end + tolerance))
 
@@ -137,7 +145,7 @@ def rows_of(table: xarray.Dataset, expect: Expectation) -> np.ndarray:
 def values_of(
     table: xarray.Dataset, expect: Expectation, rows: np.ndarray, unit_of: UnitOf
 ) -> np.ndarray:
-    """The signals of an expectation in plain numbers, or their differences from `near` in the unit of the first.
+    """Signals of an expectation as numbers, or differences from `near` in the first unit.
 
     Parameters
     ----------
@@ -153,18 +161,22 @@ def values_of(
     -------
     (n, signals) array
     """
+    # One column for each signal.
     values = np.column_stack([table[s].values[rows].astype(float) for s in expect.signal])
     if expect.near is None:
         return values
     first = unit_of(expect.signal[0])
+    # Difference from the target, which is a number or another signal in its own unit.
     for i, (signal, target) in enumerate(zip(expect.signal, expect.near, strict=True)):
         unit = unit_of(signal)
         if isinstance(target, str):
             factor, offset = conversion(unit_of(target), unit)
             target = factor * table[target].values[rows].astype(float) + offset
         values[:, i] -= target
+        # Angles the short way round: 359 deg is 1 deg from north.
         if unit is not None and relation(unit, RADIAN) in ("same", "convertible"):
             values[:, i] = wrap_series(values[:, i], TURN / unit.factor)
+        # All differences in one unit, so that they form one distance.
         values[:, i] *= conversion(unit, first)[0]
     return values
 
@@ -172,7 +184,8 @@ def values_of(
 def _reduced(
     rows: np.ndarray, values: np.ndarray, statistic: str | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Rows and values that remain after the statistic: one, or all."""
+    """Rows and values after the statistic: one, or all."""
+    # Mean and final value belong to the last row, extremes to their own row.
     if statistic == "mean":
         return rows[-1:], values.mean(axis=0, keepdims=True)
     if statistic == "final":
@@ -184,9 +197,11 @@ def _reduced(
 
 
 def _excess(values: np.ndarray, expect: Expectation) -> np.ndarray:
-    """By how much each row misses the expectation; negative where it holds."""
+    """Amount by which each row misses the expectation; negative where it holds."""
+    # Distance from the target beyond its tolerance.
     if expect.near is not None:
         return np.linalg.norm(values, axis=1) - expect.within
+    # Distance beyond the limit on either side.
     below = -np.inf if expect.at_least is None else expect.at_least - values[:, 0]
     above = -np.inf if expect.at_most is None else values[:, 0] - expect.at_most
     return np.maximum(below, above)

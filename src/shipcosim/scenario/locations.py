@@ -1,4 +1,4 @@
-"""Where a key stands in the text of a TOML file, for the messages about it."""
+"""Line of a key in a TOML file, for messages."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def problem_at(
     remedy: str = "",
     severity: str = "error",
 ) -> Problem:
-    """Problem at a key of a scenario, with its line where the scenario was read from a file.
+    """Problem at a key of a scenario, with its line if it was read from a file.
 
     Parameters
     ----------
@@ -38,29 +38,32 @@ def problem_at(
 
 
 def location_of(path: str | Path, text: str, keys: Sequence[str | int]) -> str:
-    """File and line of a key, as messages name it; the file alone where the key is not in its text."""
+    """File and line of a key for messages; the file alone if the key is not in its text."""
     line = line_of(text, keys)
     return f"{path}, line {line}" if line else str(path)
 
 
 def line_of(text: str, keys: Sequence[str | int]) -> int:
-    """Line of a key, or of the innermost table around it, in the text of a TOML file; 0 where there is none.
+    """Line of a key, or of the innermost table around it, in a TOML text; 0 if there is none.
 
     Examples
     --------
     >>> line_of("step_size = 0.1\\n[[events]]\\ntime = 2.0", ("events", 0, "time"))
     3
     """
+    # Walk through the lines, and remember the deepest table or key on the way to the wanted one.
     section = ()
     counts = {}
     depth = 0
     found = 0
     for number, line in enumerate(text.splitlines(), 1):
         here = section
+        # A header opens a table; a key belongs to the table that is open.
         if header := _HEADER.match(line):
             section = here = _section(_names(header[2]), header[1] == "[[", counts)
         elif key := _KEY.match(line):
             here = (*section, *_names(key[1]))
+        # Deeper matches are more exact.
         if len(here) > depth and here == tuple(keys[: len(here)]):
             depth = len(here)
             found = number
@@ -74,12 +77,14 @@ def _names(dotted: str) -> list[str]:
 def _section(
     names: Sequence[str], repeated: bool, counts: dict[tuple, int]
 ) -> tuple[str | int, ...]:
-    """Keys to a table by its header; `counts` has the positions of the tables that stand in lists."""
+    """Keys of a table by its header; `counts` numbers the tables in lists."""
     path: tuple[str | int, ...] = ()
     for number, name in enumerate(names, 1):
         path = (*path, name)
+        # A header in double brackets begins the next table of its list.
         if repeated and number == len(names):
             counts[path] = counts.get(path, -1) + 1
+        # Inner tables belong to the list entry that is open.
         if path in counts:
             path = (*path, counts[path])
     return path

@@ -26,6 +26,7 @@ from shipcosim.units import UnitError, amount, find_unit, number_in
 
 
 def _plain(value: Any) -> bool | int | float | str:
+    # NaN and infinity would spread through the simulation.
     if isinstance(value, float) and not np.isfinite(value):
         raise ValueError(f"{value} is not a finite number. Give one, in the variable's unit.")
     if isinstance(value, (bool, int, float, str)):
@@ -34,6 +35,7 @@ def _plain(value: Any) -> bool | int | float | str:
 
 
 def _amount(value: Any) -> float | str:
+    # Numbers, or texts with a number and a unit.
     plain = _plain(value)
     if isinstance(plain, bool) or (isinstance(plain, str) and amount(plain) is None):
         raise PydanticCustomError(
@@ -43,7 +45,7 @@ def _amount(value: Any) -> float | str:
 
 
 def _seconds(value: Any) -> Any:
-    """Texts such as "10 min" as seconds; the rest is left to pydantic."""
+    """Convert texts such as "10 min" to seconds; pydantic checks the rest."""
     if not isinstance(value, str) or amount(value) is None:
         return value
     try:
@@ -53,7 +55,7 @@ def _seconds(value: Any) -> Any:
 
 
 def as_list(value: Any) -> Any:
-    """One value as a list of it; lists, and None, as they are."""
+    """A value as a list of one; lists and None stay as they are."""
     return value if isinstance(value, list) or value is None else [value]
 
 
@@ -77,7 +79,8 @@ POSITION = ["x", "y"]  # names of signals that make a position: north, east
 
 
 def problems_in(error: ValidationError, where: str) -> list[Problem]:
-    """pydantic's findings in our words, for records that a script makes; the reader says those of a file by lines."""
+    """Findings of pydantic in our words, for records from scripts; files have lines in addition."""
+    # Missing keys, unknown keys, and everything else with its value.
     problems = []
     for finding in error.errors():
         name = ".".join(map(str, finding["loc"]))
@@ -99,7 +102,7 @@ def problems_in(error: ValidationError, where: str) -> list[Problem]:
 
 
 class _Made(type(BaseModel)):  # pyright: ignore[reportGeneralTypeIssues]  pydantic's metaclass has no public name
-    """Makes records for scripts: what is wrong is a ShipcosimError, in one block."""
+    """Makes records for scripts: all problems raise one ShipcosimError."""
 
     def __call__(cls, *arguments: Any, **keywords: Any) -> Any:
         try:
@@ -109,13 +112,13 @@ class _Made(type(BaseModel)):  # pyright: ignore[reportGeneralTypeIssues]  pydan
 
 
 class Part(BaseModel, metaclass=_Made):
-    """A record of a file: no other keys, nothing changes afterwards."""
+    """A record of a file: no unknown keys, no later changes."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class Event(Part):
-    """What changes at a time, in the words of OSP. An event at time t acts on the step that starts at t."""
+    """A change at a time, in OSP's terms. An event at time t acts on the step that starts at t."""
 
     time: Seconds = Field(ge=0.0, description="s")
     override: dict[str, Value] = Field(
@@ -169,6 +172,7 @@ class Expectation(Part):
 
     @model_validator(mode="after")
     def _is_one_claim(self) -> Expectation:
+        # Either near with within, or limits.
         limits = self.at_least is not None or self.at_most is not None
         if (self.near is None) != (self.within is None):
             raise ValueError("`near` and `within` come together.")
@@ -176,18 +180,21 @@ class Expectation(Part):
             raise ValueError(
                 "An expectation states either near and within, or at_least and/or at_most."
             )
+        # One target for each signal.
         if self.near is not None and len(self.near) != len(self.signal):
             raise ValueError(
                 f"{len(self.signal)} signals need {len(self.signal)} values in `near`."
             )
         if limits and len(self.signal) > 1:
             raise ValueError("at_least and at_most take one signal.")
+        # A window must not end before it starts.
         if self.during and not self.during[0] <= self.during[1]:
             raise ValueError(f"during = {self.during} ends before it starts.")
         return self
 
     def __str__(self) -> str:
         limits = {"≥": self.at_least, "≤": self.at_most}
+        # The claim in words, as messages show it.
         claims = [f"{word} {_text(limit)}" for word, limit in limits.items() if limit is not None]
         if self.near is not None and self.within is not None:
             target = ", ".join(map(_text, self.near))
@@ -199,7 +206,8 @@ class Expectation(Part):
 
     @property
     def subject(self) -> str:
-        """What is looked at, in words: 'position of vessel', 'mean of port.power'."""
+        """Subject in words: 'position of vessel', 'mean of port.power'."""
+        # x and y of one component are a position, psi is a heading.
         owners = {signal.rpartition(".")[0] for signal in self.signal}
         names = [signal.rpartition(".")[2] for signal in self.signal]
         if names == POSITION and len(owners) == 1:
@@ -215,12 +223,12 @@ class Expectation(Part):
 
     @property
     def is_heading(self) -> bool:
-        """Whether it looks at a heading, by the name that headings have here."""
+        """True for a heading, by its usual name."""
         return [signal.rpartition(".")[2] for signal in self.signal] == ["psi"]
 
     @property
     def signals(self) -> list[str]:
-        """Every signal the expectation looks at."""
+        """Every signal of the expectation."""
         return [
             *self.signal,
             *(v for v in self.near or () if isinstance(v, str) and amount(v) is None),
@@ -276,7 +284,7 @@ class Scenario(Part):
 
     @property
     def system_path(self) -> Path:
-        """Where the system is: a path beside the scenario or in the project, else what has this name."""
+        """Path of the system: next to the scenario or in the project, else found by name."""
         beside = self._path.resolve().parent if self._path else Path.cwd()
         candidates = [beside / self.system, self.project / self.system]
         if found := next((c for c in candidates if self.system and c.exists()), None):
@@ -287,13 +295,13 @@ class Scenario(Part):
 
     @property
     def parameter_paths(self) -> list[Path]:
-        """Where the parameter sets are: of this name in the system's resources, else a path beside the scenario."""
+        """Paths of the parameter sets: by name in the system's resources, else beside the file."""
         beside = self._path.resolve().parent if self._path else Path.cwd()
         named = {name: self.system_path / "resources" / f"{name}.ssv" for name in self.parameters}
         return [path if path.exists() else beside / name for name, path in named.items()]
 
     def component_paths(self, build: bool = True) -> dict[str, Path]:
-        """FMUs that components run in place of their own: a path beside the scenario, else what has this name.
+        """FMUs that replace those of components: a path next to the scenario, else found by name.
 
         Parameters
         ----------

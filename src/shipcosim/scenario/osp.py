@@ -1,8 +1,8 @@
-"""Scenario files of the Open Simulation Platform, JSON or YAML: read into events of ours, and written.
+"""Scenario files of the Open Simulation Platform, JSON or YAML: reading and writing.
 
-They are read as libcosim (tried: libcosimpy 0.0.6) acts on them: times count from the start of the run and move up to
-the next step, and at the end, but not before the step after the last event, everything that was changed follows its
-source again.
+They are read as libcosim (tried: libcosimpy 0.0.6) acts: times count from the start of the run and
+move up to the next step. At the end, but not before the step after the last event, every changed
+signal follows its source again.
 """
 
 import json
@@ -33,7 +33,7 @@ Change = tuple[int, str, str, Value | None]  # step, action, signal, value
 
 
 class OspScenario(NamedTuple):
-    """What a file says.
+    """Content of a file.
 
     Parameters
     ----------
@@ -68,10 +68,12 @@ def read_osp_scenario(
         With every problem of the file.
     """
     path = Path(path)
+    # The file as plain data.
     content = _content(path)
     if not isinstance(content, dict):
         remedy = "Right would be an object with a list 'events'."
         raise ShipcosimError(Problem(str(path), "It holds no object at its top.", remedy))
+    # All problems of the file together.
     due, remarks, problems = _changes(path, content, step_size)
     end = None
     try:
@@ -80,7 +82,9 @@ def read_osp_scenario(
         problems.append(Problem(str(path), *error.args))
     if problems:
         raise ShipcosimError(problems)
+    # Where libcosim acts unexpectedly, a remark.
     remarks += _doubts(path, due, end, step_size)
+    # At the end everything returns to its source.
     due += _taken_back(due, end, step_size, stop_time - start_time)
     events = [
         _event(start_time + count * step_size, action, signal, value)
@@ -92,7 +96,8 @@ def read_osp_scenario(
 def _changes(
     path: Path, content: dict[str, Any], step_size: float
 ) -> tuple[list[Change], list[Problem], list[Problem]]:
-    """Changes of all events in the order of the file, remarks, and problems of single events."""
+    """Changes of all events in file order, remarks, and problems of single events."""
+    # Unknown keys are ignored by libcosim: remark them.
     remarks = list(_unknown(str(path), content, KEYS))
     problems = []
     defaults = content.get("defaults") or {}
@@ -101,6 +106,7 @@ def _changes(
         raise ShipcosimError(Problem(str(path), "'defaults' has to be an object, 'events' a list."))
     defaults = {name: value for name, value in defaults.items() if name in DEFAULTS}
     due = []
+    # Each event alone: one faulty event does not hide the others.
     for number, given in enumerate(listed, start=1):
         place = f"{path}, event {number}"
         if not isinstance(given, dict):
@@ -146,7 +152,8 @@ def write_osp_scenario(
 
 
 def _content(path: Path) -> Any:
-    """What is in the file, as dicts and lists; every scalar of YAML is a text."""
+    """Content of the file as dicts and lists; every scalar of YAML is a text."""
+    # Text of limited size: YAML is slow to read.
     try:
         data = path.read_bytes()
         text = data.decode("utf-8-sig")
@@ -161,6 +168,7 @@ def _content(path: Path) -> Any:
         raise ShipcosimError(
             Problem(str(path), "The file is too large.", f"At most {largest >> 20} MiB are read.")
         )
+    # JSON as it is; YAML without deep nesting and aliases, which can grow without limit.
     try:
         if path.suffix.lower() == ".json":
             return json.loads(text, object_pairs_hook=_once)
@@ -176,7 +184,7 @@ def _content(path: Path) -> Any:
 
 
 def _once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
-    """A mapping of these pairs; raises ValueError where a name comes twice."""
+    """A mapping of pairs; raises ValueError if a name occurs twice."""
     content = dict(pairs)
     if len(content) < len(pairs):
         names = [name for name, _ in pairs]
@@ -204,15 +212,18 @@ def _unknown(place: str, given: Iterable[str], known: Iterable[str]) -> Iterator
 
 
 def _change(given: dict[str, Any], defaults: dict[str, Any], step_size: float) -> Change:
-    """(step, action, signal, value) of an event; raises ValueError with what was found and what would be right."""
+    """(step, action, signal, value) of an event; raises ValueError with found and remedy."""
+    # libcosim acts at the first step at or after the time.
     if "time" not in given:
         raise ValueError("It has no time.", "Give it in seconds from the start of the run.")
     count = max(0, math.ceil(_seconds(given["time"], "time") / step_size - 1e-6))
+    # The event's own keys come before the defaults.
     model, variable, action = (
         _text(given.get(name, defaults.get(name)), name) for name in DEFAULTS
     )
     if action not in ACTIONS:
         raise ValueError(f"The action '{action}' is not known.", suggestion(action, ACTIONS))
+    # A reset has no value; a bias must be a number.
     value = None if action == "reset" else _value(given.get("value"))
     if action == "bias" and (isinstance(value, (str, bool))):
         raise ValueError(f"A bias of {value!r}.", "A bias is a number.")
@@ -233,7 +244,7 @@ def _seconds(given: Any, name: str) -> float:
 
 
 def _value(given: Any) -> Value:
-    """A scalar by its text, as libcosim's reader takes it, which does not look at quotes."""
+    """A scalar by its text, as libcosim reads it, which ignores quotes."""
     if given is None or isinstance(given, (list, dict)):
         raise ValueError("It has no value.", "A value is a number, true or false.")
     value = _typed(given) if isinstance(given, str) else given
@@ -243,6 +254,7 @@ def _value(given: Any) -> Value:
 
 
 def _typed(text: str) -> Value:
+    # Boolean, integer, number, else text; Python's 1_000 is no number in YAML.
     if text.lower() in BOOLEANS:
         return BOOLEANS[text.lower()]
     for convert in (int, float):
@@ -262,7 +274,8 @@ def _event(time: float, action: str, signal: str, value: Value | None) -> Event:
 def _doubts(
     path: Path, due: list[Change], end: float | None, step_size: float
 ) -> Iterator[Problem]:
-    """Remarks on what libcosim does differently from what a reader would expect."""
+    """Remarks on unexpected behaviour of libcosim."""
+    # Two changes of one signal in one step: the order in libcosim is undefined.
     seen = set()
     for count, _, signal, _ in due:
         if (count, signal) in seen:
@@ -271,6 +284,7 @@ def _doubts(
                 str(path), found, "libcosim takes them in any order: keep one of them.", "remark"
             )
         seen.add((count, signal))
+    # Without an end libcosim takes everything back after the last event.
     if due and end is None:
         last = (max(count for count, *_ in due) + 1) * step_size
         found = f"It has no end: as in libcosim everything is taken back in the next step, at {last:g} s."
@@ -280,11 +294,13 @@ def _doubts(
 def _taken_back(
     due: list[Change], end: float | None, step_size: float, duration: float
 ) -> Iterator[Change]:
-    """Changes at the end, of everything that was changed; none where the run is over by then."""
+    """Changes at the end that reset every changed signal; none if the run is over by then."""
     if not due:
         return
+    # Not before the step after the last event.
     last = max(count for count, *_ in due) + 1
     count = max(last, math.ceil((end or 0.0) / step_size - 1e-6))
+    # Beyond the end of the run nothing needs to be reset.
     if count * step_size < duration - 1e-9:
         for signal in dict.fromkeys(signal for _, _, signal, _ in due):
             yield count, "reset", signal, None

@@ -1,4 +1,4 @@
-"""Values that are allowed and hardly meant: an angle of 45 rad, a ship of 1 kg. They earn a remark, never a refusal.
+"""Values that are possible but unlikely: an angle of 45 rad, a ship of 1 kg. Only remarks.
 
 All bounds are here, each with its reason.
 """
@@ -70,7 +70,7 @@ RANGES = (
 
 
 def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
-    """Remarks on values that are allowed and hardly meant.
+    """Remarks on unlikely values.
 
     Parameters
     ----------
@@ -79,12 +79,14 @@ def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
     system : System
         With its start values.
     """
+    # Start values as numbers; a text with a unit was meant as it is written.
     for component in system.components.values():
         for name, value in component.start.items():
             signal = f"{component.name}.{name}"
             written = scenario.set.get(signal, value)
             if not isinstance(written, str) and (said := _odd(system, component.name, name, value)):
                 yield Problem(signal, *said, "remark")
+    # Values that events set; a bias may be anything.
     for number, event in enumerate(scenario.events):
         for verb, signal, value in event.changes:
             if verb == "override" and (said := _odd(system, *system.split(signal), value)):
@@ -101,20 +103,24 @@ def odd_values(scenario: Scenario, system: System) -> Iterator[Problem]:
 def _odd(
     system: System, component: str | None, name: str, value: Value | None
 ) -> tuple[str, str] | None:
-    """What is odd about a value in the unit of its variable, and what may be meant; None where nothing is."""
+    """Why a value is odd in its unit, and what may be meant; None if it is not."""
+    # Only numbers with a unit can be compared.
     unit = system.unit_of(component, name)
     if unit is None or isinstance(value, (bool, str)) or not isinstance(value, (int, float)):
         return None
     # Size of a value in rad in whole turns; 0 for other units.
     named = unit.name == "rad" or relation(unit, RADIAN) == "same"
     turns = abs(value) / (2.0 * math.pi) if named else 0.0
+    # More than a whole turn: probably degrees without a unit.
     if turns > 1.0:
         return (
             f"{value:g} {unit.name} is more than a whole turn.",
             f'If degrees are meant, write "{value:g} deg".',
         )
+    # Some ranges hold for ships only.
     variables = system.components[component].fmu.variables if component is not None else {}
     is_ship = all(one in variables for one in SHIP)
+    # Compare in the unit of the range.
     for known in RANGES:
         bounds = spelled_unit(known.unit)
         if (

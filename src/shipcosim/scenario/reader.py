@@ -1,4 +1,4 @@
-"""Reading a scenario file, with every mistake in it said at its line."""
+"""Reading of scenario files, with every mistake reported at its line."""
 
 from __future__ import annotations
 
@@ -44,11 +44,13 @@ def read_scenario(path: str | os.PathLike) -> Scenario:
         With every problem of the file: its line, what was found, what would be right.
     """
     path = Path(path)
+    # Read the text too: messages need its lines.
     text, content = read_toml(path)
     try:
         scenario = Scenario.model_validate(content)
     except ValidationError as error:
         raise ShipcosimError(_problems_of(path, text, error)) from None
+    # Times are checked once the file is known, so that they too have lines.
     scenario._path = path
     if problems := [p for p in check_times(scenario) if p.severity == "error"]:
         raise ShipcosimError(problems)
@@ -85,6 +87,7 @@ def toml_of(text: str) -> dict[str, Any]:
         If it is not TOML, or one that takes a reader without limits far too long: lines, brackets and numbers of
         thousands of parts.
     """
+    # Lines, brackets and numbers of thousands of parts would take the parser far too long.
     if (longest := max(map(len, text.split("\n")))) > LONGEST_LINE:
         raise ValueError(f"a line has {longest} characters, at most {LONGEST_LINE} are read")
     try:
@@ -102,7 +105,7 @@ def toml_of(text: str) -> dict[str, Any]:
 
 
 def _whole_numbers(content: Any) -> Iterator[int]:
-    """All whole numbers in what a TOML text holds."""
+    """All whole numbers in the content of a TOML text."""
     if isinstance(content, (dict, list)):
         for part in content.values() if isinstance(content, dict) else content:
             yield from _whole_numbers(part)
@@ -118,6 +121,7 @@ def _text(path: Path) -> str:
             Problem(str(path), f"cannot be read: {error.strerror or error}.")
         ) from error
     except UnicodeDecodeError as error:
+        # Line of the first byte that is no UTF-8.
         line = error.object[: error.start].count(b"\n") + 1
         found = (
             f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
@@ -128,7 +132,7 @@ def _text(path: Path) -> str:
 
 
 def _no_toml(path: Path, message: str, kind: str) -> Problem:
-    """What the TOML reader says, with its line where all other messages have theirs."""
+    """Message of the TOML parser, with its line where our messages have theirs."""
     line = re.search(r" \(at line (\d+), column \d+\)", message)
     where = f"{path}, line {line[1]}" if line else str(path)
     found = f"is no TOML: {message.replace(line[0], '') if line else message}."
@@ -138,8 +142,9 @@ def _no_toml(path: Path, message: str, kind: str) -> Problem:
 
 
 def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]:
-    """pydantic's findings in our words, one for each key, in the order of the file."""
+    """Findings of pydantic in our words, one for each key, in file order."""
     problems = {}
+    # Several findings on one key have one cause: keep the first.
     for finding in error.errors():
         keys = finding["loc"]
         where = line_of(text, keys), keys[: 3 if keys[0] in ("events", "expect") else 2]
@@ -150,7 +155,7 @@ def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]
 
 
 def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, str]:
-    """What was found and what would be right, of a finding of pydantic.
+    """Found and remedy for a finding of pydantic.
 
     Parameters
     ----------
@@ -159,10 +164,12 @@ def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, s
     record : type
         Of the whole file.
     """
+    # The record that the keys lead to knows which keys exist.
     part, keys = _part_at(record, finding["loc"])
     kind = finding["type"]
     last = str(keys[-1]) if keys else ""
     label = ".".join(map(str, keys))
+    # Unknown, missing and our own checks first; pydantic's words for the rest.
     if kind == "extra_forbidden":
         return f"unknown key '{last}'.", suggestion(
             last, (field.alias or n for n, field in part.model_fields.items())
@@ -182,7 +189,8 @@ def complaint_of(finding: ErrorDetails, record: type[BaseModel]) -> tuple[str, s
 def _part_at(
     record: type[BaseModel], keys: tuple[int | str, ...]
 ) -> tuple[type[BaseModel], tuple[int | str, ...]]:
-    """The innermost record that keys lead to, and the keys within it."""
+    """Innermost record on the path of keys, and the remaining keys."""
+    # Follow the keys through records, lists and dictionaries of records.
     for number, key in enumerate(keys[:-1]):
         field = next(
             (field for name, field in record.model_fields.items() if key in (name, field.alias)),
@@ -200,7 +208,7 @@ def _part_at(
 
 
 def _kinds_in(annotation: Any) -> Iterator[Any]:
-    """All types that an annotation is made of."""
+    """All types in an annotation."""
     yield get_origin(annotation) or annotation
     for inner in get_args(annotation):
         yield from _kinds_in(inner)

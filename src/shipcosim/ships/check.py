@@ -109,7 +109,6 @@ def _hull(ship: Described) -> Iterator[Problem]:
         remedy = f"That is a block coefficient of {mass / box:.2g}; ships have {BLOCK[0]:g} to {BLOCK[1]:g}: "
         remedy += f"{_mass(BLOCK[0] * box)} to {_mass(BLOCK[1] * box)} would fit."
         yield Problem(f"{ship.path}: mass", f"{_mass(mass)} do not fit {dimensions}.", remedy)
-    # Mass and a given block coefficient must agree.
     elif p.block_coefficient is not None and abs(mass / box / form.block - 1.0) > OWN_BLOCK:
         found = f"{_mass(mass)} and a block coefficient of {form.block:g} do not fit {dimensions} together."
         yield Problem(

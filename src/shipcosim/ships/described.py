@@ -105,8 +105,8 @@ def describe(path: str | Path, file: ShipFile | None = None) -> Described:
     said = read_file(path) if file is None else file
     problems = []
     form = form_of(said, str(path), problems)
-    # Names of thrusters become names of components: they must differ, also from those of the
-    # system.
+    # Names of thrusters become names of components: they
+    # must differ, also from those of the system.
     names = [one.name for one in said.thrusters]
     if twice := sorted(
         {name for name in names if names.count(name) > 1 or name in ("vessel", "environment")}

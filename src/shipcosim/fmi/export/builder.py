@@ -50,8 +50,8 @@ def build_fmu(source: Path | str, out: Path | str) -> Path:
     ShipcosimError
         The script is missing, not Python, does not hold exactly one FMU, or the FMU cannot be written.
     """
-    # Code, entry module, binaries and documentation; the description last, since its GUID needs
-    # them.
+    # Code, entry module, binaries and documentation; the
+    # description last, since its GUID needs them.
     with fmu_class(source) as (cls, script, bundled):
         files = {f"resources/{path}": data for path, data in bundled.files.items()}
         files[f"resources/{bundled.entry}.py"] = entry_module(bundled, cls.__name__)

@@ -36,8 +36,8 @@ def mutual_information(x: np.ndarray, y: np.ndarray) -> float:
     Kraskov, Stögbauer, Grassberger, Estimating mutual information, Physical Review E 69, 2004, first estimator. Paper
     II uses another one, by density ratios.
     """
-    # At most MOST samples, evenly spaced: the distance matrices grow with the square of their
-    # number.
+    # At most MOST samples, evenly spaced: the distance
+    # matrices grow with the square of their number.
     rng = np.random.default_rng(1)
     taken = slice(None, None, max(1, -(-len(x) // MOST)))
     spread = [one[taken] / (one.std() or 1.0) for one in (x, y)]

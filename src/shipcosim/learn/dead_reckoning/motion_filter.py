@@ -122,8 +122,8 @@ def design_of(change: np.ndarray) -> FilterNumbers:
     """
     found = {}
     for position, name in enumerate(FilterNumbers._fields):
-        # Parameters that may change sign move linearly; all others by a factor exp(change), so they
-        # stay positive.
+        # Parameters that may change sign move linearly; all others by
+        # a factor exp(change), so they stay positive.
         one = change[..., position]
         at_start = (KNOWN | GAINS)[name]
         found[name] = at_start + one * abs(at_start) if name in SIGNED else at_start * np.exp(one)
@@ -155,8 +155,8 @@ def residuals(record: Record, change: np.ndarray) -> np.ndarray:
         if m["valid"][0, k] < 0.5:
             north = state.x - m["second_x"][:, k]
             east = state.y - m["second_y"][:, k]
-            # Weight so that the squared residual grows as the distance: large errors do not
-            # dominate.
+            # Weight so that the squared residual grows as the
+            # distance: large errors do not dominate.
             shrunk = (
                 1.0 + (north * north + east * east) / ROBUST**2
             ) ** -0.25  # the cost grows as the distance

@@ -300,9 +300,9 @@ def recorded(
     def stacked(signal):
         return np.stack([table[signal].values.astype(float) for table in tables])
 
-    # True position with wave motion: that is where the antenna is.
     measured, reckoned = (
         {name: stacked(signal) for name, signal in names.items()} for names in (MEASURED, RECKONED)
     )
+    # True position with wave motion: that is where the antenna is.
     x, y = (stacked(f"vessel.{axis}") + stacked(f"vessel.{axis}_wave") for axis in "xy")
     return Record(measured, x, y, reckoned)

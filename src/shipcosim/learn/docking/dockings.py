@@ -231,7 +231,7 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
     # Linear damping, in proportion to the quadratic damping at low speed.
     quadratic = [values[f"vessel.{name}"] for name in ("X_uu", "Y_modvv", "N_modrr")]
     damping = distance * DAMPING * rng.uniform(0.0, 1.0, 3) * SPEEDS * quadratic
-    # Half of the quadratic damping in sway and yaw is replaced by cross-flow drag.
+    # At distance 1 cross-flow drag replaces half of the quadratic damping in sway and yaw.
     half = 0.5 * distance
     form = TrueLoads(along, around, powers, damping, memory)
     return values | {
@@ -325,8 +325,8 @@ def _manner(rng, seed):
 
 def _weather(rng, port: Harbour, seed):
     """Wind, tide, river and sea, and the errors of the sensors of this day."""
-    # Tide along the first leg: ebb is the same current in the opposite direction.
     wind_from = rng.uniform(-pi, pi)
+    # Tide along the first leg: ebb is the same current in the opposite direction.
     tide = port.tide * rng.uniform(-1.0, 1.0)
     # The sea comes with the wind; sensors have a seed of their own.
     values = {

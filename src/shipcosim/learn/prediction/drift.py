@@ -141,8 +141,8 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTrainin
     motions = ahead(learned, *followed(learned, sailed, STARTS, ship, torch, grid=2), ship)
     # Errors over the size that counts equally at each horizon.
     missed = errors(motions, sailed, STARTS) / torch.from_numpy(SCALES)[:, None, None, :]
-    # Pseudo-Huber loss sqrt(1 + e^2) - 1, so that single worlds do not dominate; ridge on the
-    # numbers.
+    # Pseudo-Huber loss sqrt(1 + e^2) - 1, so that single
+    # worlds do not dominate; ridge on the numbers.
     return (torch.sqrt(1.0 + missed * missed) - 1.0).mean() + recipe.pull * (
         numbers * numbers
     ).sum()

@@ -152,8 +152,8 @@ def _multipliers_floats(request, commands, slack, x, side):
     """Multipliers at the optimum of the free commands."""
     X0, Y0, N0 = request
     a, d, f = slack
-    # Remaining load: request minus commands at bounds, and minus the free ones at their wanted
-    # value.
+    # Remaining load: request minus commands at bounds, and
+    # minus the free ones at their wanted value.
     b = c = e = 0.0
     for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
         # A command at its bound gives a fixed load.

@@ -82,8 +82,8 @@ def design(parameters: ExtendedParameters) -> ComponentInverses:
     Extended thrust: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021;
     Sordalen, Optimal thrust allocation for marine vessels, Control Engineering Practice 5 (1997).
     """
-    # Columns of the configuration matrix: a force X at (x, y) gives N = -y X, a force Y gives N = x
-    # Y.
+    # Columns of the configuration matrix: a force X at (x, y)
+    # gives N = -y X, a force Y gives N = x Y.
     p = parameters
     effect = (
         *((1.0, 0.0, -p.port_y), (0.0, 1.0, p.port_x)),

@@ -202,8 +202,8 @@ def step(
     practice of DP systems; tolerances and times are assumed.
     """
     p = parameters
-    # Count the time beyond a tolerance; once the delay is reached, the time stays: the fault is
-    # latched.
+    # Count the time beyond a tolerance; once the delay is
+    # reached, the time stays: the fault is latched.
     units = [
         where((off > 1.0) & on, time + h, where(time >= p.fault_delay, time, 0.0))
         for time, off, on in zip(state[:3], deviations, available, strict=True)

@@ -118,7 +118,8 @@ def floats_of(units: Units, weights: tuple) -> Floats:
     for front, behind in np.argwhere(kept < 1.0).tolist():
         bearing = float(u.bearing[front, behind])
         tandem = float(kept[front, behind])
-        # Loss over the angle from the axis, as `interaction.kept_share`: 130 / t^3 is its scale.
+        # Loss over the angle from the axis, as
+        # `interaction.kept_share`: 130 / t^3 is its scale.
         # [deg^3]
         pairs.append((front, behind, bearing, tandem, 130.0 / tandem**3))
     return Floats(

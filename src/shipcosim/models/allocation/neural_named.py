@@ -64,8 +64,8 @@ def units_of(parameters: NeuralParameters, full_power: tuple = (1.0, 1.0, 1.0)) 
         half = pi - atan(
             0.1 + p.azimuth_diameter / hypot(starboard[0] - port[0], starboard[1] - port[1])
         )
-        # Bearing from port to starboard, and back; each interval is centred away from the other
-        # unit.
+        # Bearing from port to starboard, and back; each
+        # interval is centred away from the other unit.
         towards = atan2(starboard[1] - port[1], starboard[0] - port[0])
         back = wrap(towards + pi)
         first = (towards - half, back - half)

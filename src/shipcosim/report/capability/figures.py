@@ -21,20 +21,24 @@ SOURCES = {"wind": palette.SKY, "current": palette.ORANGE, "waves": palette.GREE
 
 
 def capability_figures(capability: Capability) -> tuple[Figure, ...]:
-    """Level 1; Level 1 beside the simulator; every failure."""
+    """Polar plots: Level 1, Level 1 with the simulator, and every failure."""
+    # Intact, and the worst loss of one thruster, by both methods.
     numbers = {method: capability.numbers(method) for method in (LEVEL_1, SIMULATOR)}
     single = {method: capability.worst(method, most_lost=1) for method in (LEVEL_1, SIMULATOR)}
+    # Level 1 alone is the standard's answer.
     level_1 = (
         _curve("intact", numbers[LEVEL_1][0], palette.BLUE, fill=0.18),
         _curve("worst loss of one thruster", single[LEVEL_1], palette.ORANGE, fill=0.3),
         _curve("worst single failure", capability.worst(), palette.VERMILLION, dash="dot"),
     )
+    # Compare both methods with the same conditions and dynamic factor.
     beside = (
         _curve("Level 1, intact", numbers[LEVEL_1][0], palette.BLUE),
         _curve("Level 1, one thruster lost", single[LEVEL_1], palette.BLUE, dash="dot"),
         _curve("simulator, intact", numbers[SIMULATOR][0], palette.PURPLE),
         _curve("simulator, one thruster lost", single[SIMULATOR], palette.PURPLE, dash="dot"),
     )
+    # Every failure as a curve of its own.
     each = tuple(
         _curve(
             case.name, row, palette.CYCLE[k % len(palette.CYCLE)], dash="solid" if k == 0 else "dot"
@@ -55,14 +59,16 @@ def capability_figures(capability: Capability) -> tuple[Figure, ...]:
 
 
 def limiting_condition(capability: Capability) -> Condition:
-    """The hardest condition that the intact ship holds from everywhere; the first where there is none."""
+    """Hardest condition that the intact ship holds from everywhere, at least the first."""
     return CONDITIONS[max(capability.elements()[1], 1) - 1]
 
 
 def load_figures(capability: Capability) -> tuple[Figure, ...]:
-    """Sway force and yaw moment by source, by Level 1 and by the simulator, where the intact ship's limit is."""
+    """Sway force and yaw moment by source and method, at the limit of the intact ship."""
+    # At the limit the loads are as large as the thrust.
     condition = limiting_condition(capability)
     vessel = capability.vessel
+    # Loads of each source by direction.
     parts = {
         LEVEL_1: level_1_parts(vessel.hull, condition, DIRECTIONS),
         SIMULATOR: simulated_parts(vessel.simulated, condition, DIRECTIONS),
@@ -88,11 +94,13 @@ def load_figures(capability: Capability) -> tuple[Figure, ...]:
 def _lines(
     loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool
 ) -> list[dict[str, Any]]:
+    # Dynamic factor included, as in the balance of forces.
     angles = np.degrees(DIRECTIONS)
     factor = DYNAMIC_FACTOR / size
     dash = "solid" if is_level_1 else "dot"
     more = {"showlegend": is_level_1, "hovertemplate": "%{y:.3~g}"}
     word = "" if is_level_1 else ", simulator"
+    # Curves of each source, and their sum.
     curves = [(name, part, SOURCES[name], 1.5) for name, part in loads.items()]
     curves.append(("sum", sum(loads.values(), np.zeros((len(angles), 3))), palette.INK, 2.5))
     return [
@@ -106,7 +114,8 @@ def _lines(
 def _curve(
     name: str, numbers: NDArray, colour: str, *, dash: str = "solid", fill: float | None = None
 ) -> dict[str, Any]:
-    """A closed curve of numbers around the ship."""
+    """A closed curve of capability numbers around the ship."""
+    # Repeat the first direction at 360 deg to close the curve.
     angles = np.degrees(DIRECTIONS)
     values = np.asarray(numbers, float)
     filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
@@ -124,6 +133,7 @@ def _curve(
 
 
 def _polar(title: str, traces: tuple[dict[str, Any], ...], note: str) -> Figure:
+    # Bow up, clockwise, as on a nautical chart.
     look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
     polar = {
         "bgcolor": "@card",

@@ -1,4 +1,4 @@
-"""The page of a static DP capability: what it shows, and the function that writes it."""
+"""The page of a static DP capability: its contents, and the function that writes it."""
 
 import os
 from collections.abc import Sequence
@@ -78,11 +78,13 @@ def write_capability(capability: Capability, path: str | os.PathLike[str]) -> No
 
 
 def page_of(capability: Capability) -> CapabilityPage:
-    """What the page of a capability shows."""
+    """Contents of the page of a capability."""
+    # Figures in the order in which the page draws them.
     plots = capability_figures(capability)
     loads = load_figures(capability)
     vessel = capability.vessel
     figures = (*plots, *loads)
+    # Neutral particulars change nothing and are left out.
     said = [one for one in vessel.particulars if one.origin != "neutral"]
     facts = {
         "Ship": vessel.description or vessel.name,
@@ -110,9 +112,11 @@ def page_of(capability: Capability) -> CapabilityPage:
 
 
 def _outcome(capability: Capability) -> Outcome:
+    # Letters A to D of the notation, in words.
     a, b, c, d = capability.elements()
     intact = f"With all thrusters she keeps position and heading {_weather(a)} from within 30° of the bow"
     failed = f"After the worst single failure{_always_worst(capability)} it is number {c} from ahead and {d} from anywhere"
+    # A failure may take several thrusters: tell the loss of one apart.
     if any(len(case.failed) > 1 for case in capability.cases):
         *_, c, d = capability.elements(most_lost=1)
         failed += f"; where only one thruster is lost, {c} and {d}"
@@ -122,7 +126,8 @@ def _outcome(capability: Capability) -> Outcome:
 
 
 def _always_worst(capability: Capability) -> str:
-    """Name of the failure that is the worst from every direction, between commas; nothing where there is none."""
+    """Name of the failure that is worst in every direction, between commas; else empty."""
+    # A case that equals the envelope of all failures everywhere.
     same = (capability.numbers() == capability.worst()).all(axis=1)
     return next(
         (
@@ -135,7 +140,7 @@ def _always_worst(capability: Capability) -> str:
 
 
 def _weather(number: int) -> str:
-    """What a DP capability number means."""
+    """Meaning of a DP capability number."""
     if number == 0:
         return "in less than condition 1"
     condition = CONDITIONS[number - 1]
@@ -155,7 +160,8 @@ def _key_figures(capability: Capability) -> tuple[KeyFigure, ...]:
 
 
 def _numbers(capability: Capability) -> Table:
-    """A row a direction: wind that the intact ship holds, numbers of each case, of the simulator."""
+    """A row for each direction: wind of the intact ship, numbers of each case and method."""
+    # Columns: each case by Level 1, its worst failure, then the simulator.
     level_1 = capability.numbers(LEVEL_1)
     simulator = capability.numbers(SIMULATOR)
     columns = [*level_1, capability.worst(LEVEL_1), simulator[0], capability.worst(SIMULATOR)]
@@ -165,6 +171,7 @@ def _numbers(capability: Capability) -> Table:
         "simulator, intact",
         "simulator, worst failure",
     ]
+    # Wind speed of the highest condition that the intact ship holds.
     speeds = (0.0, *(condition.wind_speed for condition in CONDITIONS))
     rows = tuple(
         (
@@ -178,11 +185,12 @@ def _numbers(capability: Capability) -> Table:
 
 
 def _thrusters(capability: Capability) -> Table:
-    """Thrust by Level 1, nominal and in weather that she holds from anywhere; limits of the simulator's thrusters."""
+    """Thrust by Level 1, nominal and at the limit, and limits in the simulator."""
     limits = capability.vessel.simulated.limits
     hull = capability.vessel.hull
     condition = limiting_condition(capability)
     rows = []
+    # Effective thrust in the limiting condition: losses and ventilation by direction.
     for thruster in capability.vessel.thrusters:
         asked = limits[thruster.name]
         left = BETA_MISC * ventilation(thruster, hull, condition, DIRECTIONS) * thruster.ahead / 1e3

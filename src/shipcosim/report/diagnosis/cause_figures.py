@@ -1,4 +1,4 @@
-"""Figures of the causes: evidence, estimates, unmodelled errors, and whiteness of the innovations."""
+"""Figures of the causes: evidence, estimates, unmodelled errors, whiteness of innovations."""
 
 from collections.abc import Mapping
 
@@ -27,7 +27,8 @@ UNMODELLED_KINDS = {
 
 
 def evidence_figure(evidence: Evidence) -> Figure:
-    """How much likelier the log is with each set of causes than with none."""
+    """Gain in log-evidence of each set of causes over none."""
+    # The best sets, the best one on top; the chosen one in colour.
     sets = evidence.sets[:MOST_SETS][::-1]
     names = [
         "\n+ ".join(title(cause, component) for cause, component in one.causes) for one in sets
@@ -43,6 +44,7 @@ def evidence_figure(evidence: Evidence) -> Figure:
         f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
         "times likelier. More causes have to pay for themselves. Blue is the set that the verdict rests on."
     )
+    # Room for a line for each cause of a set.
     height = 90 + (12 + 16 * max([1, *(len(one.causes) for one in sets)])) * max(len(sets), 2)
     axes = {
         "xaxis": {"title": {"text": "nats"}, "rangemode": "tozero"},
@@ -53,7 +55,8 @@ def evidence_figure(evidence: Evidence) -> Figure:
 
 
 def estimate_figure(evidence: Evidence) -> Figure:
-    """Estimates of a set's parameters, in units of the size that matters, with two standard deviations."""
+    """Estimates of a set's parameters in typical sizes, with two standard deviations."""
+    # In units of the size that matters, parameters of any unit share one axis.
     parameters = evidence.sizes[::-1]
     names = [
         f"{title(of.cause, of.component)}:\n{of.parameter.replace('_', ' ')}" for of in parameters
@@ -77,6 +80,7 @@ def estimate_figure(evidence: Evidence) -> Figure:
         **{"marker": {"color": palette.BLUE, "size": 9}, "hovertemplate": "%{x:.2f} typical sizes"},
         "named": False,
     }
+    # Zero is the model as it was.
     axes = {
         "xaxis": {"title": {"text": "typical sizes"}, "zeroline": True, "rangemode": "tozero"},
         "yaxis": {"range": [-0.6, len(parameters) - 0.4]},
@@ -90,7 +94,8 @@ def estimate_figure(evidence: Evidence) -> Figure:
 
 
 def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
-    """What errors that no cause describes would gain beside the chosen causes."""
+    """Gain of errors that no cause describes, in addition to the chosen causes."""
+    # Above the threshold something unknown acts: these bars are coloured.
     names = [UNMODELLED_KINDS.get(kind, kind) for kind in unmodelled]
     bars = {
         **{
@@ -126,7 +131,8 @@ def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
 
 
 def whiteness_figures(evidence: Evidence) -> tuple[Figure, ...]:
-    """Autocorrelation of the innovations before and after, to one scale."""
+    """Autocorrelation of the innovations before and after, on one scale."""
+    # One scale for both, at least as wide as the band of white noise.
     every = np.stack(list(evidence.whiteness.values()))
     every = every[np.isfinite(every)]
     between = (1.05 * float(every.min(initial=-0.19)), 1.05 * float(every.max(initial=0.19)))
@@ -140,12 +146,14 @@ def _whiteness_figure(
     heading: str, correlation: NDArray, step: float, rows: int, between: tuple[float, float]
 ) -> Figure:
     """Autocorrelation of all channels over the lag, with the band of white noise."""
+    # A curve for each channel that the log has.
     lag = step * np.arange(1, LAGS + 1)
     traces = [
         line(name, lag, correlation[:, i], COLOURS[i], mode="lines+markers", marker={"size": 4})
         for i, name in enumerate(CHANNELS)
         if np.isfinite(correlation[:, i]).any()
     ]
+    # White noise of n rows stays within 2 / sqrt(n).
     band = {
         "type": "rect",
         "x0": 0,

@@ -22,7 +22,7 @@ from shipcosim.report.theme.views import Figure, Table
 
 @dataclass(frozen=True)
 class Sail:
-    """A prescribed manoeuvre: its name and duration, what it tells apart, and its steps."""
+    """A prescribed manoeuvre: name, duration, causes it separates, steps."""
 
     name: str
     minutes: str
@@ -70,13 +70,16 @@ class CauseSection:
 
 
 def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
-    """The section as the template fills it in."""
+    """Section 3 of the page for the template."""
+    # The earliest change point stands for all causes.
     began = sorted({f.onset for f in diagnosis.findings if f.onset is not None})
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable
+    # Candidates that are neither named nor indistinguishable.
     others = [
         c for c in diagnosis.candidates if (c.cause, c.component) not in named and c not in alike
     ]
+    # Causes that this log could not show, and why.
     hidden = diagnosis.form.hides if diagnosis.form else ()
     weak = not_testable_rows(diagnosis.not_testable, diagnosis.causes, diagnosis.facts, hidden)
     figures = [evidence_figure(evidence)] if evidence.sets else []
@@ -127,8 +130,9 @@ def _estimates(diagnosis: Diagnosis) -> Table:
 
 
 def _gains(evidence: Evidence) -> Table:
-    """What each cause gains, beside what it gains on simulated healthy logs."""
+    """Gain of each cause, and its gain on simulated healthy logs."""
     rows = []
+    # Where the gain is far above chance, healthy logs were not simulated.
     for of in evidence.gains:
         known = of.null_gain is not None
         healthy = (
@@ -145,7 +149,7 @@ def _chances(candidates: Iterable[Candidate]) -> Table:
 
 
 def _sail(diagnosis: Diagnosis) -> Sail | None:
-    """The prescribed manoeuvre step by step."""
+    """The prescribed manoeuvre, step by step."""
     prescription = diagnosis.prescription
     manoeuvre = diagnosis.manoeuvre
     if prescription is None or manoeuvre is None:

@@ -1,4 +1,4 @@
-"""Texts of the causes' files with the estimates of a finding filled in."""
+"""Texts of cause files, filled with the estimates of a finding."""
 
 from collections.abc import Mapping
 
@@ -11,7 +11,7 @@ __all__ = ["filled"]
 def filled(
     text: str, parameters: Mapping[str, ParameterEstimate], component: str | None = None
 ) -> str:
-    """A text with placeholders for the parameters of a cause, with their estimates.
+    """Fill the placeholders of a text with estimates of a cause's parameters.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def filled(
 
 
 class _Values(dict):
-    """What the placeholders of a text stand for."""
+    """Values of the placeholders in a text."""
 
     def __init__(self, parameters: Mapping[str, ParameterEstimate], component: str | None) -> None:
         super().__init__(
@@ -51,6 +51,7 @@ class _Values(dict):
         )
 
     def __missing__(self, key: str) -> str:
+        # north+east means the vector of two parameters.
         first, plus, second = key.partition("+")
         if not plus:
             raise KeyError(key)
@@ -58,12 +59,13 @@ class _Values(dict):
 
 
 class _Value:
-    """An estimate in a text, by the format that the placeholder asks for."""
+    """An estimate in a text, in the format of the placeholder."""
 
     def __init__(self, estimate: ParameterEstimate) -> None:
         self.estimate = estimate
 
     def __format__(self, wanted: str) -> str:
+        # Form and words of the placeholder; the sign chooses between the words.
         form, _, words = wanted.partition(" ")
         above, _, below = words.partition("|")
         value = self.estimate.estimate

@@ -34,7 +34,8 @@ class ErrorSection:
 
 
 def error_section(diagnosis: Diagnosis) -> ErrorSection:
-    """The section as the template fills it in."""
+    """Section 2 of the page for the template."""
+    # Errors of the model as it was; the noise floor only where it is known.
     base = diagnosis.baseline
     errors = diagnosis.predictions
     models = models_to_show(("plain", "floor"), diagnosis)

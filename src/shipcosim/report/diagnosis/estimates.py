@@ -1,4 +1,4 @@
-"""Estimates as texts: with their standard deviation, and as many digits as that is worth."""
+"""Estimates as texts, with standard deviation and as many digits as that justifies."""
 
 import math
 
@@ -28,12 +28,13 @@ def plus_minus(estimate: ParameterEstimate, absolute: bool = False) -> str:
 def amount(
     estimate: ParameterEstimate, absolute: bool = False, largest: float = 0.0
 ) -> tuple[str, str, str]:
-    """Value, standard deviation and unit of an estimate, as texts; `largest` decides on the unit if it is larger.
+    """Value, standard deviation and unit as texts; `largest`, if larger, decides on the unit.
 
     Returns
     -------
     tuple of three str
     """
+    # Unit first: digits depend on it.
     unit, factor = _scaled(estimate, max(abs(estimate.estimate), largest))
     value = factor * estimate.estimate
     std = factor * estimate.std
@@ -56,7 +57,9 @@ def _digits(std: float, value: float) -> int:
     >>> _digits(0.0121, 0.337), _digits(0.4, 5.0), _digits(80.0, 4100.0)
     (3, 1, 0)
     """
+    # Without a standard deviation one percent of the value decides.
     size = std if std > 0.0 and math.isfinite(std) else max(abs(value), 1e-9) / 100.0
+    # One digit of the uncertainty, two if it begins with 1.
     exponent = math.floor(math.log10(size))
     digits = -exponent + (size / 10.0**exponent < 2.0)
     return min(max(digits, 0), 6)
@@ -73,6 +76,7 @@ def vector(north: ParameterEstimate, east: ParameterEstimate) -> str:
     -------
     str
     """
+    # Standard deviation along the vector: the mean of both squares.
     size = math.hypot(north.estimate, east.estimate)
     along = ParameterEstimate(size, math.hypot(north.std, east.std) / math.sqrt(2.0), north.unit)
     towards = math.degrees(math.atan2(east.estimate, north.estimate)) % 360.0

@@ -40,7 +40,7 @@ class ExtensionSection:
 
 
 def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
-    """The section as the template fills it in."""
+    """Section 4 of the page for the template."""
     return section_of(
         diagnosis.extension, diagnosis.changes, any(f.kind == "physics" for f in diagnosis.findings)
     )
@@ -49,7 +49,7 @@ def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
 def section_of(
     extension: Extension | None, changes: Sequence[NumberChange], is_found: bool
 ) -> ExtensionSection:
-    """The section of an extended system.
+    """Section on an extended system.
 
     Parameters
     ----------
@@ -58,6 +58,7 @@ def section_of(
     is_found : bool
         Whether a cause of the physics was found, that could have gone into the system.
     """
+    # Nothing was extended: no cause was found, or the extension failed.
     if extension is None:
         return ExtensionSection("none", "failed" if is_found else "no cause")
     rows = tuple(

@@ -1,4 +1,4 @@
-"""Figures of the force that the ship model lacks: over time, against heading, against the wind."""
+"""Figures of the missing force: over time, against heading, against the wind."""
 
 from collections.abc import Sequence
 
@@ -30,7 +30,8 @@ MOST_POINTS = 1200
 
 
 def force_figures(force: MissingForce) -> list[Figure]:
-    """The missing force over time, against heading, and against the direction of the wind."""
+    """The missing force over time, against heading, and against wind direction."""
+    # Body frame, moment and earth frame, then the frame of each thruster.
     groups = list(FORCES)
     for name in force.thrusters:
         along = (f"{name}_along", "along its positive thrust", palette.BLUE)
@@ -45,8 +46,10 @@ def force_figures(force: MissingForce) -> list[Figure]:
 def _over_time(
     force: Dataset, left: Dataset | None, title: str, lines: Sequence[tuple[str, str, str]]
 ) -> Figure:
+    # Averages, since the force of a single row is mostly noise.
     traces = []
     (middle, edges) = _stretches(force["time"].values)
+    # Before in full, after with the cause as dots.
     for name, label, colour in lines:
         if name in force:
             traces.append(line(label, middle, _averaged(force[name], edges), colour))
@@ -60,13 +63,14 @@ def _over_time(
 
 
 def _stretches(time: NDArray, most: int = MOST_POINTS) -> tuple[NDArray, NDArray]:
-    """Middle times of stretches that are averaged, and their edges in rows."""
+    """Middle times of averaged stretches, and their edges in rows."""
+    # At most so many points, each the mean of its stretch.
     edges = np.unique(np.linspace(0, time.size, min(most, time.size) + 1).round().astype(int))
     return np.array([time[a:b].mean() for a, b in zip(edges[:-1], edges[1:], strict=True)]), edges
 
 
 def _averaged(series: DataArray, edges: NDArray) -> NDArray:
-    """Averages over stretches of rows. [kN]"""
+    """Means over stretches of rows. [kN]"""
     values = 1e-3 * series.values
     pairs = zip(edges[:-1], edges[1:], strict=True)
     return np.array([values[a:b].mean() for a, b in pairs])
@@ -76,6 +80,7 @@ def _against(sectors: Dataset, label: str, title: str) -> Figure:
     """Mean and scatter of the missing force in sectors of an angle."""
     traces = []
     middle = sectors["sector"].values
+    # Surge and sway, with the scatter in the sector as error bars.
     for name, text, colour in FORCES[0][1]:
         mean, spread = (1e-3 * sectors[key].values for key in (name, f"{name}_std"))
         traces.append(

@@ -1,4 +1,4 @@
-"""How far the form of the ship's loads differs from the model's, in words."""
+"""Difference in form between the ship's loads and the model's, in words."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,8 @@ class FormSection:
 
 
 def form_section(form: LoadForm) -> FormSection:
-    """The part of the page as the template fills it in."""
+    """The part on the form of loads for the template."""
+    # How unusual the difference is, compared with other ships.
     scale = SCALES.get(form.scale, f"{form.scale:g} times")
     functions = tuple(
         (name[0].upper() + name[1:], percent(size)) for name, size in form.differs.items()
@@ -34,6 +35,7 @@ def form_section(form: LoadForm) -> FormSection:
 
 
 def _row(number: FormNumber) -> tuple[str, str, str, str, str]:
+    # A thruster's number has the thruster's name in front.
     thruster, of_form, _ = number.number.rpartition(".form.")
     what = f"{thruster}: {number.what}" if of_form else number.what
     unit = "" if number.unit == "1" else number.unit

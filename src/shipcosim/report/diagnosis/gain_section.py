@@ -58,11 +58,13 @@ class GainSection:
 
 
 def gain_section(diagnosis: Diagnosis) -> GainSection:
-    """The section as the template fills it in."""
+    """Section 5 of the page for the template."""
     gain = diagnosis.gain
     errors = diagnosis.predictions
+    # A crude model has no co-simulation and only one comparison.
     if gain and "error_ratio" in gain:
         return _of_crude_model(gain)
+    # Without an extension, only the models before it.
     models = models_to_show(tuple(MODELS), diagnosis)
     if diagnosis.extension is None or gain is None:
         models = [model for model in models if not model.startswith("extended")]
@@ -70,6 +72,7 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
     is_extended = "extended" in models
     if errors is None:
         return GainSection(found, False, is_extended)
+    # Conditions that the log has too little of to measure a gain.
     held_out = {one.condition for one in errors.held_out}
     return GainSection(
         found,
@@ -86,7 +89,8 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
 
 
 def _of_crude_model(gain: Mapping[str, Any]) -> GainSection:
-    """What thrust and damping over inertia gain where no cause explains the rest."""
+    """Gain of thrust and damping per inertia, where no cause explains the rest."""
+    # Error before, after, and what is left, with its interval.
     after, low, high = f"{gain['horizon_s']:g} s", *map(percent, gain["error_ratio_ci95"])
     rows = (
         ("Simulation as it was", metres(gain["before_m"])),
@@ -106,7 +110,7 @@ def _found(gain: Mapping[str, Any] | None, verdict: str) -> str:
 
 
 def _errors(gain: Mapping[str, Any] | None) -> Table:
-    """Errors with each model, and the share of the explainable error that is removed."""
+    """Errors with each model, and the removed share of the explainable error."""
     if not gain:
         return Table(())
     rows = [

@@ -1,4 +1,4 @@
-"""Key figures of a diagnosis: how sure, and how large the errors were and are."""
+"""Key figures of a diagnosis: certainty, and errors before and after."""
 
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.theme.numbers import metres, percent, plain
@@ -13,7 +13,7 @@ _GAIN = {
 
 
 def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
-    """The numbers that matter most.
+    """Key figures of a diagnosis.
 
     Parameters
     ----------
@@ -23,15 +23,17 @@ def key_figures(diagnosis: Diagnosis) -> tuple[KeyFigure, ...]:
     -------
     tuple of KeyFigure
     """
+    # The least certain cause decides.
     sure = [f.probability for f in diagnosis.findings if f.kind == "physics"]
     chance = [KeyFigure(percent(min(sure)), "probability that the cause is right")] if sure else []
     return (*chance, *_errors(diagnosis))
 
 
 def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
-    """Errors of predictions before and after, or before only where nothing was gained."""
+    """Prediction errors before and after; before only if nothing was gained."""
     gain = diagnosis.gain
     base = diagnosis.baseline
+    # With a gain: each error, then the share of the explainable error with its interval.
     if gain:
         found = [
             KeyFigure(metres(gain[name]), meaning.format(gain["horizon_s"]))
@@ -43,6 +45,7 @@ def _errors(diagnosis: Diagnosis) -> list[KeyFigure]:
             meaning = f"of the explainable error removed (95 % sure: {low} to {high} %)"
             found.append(KeyFigure(percent(gain["share_of_explainable"]), meaning))
         return found
+    # Without a gain: the errors of the model as it was.
     if base:
         after = f"after {base['horizon_s'][-1]:g} s"
         position = metres(base["position_error_m"][-1])

@@ -1,4 +1,4 @@
-"""Figures of the log: its channels over time, as logged and as used, with faulty stretches shaded; the track."""
+"""Figures of the log: channels as logged and as used, faulty stretches shaded; the track."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -45,8 +45,10 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
     rows = np.flatnonzero(np.isfinite(time))
     ordered = _shown(log.isel(time=rows[np.argsort(time[rows], kind="stable")]))
     raw = ordered
+    # The repaired log over the logged times, so that both can be compared.
     used = _on_log_time(clean)
     faults = [f for f in findings if f.kind == "data"]
+    # Known channels in fixed groups, thrusters by quantity.
     named = {channel for _, channels, _ in GROUPS for channel in channels}
     groups = [*GROUPS, *_thrusters([str(n) for n in log.data_vars if n not in named], log)]
     figures = []
@@ -54,11 +56,13 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
         there = [c for c in channels if c in raw]
         if not there:
             continue
+        # Logged curves first, so that the used ones lie on top.
         pairs = [
             _traces(raw, used, channel, COLOURS[k % len(COLOURS)], unit)
             for k, channel in enumerate(there)
         ]
         traces = [trace for pair in pairs for trace in pair[:-1]] + [pair[-1] for pair in pairs]
+        # Shade only faults that concern a channel of this figure.
         shapes = [
             shape for fault in faults if _concerns(fault, there) for shape in _shades(fault, raw)
         ]
@@ -67,15 +71,17 @@ def log_figures(log: Dataset, clean: Dataset, findings: Sequence[Finding]) -> li
 
 
 def track_figure(clean: Dataset) -> Figure | None:
-    """Where the ship went, north up; None without positions."""
+    """Track of the ship, north up; None without positions."""
     if "north" not in clean or "east" not in clean:
         return None
+    # Few enough points to draw, extremes kept.
     thin, _ = thinned(_on_log_time(clean)[["north", "east"]], MOST_ROWS["track"])
     north = thin["north"].values
     east = thin["east"].values
     known = np.flatnonzero(np.isfinite(north) & np.isfinite(east))
     if not known.size:
         return None
+    # Mark start and end: the direction of the track is not visible otherwise.
     ends = [(known[0], "start", "circle-open"), (known[-1], "end", "circle")]
     marks = [
         {
@@ -103,7 +109,7 @@ def track_figure(clean: Dataset) -> Figure | None:
 
 
 def _on_log_time(clean: Dataset) -> Dataset:
-    """The repaired log over the times that were logged."""
+    """The repaired log over the logged times."""
     if "logged_time" not in clean.coords:
         return _shown(clean)
     return _shown(
@@ -112,7 +118,8 @@ def _on_log_time(clean: Dataset) -> Dataset:
 
 
 def _shown(table: Dataset) -> Dataset:
-    """The table as `thinned` takes it."""
+    """The table in the form that `thinned` needs."""
+    # Only numbers can be drawn.
     found = table.drop_vars([n for n in table.data_vars if table[n].dtype.kind not in "fiu"])
     for name in found.data_vars:
         about = found[name].attrs
@@ -122,8 +129,9 @@ def _shown(table: Dataset) -> Dataset:
 
 
 def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str, ...], str]]:
-    """Groups of the thrusters' channels: of one quantity, and of similar size."""
+    """Groups of the thrusters' channels, by quantity and size."""
     found = []
+    # A main propeller and a small thruster on one axis would hide the small one.
     for suffix, title, unit in (
         ("_rpm", "Shaft speed", "rpm"),
         ("_azimuth", "Azimuth", "deg"),
@@ -145,11 +153,13 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
 def _traces(
     raw: Dataset, used: Dataset, channel: str, colour: str, unit: str
 ) -> list[dict[str, Any]]:
-    """A channel as used; before it as logged, where that differs."""
+    """A channel as used, and as logged where that differs."""
     label = channel.replace("_", " ")
     traces = []
+    # Thin both; extremes stay visible.
     old, _ = thinned(raw[[channel]], MOST_ROWS["channel"])
     new, _ = thinned(used[[channel]], MOST_ROWS["channel"]) if channel in used else (None, 1)
+    # The logged curve is wide and pale under the used one.
     if new is None or not _same(raw[channel], used[channel]):
         traces.append(
             _curve(
@@ -174,7 +184,8 @@ def _same(one: DataArray, other: DataArray) -> bool:
 def _curve(
     name: str, time: NDArray, values: NDArray, colour: str, unit: str, **look: Any
 ) -> dict[str, Any]:
-    """A channel over time; angles are interrupted where they go round."""
+    """A channel over time; angles are interrupted where they wrap."""
+    # A gap at each wrap, instead of a line across the figure.
     if unit == "deg":
         turns = np.flatnonzero(np.abs(np.diff(values)) > 180.0) + 1
         time = np.insert(time, turns, np.nan)
@@ -188,6 +199,7 @@ def _concerns(fault: Finding, channels: Sequence[str]) -> bool:
 
 
 def _shades(fault: Finding, raw: Dataset) -> Iterator[dict[str, Any]]:
+    # A fault without segments concerns the whole log.
     time = raw["time"].values
     for start, end in fault.segments or ((time[0], time[-1]),):
         yield {

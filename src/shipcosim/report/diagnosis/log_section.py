@@ -31,9 +31,10 @@ class LogSection:
 
 
 def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
-    """The section as the template fills it in."""
+    """Section 1 of the page for the template."""
     findings = diagnosis.findings
     faults = [f for f in findings if f.kind == "data"]
+    # Each fault with its channels, place, and what was done about it.
     rows = (
         (
             title(f.cause),

@@ -1,4 +1,4 @@
-"""What to sail, step by step, in words."""
+"""The steps of a manoeuvre in words."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from shipcosim.report.theme.numbers import plain, span
 
 
 def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
-    """Steps of a manoeuvre: from when to when, and what the ship or a thruster does, in order of time.
+    """Steps of a manoeuvre with their times, and what ship or thruster does, in order of time.
 
     Parameters
     ----------
@@ -18,6 +18,7 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
     -------
     list of (str, str)
     """
+    # Legs of the ship, except where she drifts freely.
     found: list[tuple[float, float, str]] = []
     start = 0.0
     before = (0.0, 0.0, 0.0)
@@ -26,6 +27,7 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
             found.append((start, start + duration, _leg(tuple(there), before)))
         start = start + duration
         before = tuple(there)
+    # Pushes of single thrusters, with their force and direction.
     for push in manoeuvre.pushes:
         angles = [round(float(np.degrees(angle))) for angle in push.azimuth]
         towards = (
@@ -36,6 +38,7 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
         force = f"{'−' * (push.force < 0.0)}{plain(abs(push.force) / 1e3, 2)} kN"
         doing = f"{push.thruster} pushes with {force} along its axis"
         found.append((push.start, push.end, doing + towards))
+    # Free drift may end with the manoeuvre.
     found += [
         (a, min(b, start), "DP off, thrusters idle, the ship drifts") for a, b in manoeuvre.free
     ]
@@ -43,9 +46,10 @@ def manoeuvre_steps(manoeuvre: Manoeuvre) -> list[tuple[str, str]]:
 
 
 def _leg(there: tuple[float, ...], before: tuple[float, ...]) -> str:
-    """A leg in words: where the ship goes, seen from where and how she lay at the start."""
+    """A leg in words: where the ship goes, seen from her start position and heading."""
     if there == before:
         return "hold position and heading"
+    # Position relative to the start, then the turn, each only if it changes.
     ahead, across, turned = there
     words = [f"{abs(ahead):.0f} m {'ahead' if ahead > 0.0 else 'astern'}"] if ahead else []
     words += [f"{abs(across):.0f} m to {'starboard' if across > 0.0 else 'port'}"] if across else []

@@ -72,15 +72,18 @@ def render(diagnosis: Diagnosis) -> str:
 
 
 def _page(diagnosis: Diagnosis) -> DiagnosisPage:
+    # A page needs the log and the evidence; a stored result has neither.
     if diagnosis.log is None or diagnosis.evidence is None:
         raise ValueError(
             "only a diagnosis with its log and evidence has a page; shipcosim.diagnose makes one"
         )
+    # Sections first: links and figures follow from them.
     log = log_section(diagnosis, diagnosis.log)
     cause = cause_section(diagnosis, diagnosis.evidence)
     error = error_section(diagnosis)
     extension = extension_section(diagnosis)
     gain = gain_section(diagnosis)
+    # All figures in the order in which the page draws them.
     causes = (*cause.figures, *cause.unmodelled, *cause.whiteness)
     tracks = (
         ()
@@ -88,6 +91,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
         else (track_figure(diagnosis.tracks), *over_time_figures(diagnosis.tracks))
     )
     figures = (*tracks, *log.figures, *error.figures, *error.forces, *causes, *gain.figures)
+    # Each link tells the result of its section.
     links = {"log": ("Log", log), "error": ("Error", error), "causes": ("Cause", cause)}
     links |= {"extension": ("Extension", extension), "gain": ("Gain", gain)}
     steps = next_steps(
@@ -115,7 +119,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
 
 
 def _facts(log: LogSummary, system: System | None) -> tuple[Fact, ...]:
-    """The system, the length of the log and its step."""
+    """System, length of the log and its step."""
     time = log.measured["time"].values
     length = f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"
     facts = (

@@ -1,4 +1,4 @@
-"""Figures and tables of prediction errors: by horizon, by what the ship did, by condition, with each model."""
+"""Figures and tables of prediction errors: by horizon, regime, condition and model."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -28,14 +28,15 @@ HELD = {"other headings": "headings not fitted on", "free drift": "free drift, n
 
 
 def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
-    """These models; what a perfect one would miss is not known while something is wrong that has no name."""
+    """Models to show; the noise floor is unknown while an unnamed error acts."""
     return [m for m in models if m != "floor" or diagnosis.verdict in ("named", "consistent")]
 
 
 def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figure]:
-    """Root mean square errors over the horizon, a figure for position and heading each."""
+    """Root mean square errors over the horizon, for position and heading."""
     figures = []
     horizons = overall.rms["horizon"].values
+    # A group of bars for each horizon, one bar for each model.
     for channel in ("position", "heading"):
         title, unit = CHANNELS[channel]
         traces = []
@@ -53,17 +54,18 @@ def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figur
 
 
 def _last(one: ConditionErrors, channel: str, model: str) -> float:
-    """Root mean square error after the longest horizon."""
+    """Root mean square error at the longest horizon."""
     return float(one.rms[channel].sel(model=model).isel(horizon=-1))
 
 
 def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "floor")) -> Table:
-    """Root mean square errors after the longest horizon, by what the ship did and channel.
+    """Root mean square errors at the longest horizon, by regime and channel.
 
     Each cell shows the models' errors, the last as the floor.
     """
     head = ("", "Segments", *(f"{title} [{unit}]" for title, unit in CHANNELS.values()))
     rows = []
+    # All predictions together, then by what the ship did.
     for one in (errors.overall, *errors.by_regime):
         cells = [
             " / ".join(plain(_last(one, channel, model), 2) for model in models)
@@ -74,7 +76,8 @@ def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "flo
 
 
 def condition_table(errors: PredictionErrors) -> Table:
-    """Position errors after the longest horizon with each model, by condition, and the share that causes remove."""
+    """Position errors at the longest horizon by condition and model, and the removed share."""
+    # The later part of the log, its regimes, and conditions that were held out.
     models = (f"{name} [m]" for name, _ in MODELS.values())
     head = ("Held out", "Predictions", *models, "explainable error removed")
     groups = {"the later part": errors.overall} | {
@@ -89,9 +92,10 @@ def condition_table(errors: PredictionErrors) -> Table:
 
 
 def removed(entry: Mapping[str, Any] | None) -> str:
-    """Share of the explainable error that causes remove, with its interval, of an entry of `gain`."""
+    """Removed share of the explainable error, with its interval, from an entry of `gain`."""
     if entry is None or entry["share_of_explainable"] is None:
         return "nothing to remove"
+    # The interval only where there were enough predictions for one.
     sure = (
         " ({:.0f} to {:.0f} %)".format(*(100 * end for end in entry["ci95"]))
         if entry["ci95"]
@@ -101,11 +105,12 @@ def removed(entry: Mapping[str, Any] | None) -> str:
 
 
 def gain_figures(errors: PredictionErrors, models: Sequence[str]) -> list[Figure]:
-    """Errors after the longest horizon with each model: by what the ship did, and of each prediction."""
+    """Errors at the longest horizon with each model: by regime, and of each prediction."""
     last = errors.each.isel(horizon=-1)
     names = [one.condition for one in errors.by_regime]
     by_regime = []
     each = []
+    # Mean errors by regime, and every single prediction over time.
     for model in models:
         (name, colour) = MODELS[model]
         position = last["position"].sel(model=model)

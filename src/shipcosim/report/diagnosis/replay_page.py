@@ -1,4 +1,4 @@
-"""The page of a replay: a log, and what one system or two make of it."""
+"""The page of a replay: a log, and its simulation by one or two systems."""
 
 import os
 from dataclasses import dataclass
@@ -50,8 +50,10 @@ def write_replay(
     ShipcosimError
         If the file cannot be written.
     """
+    # Track and channels, measured and simulated.
     tracks = replay.tracks
     figures = (track_figure(tracks), *over_time_figures(tracks))
+    # Faults of the log come before other remarks.
     faults = tuple(
         f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in replay.faults
     )
@@ -69,7 +71,7 @@ def write_replay(
 
 
 def replay_outcome(replay: LogReplay) -> Outcome:
-    """How far off the simulations are at the end of their predictions."""
+    """Position errors of the simulations at the end of their predictions."""
     tracks = replay.tracks
     last = errors_of(tracks)["position"].isel(after=-1)
     told = ", ".join(

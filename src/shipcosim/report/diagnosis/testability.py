@@ -1,4 +1,4 @@
-"""Why a log could not have shown some causes: what it has too little of."""
+"""Reasons why a log could not have shown some causes: what it lacks."""
 
 from collections.abc import Collection, Mapping, Sequence
 
@@ -23,7 +23,7 @@ def not_testable_rows(
     facts: Mapping[str, float | None],
     hidden: Collection[str] = (),
 ) -> list[tuple[str, str, str]]:
-    """Why this log could not have shown some causes: the cause, and what the log has of what would show it.
+    """Rows on causes that this log could not have shown: cause, meaning, what the log lacks.
 
     Parameters
     ----------
@@ -37,6 +37,7 @@ def not_testable_rows(
     """
     texts = _texts(facts)
     rows = []
+    # The most specific reason wins: of a fault's file, of the load form, of the cause's file.
     faults = read_faults()
     for name in names:
         cause = causes.get(name)
@@ -44,6 +45,7 @@ def not_testable_rows(
         reason = BY_FORM if name in hidden else reason
         if name in faults and faults[name].why_not_testable:
             reason = faults[name].why_not_testable
+        # Meaning of the cause, or of the fault.
         sentence = (
             cause.sentence
             if cause
@@ -56,7 +58,7 @@ def not_testable_rows(
 
 
 def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
-    """What a log has, with units; None for what it does not have."""
+    """Properties of a log with units; None for what it does not have."""
     sizes = {name: facts.get(name) for name in UNITS}
     texts = {
         name: None if size is None else f"{plain(size, 2)} {UNITS[name]}"
@@ -66,9 +68,10 @@ def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:
 
 
 def _reason(cause: Cause | None, facts: Mapping[str, str | None]) -> str:
-    """What the log lacks to show a cause, and a semicolon; nothing where its file does not say."""
+    """What the log lacks to show a cause, with a semicolon; empty if its file does not say."""
     if cause is None or not cause.why_not_testable:
         return ""
+    # The log does not have the channel at all, or too little of it.
     missing = [name for name in placeholders(cause.why_not_testable) if facts[name] is None]
     if missing:
         return f"there is no {missing[0].partition('_')[0]} in the log; "

@@ -1,4 +1,4 @@
-"""A log and what simulations make of it: track, heading and speeds, measured, before and after."""
+"""A log and its simulations: track, heading and speeds, measured, before and after."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,8 @@ OVER_TIME = (
 
 
 def track_figure(tracks: Tracks) -> Figure:
-    """Measured, before and after on one chart, north up and one scale both ways."""
+    """Measured and simulated tracks on one chart, north up, equal scales."""
+    # The measured track wide and pale, simulations thin on top of it.
     seen = tracks.measured
     traces = [
         line("measured", seen["east"].values, seen["north"].values, palette.MEASURED, width=4.0)
@@ -36,7 +37,7 @@ def track_figure(tracks: Tracks) -> Figure:
 
 
 def over_time_figures(tracks: Tracks) -> list[Figure]:
-    """Heading, surge, sway and yaw rate over time, as far as the log has them."""
+    """Heading, surge, sway and yaw rate over time, if logged."""
     return [
         _over_time(tracks, *row)
         for row in OVER_TIME
@@ -48,6 +49,7 @@ def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
     seen = tracks.measured
     traces = [line("measured", seen["time"].values, seen[role].values, palette.MEASURED, width=3.0)]
     for (name, one), colour in zip(tracks.predicted.items(), COLOURS, strict=False):
+        # Absolute times of each prediction, with a gap between two predictions.
         time = one["start_time"].values[:, None] + one["time"].values
         times = np.hstack([time, np.full((len(time), 1), np.nan)]).ravel()
         traces.append(line(name, times, joined(one, role), colour, width=1.2))
@@ -55,13 +57,14 @@ def _over_time(tracks: Tracks, role: str, title: str, unit: str) -> Figure:
 
 
 def joined(one: Dataset, role: str) -> NDArray:
-    """A channel of all predictions one after another, with a hole between them."""
+    """A channel of all predictions in sequence, with gaps between them."""
     values = one[role].values
     return np.hstack([values, np.full((len(values), 1), np.nan)]).ravel()
 
 
 def error_rows(errors: Dataset) -> Table:
-    """Root mean square errors by simulation and time, as from `errors_of`."""
+    """Root mean square errors by simulation and time, from `errors_of`."""
+    # Channels that the log has.
     channels = [str(name) for name in errors.data_vars if np.isfinite(errors[name].values).any()]
     head = (
         "after",

@@ -1,4 +1,4 @@
-"""What a diagnosis says, in sentences for those who sail and maintain the ship."""
+"""Results of a diagnosis in sentences for those who sail and maintain the ship."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
@@ -14,7 +14,7 @@ from shipcosim.report.theme.views import Outcome
 
 
 def title(cause: str, component: str | None = None) -> str:
-    """A cause's name as people write it.
+    """Name of a cause for readers.
 
     Examples
     --------
@@ -26,7 +26,7 @@ def title(cause: str, component: str | None = None) -> str:
 
 
 def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
-    """A finding as a clause with its numbers.
+    """Describe a finding as a clause with its numbers.
 
     Parameters
     ----------
@@ -38,9 +38,11 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     -------
     str
     """
+    # Faults of the log have texts of their own.
     if finding.cause in read_faults():
         return _fault(finding)
     cause = (read_catalogue() if causes is None else causes).get(finding.cause)
+    # Since when, and what it was at the reference.
     since = f", from {finding.onset:.0f} s on" if finding.onset is not None else ""
     since += f" (at the reference: {_at_reference(finding)})" if finding.at_reference else ""
     try:
@@ -48,6 +50,7 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
             return filled(cause.statement, finding.parameters, finding.component) + since
     except KeyError:  # of another version of the cause's file, with other parameters
         pass
+    # Without a statement: the cause's sentence and plain numbers.
     sentence = cause.sentence if cause else title(finding.cause)
     numbers = ", ".join(f"{name} {plus_minus(e)}" for name, e in finding.parameters.items())
     place = f" ({finding.component})" if finding.component else ""
@@ -57,7 +60,7 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
 
 
 def _at_reference(finding: Finding) -> str:
-    """What a cause was when the reference was made, by parameter."""
+    """Size of a cause at the time of the reference, by parameter."""
     return ", ".join(
         f"{name.replace('_', ' ')} {plus_minus(size)}"
         for name, size in finding.at_reference.items()
@@ -65,9 +68,10 @@ def _at_reference(finding: Finding) -> str:
 
 
 def _fault(finding: Finding) -> str:
-    """A fault of the log or of the connections as a clause."""
+    """Describe a fault of the log or the connections as a clause."""
     fault = read_faults()[finding.cause]
     text = fault.statement.format(component=finding.component)
+    # Duration and number of stretches, or the channels, as the fault's file asks.
     if fault.adds == "duration" and finding.segments:
         seconds = sum(b - a for a, b in finding.segments)
         count = len(finding.segments)
@@ -78,7 +82,7 @@ def _fault(finding: Finding) -> str:
 
 
 def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> Outcome:
-    """The verdict as a word, and in one sentence.
+    """Verdict as a word and a sentence.
 
     Parameters
     ----------
@@ -95,16 +99,20 @@ def outcome(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None = None) -> 
 
 
 def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[str, str]:
+    # Faults of the log and causes in the physics are told apart.
     data = [told(f) for f in diagnosis.findings if f.kind == "data" and not f.alternatives]
     physics = [told(f, causes) for f in diagnosis.findings if f.kind == "physics"]
     log = f" The log itself is faulty: {listed(data)}." if data else ""
+    # An unknown cause comes first: it puts everything else in doubt.
     if diagnosis.verdict == "unknown":
         return "UNKNOWN", _unknown(diagnosis, physics) + log
+    # Next, channels that can be read in several ways.
     if misread := [f.sentence for f in diagnosis.findings if f.alternatives]:
         return (
             "AMBIGUOUS",
             f"The log is misread, and its own channels cannot tell where: {listed(misread)}.{log}",
         )
+    # Next, causes that this log cannot tell apart.
     if diagnosis.verdict == "ambiguous":
         names = [title(c.cause, c.component).lower() for c in diagnosis.indistinguishable]
         besides = f" Certain is: {listed(physics)}." if physics else ""
@@ -112,6 +120,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
             "AMBIGUOUS",
             f"Something is wrong, and this log cannot tell which: {listed(names, 'or')}.{besides}{log}",
         )
+    # Named causes, then faults of the log alone.
     if physics:
         many = f"{len(physics)} things are" if len(physics) > 1 else "One thing is"
         return "NAMED", f"{many} not as modelled: {listed(physics)}.{log}"
@@ -120,6 +129,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
             "NAMED",
             f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree.",
         )
+    # Nothing wrong; perhaps loads of another form.
     if diagnosis.form:
         return (
             "CONSISTENT",
@@ -129,7 +139,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
 
 
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
-    """What an answer without a name does know: the largest discrepancy, and what is beyond doubt."""
+    """What is certain without a named cause: the largest discrepancy and sure findings."""
     if not diagnosis.discrepancies:
         certain = f" Certain is: {listed(physics)}." if physics else ""
         return f"The simulation is wrong by more than noise, and none of the known causes explains it.{certain}"
@@ -139,7 +149,7 @@ def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
 
 
 def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
-    """What is wrong at first sight, largest first: in words, its size, and what share of the error it explains."""
+    """Discrepancies, largest first: in words, size, share of the error."""
     rows = []
     for one in diagnosis.discrepancies:
         size = plus_minus(ParameterEstimate(one.estimate, one.std, one.unit)) if one.std else ""
@@ -148,7 +158,7 @@ def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
 
 
 def listed(texts: Sequence[str], last: str = "and") -> str:
-    """Several texts as one.
+    """Join several texts into one.
 
     Examples
     --------
@@ -161,7 +171,7 @@ def listed(texts: Sequence[str], last: str = "and") -> str:
 def next_steps(
     diagnosis: Diagnosis, extended: str | None = None, causes: Mapping[str, Cause] | None = None
 ) -> list[str]:
-    """What to do now.
+    """Next steps for the user.
 
     Parameters
     ----------
@@ -176,6 +186,7 @@ def next_steps(
     list of str
     """
     steps = []
+    # Wrong readings and faulty logging first: they affect everything else.
     misread = any(f.alternatives for f in diagnosis.findings)
     if misread:
         steps.append(
@@ -186,10 +197,12 @@ def next_steps(
         steps.append(
             f"Correct the logging where it is wrong ({where}); this diagnosis used a repaired copy."
         )
+    # Steps that the causes' files recommend.
     physics = [f for f in diagnosis.findings if f.kind == "physics"]
     causes = read_catalogue() if causes is None else causes
     wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
     steps += [step.format(component=component) for step, component in wanted if step]
+    # A manoeuvre that separates causes, better logs, or a look at the missing force.
     if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(manoeuvre_step(diagnosis.prescription))
     if diagnosis.obstacles:
@@ -201,6 +214,7 @@ def next_steps(
         steps.append(
             "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
         )
+    # What is possible now, and what this log cannot say.
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable and not diagnosis.obstacles:
@@ -210,7 +224,7 @@ def next_steps(
 
 
 def manoeuvre_step(prescription: ExperimentDesign | None) -> str:
-    """What to sail, where causes cannot be told apart."""
+    """Manoeuvre to sail if causes cannot be told apart."""
     if prescription is None:
         return "Log more, with larger moves, turns and thrust ahead and astern: what is alike here differs there."
     name = prescription.manoeuvre.replace("_", " ")
@@ -223,7 +237,8 @@ def manoeuvre_step(prescription: ExperimentDesign | None) -> str:
 
 
 def estimate_rows(finding: Finding) -> list[tuple[str, str, str, str]]:
-    """Name, value with standard deviation and unit of each parameter, as texts."""
+    """Name, value, standard deviation and unit of each parameter as texts."""
+    # Parameters of one unit are shown in one scale.
     largest: dict[str, float] = {}
     for estimate in finding.parameters.values():
         largest[estimate.unit] = max(abs(estimate.estimate), largest.get(estimate.unit, 0.0))
@@ -234,7 +249,7 @@ def estimate_rows(finding: Finding) -> list[tuple[str, str, str, str]]:
 
 
 def size_rows(finding: Finding) -> list[tuple[str, str]]:
-    """Name and size of each parameter, as texts; of one that a reference holds what it was, an arrow, and what it is.
+    """Name and size of each parameter as texts; with a reference: before, an arrow, now.
 
     Examples
     --------
@@ -256,10 +271,11 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
 
 
 def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
-    """Rows of texts: a cause, how sure, and each of its parameters with its size; of a fault of the log where it is."""
+    """Rows of texts: cause, certainty, and each parameter's size; for a fault, its place."""
     for finding in findings:
         name = title(finding.cause, finding.component)
         sure = f"{100 * finding.probability:.0f} %"
+        # Cause and certainty only in the first row of a finding.
         rows = size_rows(finding) if finding.kind == "physics" else []
         for parameter, size in rows:
             yield name, sure, parameter, size
@@ -269,7 +285,7 @@ def finding_rows(findings: Iterable[Finding]) -> Iterator[tuple[str, ...]]:
 
 
 def where(finding: Finding) -> str:
-    """In which stretches of the log a fault is, as text."""
+    """Stretches of the log in which a fault acts, as text."""
     if not finding.segments:
         return "the whole log"
     return ", ".join(span(*segment) for segment in finding.segments)

@@ -81,8 +81,8 @@ def distance_bands(
 
 def _band_of(part: Dataset, signal: str, verdict: Verdict, minus: str | None) -> Band:
     """Band over the rows of `part`."""
-    # Limits in absolute terms, then relative to the subtracted signal where the panel shows an
-    # error.
+    # Limits in absolute terms, then relative to the
+    # subtracted signal where the panel shows an error.
     drawn = part[signal].values
     lower, upper = _limits(part, signal, verdict.expect)
     if minus is not None:

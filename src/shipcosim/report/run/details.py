@@ -70,8 +70,8 @@ def _attributes(table: Dataset, system: System | None) -> list[tuple[str, dict[s
     plain: dict[str, Any] = {}
     nested: list[tuple[str, dict[str, Any]]] = []
     for key, value in table.attrs.items():
-        # Start values become a table for each component, dictionaries a table each, the rest one
-        # table.
+        # Start values become a table for each component,
+        # dictionaries a table each, the rest one table.
         name = str(key)
         content = parsed(value)
         if name == "start_values":

@@ -39,7 +39,7 @@ def hull_outline(length: float, breadth: float) -> tuple[NDArray, NDArray]:
     >>> float(forward.max()), float(starboard.min()), float(starboard.max())
     (5.0, -2.0, 2.0)
     """
-    # Mirror the starboard side, without repeating bow and stern corner, and close the outline.
+    # Mirror the starboard side, without repeating the bow, and close the outline.
     starboard = np.array(HULL) * [length, breadth]
     port = starboard[-2::-1] * [1.0, -1.0]
     closed = np.vstack([starboard, port, starboard[:1]])
@@ -50,8 +50,8 @@ def placed(
     outline: tuple[NDArray, NDArray], x: float, y: float, psi: float
 ) -> tuple[NDArray, NDArray]:
     """An outline on the chart: east and north of its corners. [m, m]"""
-    # Rotate by the heading: north = x + c forward - s starboard, east = y + s forward + c
-    # starboard.
+    # Rotate by the heading: north = x + c forward - s
+    # starboard, east = y + s forward + c starboard.
     forward, starboard = outline
     c = np.cos(np.radians(psi))
     s = np.sin(np.radians(psi))

@@ -42,8 +42,8 @@ def weather(shown: Dataset, roles: Roles) -> tuple[Flow, ...]:
     found = []
     for what, sense in [("wind", "from"), ("current", "to")]:
         if f"{what} speed" in shown:
-            # The mean of the environment is shown where the ship has the same wind; a harbour
-            # changes it.
+            # The mean of the environment is shown where the ship
+            # has the same wind; a harbour changes it.
             means = [
                 roles.signal(roles.environment, f"{what}_{part}_mean") for part in ("speed", sense)
             ]

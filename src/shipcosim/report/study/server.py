@@ -3,7 +3,6 @@
 The server gives the files of one folder to programs of this machine only. It refuses requests that
 another site's page could make: under another host name, and simulations without our header, for
 which a browser asks the server first.
-browser asks the server first.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A study in words: what it comes to, its key figures, what was varied, and how."""
+"""A study in words: result, key figures, what was varied, and how."""
 
 from __future__ import annotations
 
@@ -30,9 +30,10 @@ MATTERS = 0.05
 
 
 def facts(tables: StudyTables) -> tuple[Fact, ...]:
-    """What was varied, how often, by what."""
+    """Facts of a study: scenario, number of runs, seed, engine."""
     about = tables.about
     study = tables.study
+    # Fewer runs than planned: show both numbers.
     runs = about.get("runs") or {}
     planned = runs.get("planned")
     known = {
@@ -50,7 +51,8 @@ def facts(tables: StudyTables) -> tuple[Fact, ...]:
 def outcome(
     tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]
 ) -> Outcome:
-    """What the study says, in one sentence."""
+    """Result of the study in one sentence."""
+    # The summary says most; else the first quantity over all runs.
     failed = int(is_failed(tables).sum())
     count = len(tables.runs)
     word = f"{count} runs" if count != 1 else "1 run"
@@ -61,13 +63,15 @@ def outcome(
 
 
 def _of_summary(summary: Mapping[str, Column]) -> str:
-    """The range of the first summary, and where its ends lie."""
+    """Range of the first summary, and where its ends lie."""
+    # The first summary with a value.
     found = next(
         (c for c in summary.values() if c.role == SUMMARY and np.isfinite(c.values).any()), None
     )
     if found is None:
         return ""
     name = found.description or found.name.replace("_", " ")
+    # One row, one value everywhere, or a range with the factors of its ends.
     if len(found.values) == 1:
         return f"{_capital(name)}: {found.text(found.values[0])}."
     low = int(np.nanargmin(found.values))
@@ -79,18 +83,19 @@ def _of_summary(summary: Mapping[str, Column]) -> str:
 
 
 def _where(columns: Mapping[str, Column], row: int) -> str:
-    """Levels of the factors of a row."""
+    """Factor levels of a row."""
     factors = [c for c in columns.values() if c.role in (FACTOR, SAMPLE)]
     return ", ".join(c.text(c.values[row], with_name=not c.labels) for c in factors) or "one row"
 
 
 def _of_runs(runs: Mapping[str, Column]) -> str:
-    """The first quantity over all runs."""
+    """First quantity over all runs."""
     found = next(
         (c for c in runs.values() if c.role == QUANTITY and np.isfinite(c.values).any()), None
     )
     if found is None:
         return ""
+    # Share with Wilson's interval for true or false, else median, 90 % and largest value.
     known = found.values[np.isfinite(found.values)]
     name = _capital(found.description or found.name)
     if found.is_truth:
@@ -108,12 +113,14 @@ def _capital(text: str) -> str:
 def key_figures(
     tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]
 ) -> tuple[KeyFigure, ...]:
-    """Runs, and what the first quantities and summaries come to."""
+    """Number of runs, and values of the first quantities and summaries."""
     found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
+    # Summaries first: they are what the study asks for.
     for column in [*summary.values(), *runs.values()]:
         known = column.values[
             ~np.isnan(column.values) if column.role == SUMMARY else np.isfinite(column.values)
         ]
+        # Only numbers that a reader can compare; ends of intervals belong to their value.
         if not len(known) or column.labels or (column.role not in (QUANTITY, SUMMARY)):
             continue
         if column.name.endswith(("_low", "_high")):
@@ -124,6 +131,7 @@ def key_figures(
 
 def _key_figure(column: Column, known: NDArray) -> KeyFigure:
     name = column.description or column.name.replace("_", " ")
+    # A share, the range of a summary, or the value that nine of ten runs stay below.
     if column.is_truth:
         low, high = wilson(int(known.sum()), len(known))
         return KeyFigure(
@@ -138,9 +146,10 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
 
 
 def quantities_table(runs: Mapping[str, Column]) -> Table:
-    """Each quantity over all runs, and the factor that it varies with most."""
+    """Each quantity over all runs, and the factors that explain most of its variance."""
     causes = [c for c in runs.values() if c.role in (FACTOR, SAMPLE)]
     rows = []
+    # Runs without a value are counted: quantiles leave them out.
     for column in (c for c in runs.values() if c.role == QUANTITY):
         known = column.values[np.isfinite(column.values)]
         missing = str(len(column.values) - len(known)) if len(known) < len(column.values) else "–"
@@ -164,9 +173,10 @@ def quantities_table(runs: Mapping[str, Column]) -> Table:
 
 
 def _varies_with(column: Column, causes: Sequence[Column]) -> str:
-    """The factors that explain most of a quantity's variance, each alone."""
+    """Factors that explain most of a quantity's variance, each alone."""
     if column.labels:
         return "–"
+    # Only factors with a share that matters, at most three.
     shares = [
         (explained(column.values, cause.values, bool(cause.levels)), cause.name) for cause in causes
     ]
@@ -177,7 +187,7 @@ def _varies_with(column: Column, causes: Sequence[Column]) -> str:
 
 
 def is_failed(tables: StudyTables) -> NDArray:
-    """Which runs failed, (n,) of bool."""
+    """True for failed runs, (n,) of bool."""
     if "error" not in tables.runs:
         return np.zeros(len(tables.runs), bool)
     return np.array(
@@ -186,8 +196,9 @@ def is_failed(tables: StudyTables) -> NDArray:
 
 
 def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
-    """What went wrong, with the numbers of the runs, the most frequent first."""
+    """Error messages with their runs, the most frequent first."""
     found: dict[str, list[int]] = {}
+    # Runs with the same message form one entry.
     failed = tables.runs[is_failed(tables)]
     for number, error in zip(failed["run"], failed["error"] if len(failed) else (), strict=True):
         found.setdefault(str(error), []).append(int(number))
@@ -199,7 +210,8 @@ def errors(tables: StudyTables) -> tuple[tuple[str, tuple[int, ...]], ...]:
 
 
 def varied_table(study: Mapping[str, Any]) -> Table:
-    """What was varied: a row a factor and a sampled value."""
+    """Varied factors and sampled values, a row each."""
+    # Factors of the grid, then sampled signals, then tuned ones.
     rows = [
         (str(one.get("name", "")), _signals(one), _values(one)) for one in _parts(study, "factor")
     ]
@@ -219,21 +231,22 @@ def varied_table(study: Mapping[str, Any]) -> Table:
 
 
 def _with_others(signal: str, how: Mapping[str, Any]) -> str:
-    """A signal and those that get the same value."""
+    """A signal and others with the same value."""
     return ", ".join([str(signal), *how.get("also", ())])
 
 
 def _given(part: Mapping[str, Any]) -> dict[str, Any]:
-    """What a part of a study file says, without what it leaves open."""
+    """Entries of a part of a study file, without empty ones."""
     return {key: value for key, value in part.items() if value not in (None, "", [], {}, False)}
 
 
 def _parts(study: Mapping[str, Any], name: str) -> list[dict[str, Any]]:
-    """Tables of one kind."""
+    """Tables of one kind in a study file."""
     return [_given(one) for one in study.get(name) or ()]
 
 
 def _signals(factor: Mapping[str, Any]) -> str:
+    # What a factor sets: signals of its cases, weather, seeds, or its own signals.
     if cases := factor.get("case"):
         names = dict.fromkeys(name for case in cases for name in case.get("set") or {})
         events = ["events"] if any(case.get("events") for case in cases) else []
@@ -253,6 +266,7 @@ def _signals(factor: Mapping[str, Any]) -> str:
 
 
 def _values(factor: Mapping[str, Any]) -> str:
+    # How the values are given: seeds, cases, directions, conditions, a list or a range.
     if "seeds" in factor:
         return f"{factor['seeds']} seeds, drawn from the study's seed"
     if cases := factor.get("case"):
@@ -277,7 +291,8 @@ def _listed(texts: Sequence[str]) -> str:
 
 
 def _distribution(how: Mapping[str, Any]) -> str:
-    """A distribution as one would write it down."""
+    """A distribution in words."""
+    # Normal about the start value, or as the study writes it.
     later = " (at the fork)" if how.get("at_fork") else ""
     if how.get("tolerance"):
         return f"normal about the start value, standard deviation: the tolerance of the parameter set{later}"
@@ -288,13 +303,14 @@ def _distribution(how: Mapping[str, Any]) -> str:
 
 
 def measured_table(study: Mapping[str, Any]) -> Table:
-    """What was taken of each run, and of runs that are alike."""
+    """Quantities of each run, and summaries over similar runs."""
     rows = [(str(one.get("name", "")), _quantity(one)) for one in _parts(study, "quantity")]
     rows += [(str(one.get("name", "")), _summary(one)) for one in _parts(study, "summary")]
     return Table(tuple(rows), ("name", "what it is"), tight=(0,))
 
 
 def _quantity(one: Mapping[str, Any]) -> str:
+    # The scenario's expectations, the study's own, a margin, or a statistic of signals.
     if one.get("scenario_expectations"):
         return "whether all that the scenario expects holds"
     if wanted := one.get("expect"):
@@ -331,7 +347,8 @@ def _plain(value: Any) -> str:
 
 
 def setup_table(tables: StudyTables) -> Table:
-    """Scenario, start values, sampling, seed, engine and versions."""
+    """Scenario, start values, sampling, seed, engine and versions of the study."""
+    # Only entries that the study has appear in the table.
     about = tables.about
     study = _given(tables.study)
     sample, tune = (_given(study.get(name) or {}) for name in ("sample", "tune"))
@@ -359,12 +376,12 @@ def setup_table(tables: StudyTables) -> Table:
 
 
 def study_text(study: Mapping[str, Any]) -> str:
-    """The study as it was read, with all it inherits."""
+    """The study as read, with everything it inherits."""
     return json.dumps(_short(study), indent=2, ensure_ascii=False, default=str)
 
 
 def _short(value: Any) -> Any:
-    """A study without what it leaves open."""
+    """A study without empty entries."""
     if isinstance(value, Mapping):
         return {key: _short(part) for key, part in _given(value).items()}
     return [_short(part) for part in value] if isinstance(value, list | tuple) else value

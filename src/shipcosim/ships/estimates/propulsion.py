@@ -164,8 +164,8 @@ def curves(screw: Screw) -> dict[str, EstimatedNumber]:
     # The series is a function of the angle of advance, tan(beta) = J / (0.7 pi):
     # C = K cos^2(beta) / (pi/8 (0.7 pi)^2).
     slope = np.cos(beta[1]) ** 2
-    # Factors that make the series meet the bollard point, the end of the polynomial and thrust
-    # astern.
+    # Factors that make the series meet the bollard point, the
+    # end of the polynomial and thrust astern.
     ahead = np.array([thrust[0], torque[0]]) / _DISC / bollard
     ends = np.array(at_end) * slope / _DISC / beyond
     astern = -np.array([ASTERN[screw.kind] * thrust[0], torque[0]]) / _DISC / back
@@ -198,7 +198,7 @@ def drive(screw: Screw, rise: float) -> dict[str, EstimatedNumber]:
     """
     # Smogeli's rule for the rotating mass; tunnels have light propellers.
     inertia = 24.0 * screw.diameter**5 * (0.3 if screw.kind == "tunnel" else 1.0)
-    # A small floor keeps the gains of boats finite.
+    # A small floor keeps the gains of model boats above zero.
     inertia = max(inertia, 1e-5)
     return {
         "thrust_rate": EstimatedNumber(

@@ -253,8 +253,8 @@ def _run(L: float, Cp: float, lcb: float) -> float:
 def _entrance(form: HullDimensions, volume: float, Cp: float, Cwp: float, lcb: float) -> float:
     """Half angle of entrance in deg."""
     L = form.length
-    # Holtrop and Mennen's half angle of entrance, in deg.
     B = form.breadth
+    # Holtrop and Mennen's half angle of entrance, in deg.
     run = _run(form.length, Cp, lcb)
     power = (
         (L / B) ** 0.80856 * (1.0 - Cwp) ** 0.30484 * max(0.01, 1.0 - Cp - 0.0225 * lcb) ** 0.6367

@@ -53,8 +53,8 @@ def propeller_and_rudder(
         Parameters of a propeller with a rudder, without places and open-water curve.
     """
     L = form.length
-    # Taylor's wake fractions for single and twin screws.
     Cb = form.block
+    # Taylor's wake fractions for single and twin screws.
     wake = max(0.5 * Cb - 0.05 if single else 0.55 * Cb - 0.20, 0.02)
     # Fujii's lift gradient depends on the aspect ratio of the rudder.
     aspect = span**2 / area

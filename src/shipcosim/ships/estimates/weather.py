@@ -147,8 +147,8 @@ def drift_table(length: float, breadth: float, draught: float, density: float) -
         scale = 0.5 * density * GRAVITY * reflected**2
         for heading in range(0, 181, 30):
             c = cos(radians(heading))
-            # A wall reflects with the square of the angle on both sides of the ship.
             s = sin(radians(heading))
+            # The load on a wall goes with the squared cosine of the angle to its normal.
             X = scale * breadth * c * abs(c)
             Y = scale * length * s * s
             rows.append(f"{omega:g} {heading} {round(X, 3) + 0.0:g} {round(Y, 3) + 0.0:g} 0")

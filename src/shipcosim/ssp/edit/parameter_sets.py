@@ -225,8 +225,8 @@ class Sets:
                 continue
             owner = f"{one.owner}."
             names = _Names(old.removeprefix(owner), new and new.removeprefix(owner), exact)
-            # A mapping has the name in its targets, a prefix in itself, all others in each
-            # parameter.
+            # A mapping has the name in its targets, a prefix in
+            # itself, all others in each parameter.
             mapping = child(one.binding, "ssd:ParameterMapping")
             if mapping is not None:
                 self._rename_targets(mapping, names)

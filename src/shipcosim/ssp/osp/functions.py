@@ -131,8 +131,8 @@ class Wiring:
             found = f"The {known.kind} '{function}' has no signal '{signal}'."
             self.findings.error(place, found, it_has(signal, known.signals))
             return
-        # An input takes one connection; an output may have several, of which libcosim makes the
-        # first.
+        # An input takes one connection; an output may have
+        # several, of which libcosim makes the first.
         ends = self._ends.setdefault((function, signal), [])
         if ends and not signal.startswith("out"):
             self.findings.error(

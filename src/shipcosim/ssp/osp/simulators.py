@@ -113,8 +113,8 @@ class Simulators:
                 )
                 parts = urlsplit(text)
                 source = text
-            # Other addresses would need a server.
             elif parts.scheme not in HERE:
+                # Other addresses would need a server.
                 remedy = "Name the FMU's file: proxies and servers of FMUs are not supported."
                 self.findings.error(
                     place, f"'{source}' is an address of the kind '{parts.scheme}'.", remedy

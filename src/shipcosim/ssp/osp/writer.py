@@ -105,8 +105,8 @@ def _connections(
         into[connection.target].append(connection)
     for target, feeding in into.items():
         first = feeding[0]
-        # A Sum function for several sources, a linear one for a factor or offset, else a plain
-        # connection.
+        # A Sum function for several sources, a linear one for a
+        # factor or offset, else a plain connection.
         if len(feeding) > 1:
             name = free_name(f"sum_{len(sums)}", taken)
             sums.append(f'<Sum name="{name}" inputCount="{len(feeding)}"/>')

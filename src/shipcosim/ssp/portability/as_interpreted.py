@@ -163,8 +163,8 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
             if not same:
                 other.append(f"{name} is {_how(factor, offset, connection)}")
             taken.append(replace(connection, factor=factor, offset=offset, mapping=None))
-        # Connections of the outermost system's own connectors stay as they are.
         elif connection.source[0] is None or connection.target[0] is None:
+            # Connections of the outermost system's own connectors stay as they are.
             taken.append(connection)
         else:
             other.append(f"{name} is not made")

@@ -166,8 +166,8 @@ class Library:
         return self._once(("fmu", file), lambda: self._description(file, package))
 
     def _description(self, file: Path, package: Package) -> FmuDescription | None:
-        # Cached by file and time of change; faulty descriptions are read again, so their faults are
-        # reported.
+        # Cached by file and time of change; faulty descriptions are
+        # read again, so their faults are reported.
         key = file, file.stat().st_mtime_ns
         if key not in self._described:
             before = len(self.findings.problems)

@@ -59,8 +59,8 @@ def remark_ignored(document: Document, findings: Findings) -> None:
     honoured = [part for part, _ in list(step_sizes(document.root))[:1]]
     for component in document.root.iter(qualified("ssd:Component")):
         honoured += [part for part, _ in list(stated(component, STEP_SIZE_HINTS))[:1]]
-    # Everything else that asks for an algorithm or a step is reported, unless it repeats the base
-    # step.
+    # Everything else that asks for an algorithm or a step is
+    # reported, unless it repeats the base step.
     for annotation in document.root.iter(qualified("ssc:Annotation")):
         for part in annotation.iter("{*}*"):
             if _asks(part) and part not in honoured and not _repeats(part, honoured[:1]):
