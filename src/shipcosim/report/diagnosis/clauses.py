@@ -34,9 +34,9 @@ def filled(
 
     Examples
     --------
-    >>> filled("the {component} thruster loses {loss:percent}", {"loss": Estimate(0.337, 0.012, "1")}, "port")
+    >>> filled("the {component} thruster loses {loss:percent}", {"loss": ParameterEstimate(0.337, 0.012, "1")}, "port")
     'the port thruster loses 34 ± 1 %'
-    >>> filled("the ship is {scale:excess heavier|lighter}", {"scale": Estimate(0.9, 0.02, "1")})
+    >>> filled("the ship is {scale:excess heavier|lighter}", {"scale": ParameterEstimate(0.9, 0.02, "1")})
     'the ship is 10 ± 2 % lighter'
     """
     return text.format_map(_Values(parameters, component))

@@ -253,8 +253,8 @@ def size_rows(finding: Finding) -> list[tuple[str, str]]:
 
     Examples
     --------
-    >>> from shipcosim.diagnose.result import Estimate
-    >>> lost, before = Estimate(0.152, 0.012, "1"), Estimate(0.03, 0.02, "1")
+    >>> from shipcosim.diagnose.finding import ParameterEstimate
+    >>> lost, before = ParameterEstimate(0.152, 0.012, "1"), ParameterEstimate(0.03, 0.02, "1")
     >>> size_rows(Finding("thrust_loss", "port", parameters={"loss": lost}, at_reference={"loss": before}))
     [('loss', '0.03 ± 0.02 → 0.152 ± 0.012')]
     """
