@@ -1,7 +1,7 @@
 """The command `shipcosim diagnose`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -57,7 +57,7 @@ def diagnose(
     from shipcosim.diagnose.pipeline import STEPS
 
     folder = out or default_folder(data[0])
-    asked = {"channels": channels, "causes": effects, "reference": reference}
+    asked: dict[str, Any] = {"channels": channels, "causes": effects, "reference": reference}
     asked |= {"out": folder, "force": force}
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
