@@ -1,8 +1,9 @@
 """FMUs for model exchange behind the calls of a co-simulation slave; CVode integrates them.
 
-A step of the master is integrated in steps that CVode chooses. State events end such a step where an event indicator
-is zero, time events where the FMU announced them; after every step the FMU may ask for an event of its own. Inputs are held
-over a step of the master. One that has changed is handed over in event mode, since it jumps.
+A step of the master is integrated in steps that CVode chooses. State events end such a step just past a zero of an
+event indicator, time events where the FMU announced them; after every step the FMU may ask for
+an event of its own. Inputs are held over a step of the master. One that has changed is handed over in event mode, since
+it jumps.
 
 Reference: FMI 2.0.4 and FMI 3.0.1, section 3 of each.
 """
@@ -36,6 +37,11 @@ MOST_STATES = 5000
 """Largest number of continuous states, whose Jacobian is dense."""
 CLOSE = 1e-12
 """Times that differ by less than this part of them are the same."""
+FARTHEST_PAST = 1e-6
+"""Part of a step of the master by which a zero of an event indicator is passed at most to see its sign."""
+MOST_EVENTS_AT_ONCE = 100
+SHORTEST_TIME = 1e-6
+"""So many events within this part of a step of the master are chattering."""
 EVENT = "event mode"
 CONTINUOUS = "continuous-time mode"
 
@@ -88,6 +94,10 @@ class ModelExchange(LibrarySlave):
         self._solver: Cvode | None = None
         self._next_event = inf
         self._is_event_done = False
+        # Signs of the event indicators at the last event: -1, 0 or 1.
+        self._signs = np.zeros(0)
+        # Whether an indicator may be zero now, so that its sign is seen only a little later.
+        self._is_at_zero = False
         self.followed: frozenset[tuple[str, str]] = frozenset()
         self.close_group: Callable[[], None] | None = None
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
@@ -252,7 +262,9 @@ class ModelExchange(LibrarySlave):
         """Integrate to a time, through all events on the way."""
         # Times closer than rounding are the same time.
         near = CLOSE * max(abs(end), end - time)
+        farthest = FARTHEST_PAST * (end - time)
         n_events = 0
+        n_counted, counted_from = 0, time
         # Inputs set since the last step have put the FMU into event mode.
         if self._mode == EVENT:
             self._time = time
@@ -262,28 +274,97 @@ class ModelExchange(LibrarySlave):
             if self._next_event > self._time + near:
                 if self._time >= end - near:
                     return
-                # Make one step of the solver; whether there is a state or step event where it ends.
                 stop = min(end, self._next_event)
-                assert self._solver is not None
-                reached, has_root = self._solver.step(stop)
-                # Snap to the stop time, so that the master's time and the FMU's are equal.
-                self._time = stop if abs(reached - stop) <= near else reached
-                # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
-                self._set_time_and_states(self._time, self._states)
-                # State event: an indicator crossed zero. Step event: the FMU asks for one.
-                solver_step = self._completed_step() or has_root
-                if not solver_step:
+                # An indicator that is zero now has its sign a little later.
+                if self._is_at_zero:
+                    is_event = self._pass_zero(min(self._time + farthest, stop))
+                else:
+                    is_event = self._solver_step(stop, near)
+                if not is_event:
                     continue
             # An event: iterate the discrete states, then restart the solver from the new states.
             self._enter_event_mode()
             self._iterate_event()
             self._enter_continuous_time()
             n_events += 1
+            n_counted += 1
             # Too many events in one step: the model switches back and forth (chattering).
             if n_events > MOST_EVENTS:
                 raise SlaveError(
                     f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s."
                 )
+            if n_counted == MOST_EVENTS_AT_ONCE:
+                if self._time - counted_from <= SHORTEST_TIME * (end - time):
+                    raise SlaveError(
+                        f"It chatters at t = {self._time:.9g} s: {n_counted} events within "
+                        f"{self._time - counted_from:.1g} s, each of which causes the next. It needs a hysteresis, "
+                        "or a state in which it slides or rests."
+                    )
+                n_counted, counted_from = 0, self._time
+
+    def _solver_step(self, stop, near):
+        """Make one step of the solver, at most to a time; true if there is an event where it ends."""
+        assert self._solver is not None  # since the initialisation
+        reached, has_root = self._solver.step(stop)
+        # Snap to the stop time, so that the master's time and the FMU's are equal.
+        self._time = stop if abs(reached - stop) <= near else reached
+        # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
+        self._set_time_and_states(self._time, self._states)
+        # Step event: the FMU asks for one. State event: an indicator has changed its sign.
+        if self._completed_step() or self._has_changed_sign():
+            return True
+        # A root is often exactly zero. FMUs that compare with < and > see no change there.
+        self._is_at_zero = has_root
+        return has_root and self._time == stop and self._has_come_to_zero()
+
+    def _pass_zero(self, farthest):
+        """Go past a zero of an indicator, at most to a time; true if there is an event.
+
+        The states go on along their derivatives, over a time that doubles until a sign changes. Where none does, the
+        indicator touches zero or stays there: then nothing moves.
+        """
+        self._is_at_zero = False
+        start = self._time
+        states = np.ctypeslib.as_array(self._states, (max(self._n, 1),))
+        before = states.copy()
+        rates = np.zeros(max(self._n, 1))
+        if self._n:
+            self.call(self.DERIVATIVES, rates.ctypes.data_as(POINTER(c_double)), self._n)
+        # The first try is a few roundings of the time long.
+        past = 4 * np.spacing(max(abs(start), farthest - start))
+        while True:
+            past = min(past, farthest - start)
+            self._time = start + past
+            states[:] = before + past * rates
+            self._set_time_and_states(self._time, self._states)
+            if self._has_changed_sign():
+                return True
+            if past >= farthest - start:
+                break
+            past *= 2
+        self._time = start
+        states[:] = before
+        self._set_time_and_states(start, self._states)
+        return self._has_come_to_zero()
+
+    def _has_changed_sign(self):
+        """Whether an event indicator is past zero, on another side than at the last event."""
+        if not self._n_indicators:
+            return False
+        signs = np.sign(self._indicator_values())
+        return bool(np.any((signs != 0.0) & (signs != self._signs)))
+
+    def _has_come_to_zero(self):
+        """Whether a positive indicator has become zero: an event too, as FMI counts zero as negative."""
+        return bool(np.any((self._indicator_values() == 0.0) & (self._signs > 0.0)))
+
+    def _indicator_values(self):
+        """Event indicators at the present time and states, an (n_indicators,) array."""
+        values = np.zeros(self._n_indicators)
+        self.call(
+            "GetEventIndicators", values.ctypes.data_as(POINTER(c_double)), self._n_indicators
+        )
+        return values
 
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
@@ -307,6 +388,10 @@ class ModelExchange(LibrarySlave):
         if self._n:
             self.call("GetContinuousStates", self._states, self._n)
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
+        # The discrete states have settled for these signs. A zero gets its sign when time goes on.
+        if self._n_indicators:
+            self._signs = np.sign(self._indicator_values())
+            self._is_at_zero = bool(np.any(self._signs == 0.0))
         assert self._solver is not None  # since the initialisation
         self._solver.start(self._time, nominals)
 
