@@ -51,6 +51,15 @@ class Unit:
         return {name: power for name, power in pairs if power}
 
     @property
+    def definition(self) -> str:
+        """The unit in base units: ``"0.0174533 rad"``, ``"100000 kg m-1 s-2"``; empty where it is defined nowhere."""
+        if self.exponents is None:
+            return ""
+        parts = [name if power == 1 else f"{name}{power}" for name, power in self.powers.items()]
+        text = " ".join([f"{self.factor:.6g}", *(parts or ["(no dimension)"])])
+        return f"{text} + {self.offset:.6g}" if self.offset else text
+
+    @property
     def base_unit_attributes(self) -> dict[str, str]:
         """Attributes of the element ``BaseUnit`` that defines the unit in a file of FMI or SSP."""
         attributes = {name: str(power) for name, power in self.powers.items()}
@@ -118,6 +127,9 @@ SYMBOLS = {
 }
 """Units by their symbol, for spellings that no file defines."""
 RADIAN = SYMBOLS["rad"]
+
+AMBIGUOUS = ("C", "d", "g", "t")
+"""Symbols that files also use for other units, such as C for degrees Celsius."""
 
 PREFIXES = {
     "G": 1e9,
@@ -296,6 +308,15 @@ def relation(source: Unit, target: Unit) -> str:
             else "convertible"
         )
     return "angle" if source.exponents[:_ANGLE] == target.exponents[:_ANGLE] else "incompatible"
+
+
+def contradicts(unit: Unit, other: Unit) -> bool:
+    """Whether two definitions of one name differ by more than rounding; rad and 1 count as the same dimension."""
+    related = relation(unit, other)
+    if related == "incompatible":
+        return True
+    is_close = math.isclose(unit.factor, other.factor, rel_tol=1e-3)
+    return related == "convertible" and not (is_close and abs(unit.offset - other.offset) <= 0.1)
 
 
 def conversion(source: Unit | None, target: Unit | None) -> tuple[float, float]:

@@ -21,7 +21,14 @@ from shipcosim.scenario import Scenario, check_files, check_times
 from shipcosim.scenario import read_scenario as read_scenario_file
 from shipcosim.scenario.model import problems_in
 from shipcosim.scenario.osp import read_osp_scenario
-from shipcosim.ssp import System, SystemStructure, fitting_values, read_system
+from shipcosim.ssp import (
+    System,
+    SystemStructure,
+    default_step_size,
+    fitting_values,
+    read_system,
+    step_remarks,
+)
 from shipcosim.units import UnitError, seconds
 
 if TYPE_CHECKING:
@@ -258,19 +265,29 @@ def system_and_scenario(
         step = keys.get("step_size", system.experiment.step_size)
         if not needs_end and system.experiment.stop_time is None and step is not None:
             keys = {"stop_time": step, **keys}
-    return system, *with_osp_events(scenario_of(scenario, system, keys), events)
+    happening, remarks = with_osp_events(scenario_of(scenario, system, keys), events)
+    if scenario is None and "step_size" not in keys:
+        remarks += step_remarks(system, 0.0, happening.stop_time)
+    return system, happening, remarks
 
 
-def scenario_of(given: Scenario | None, system: System, keys: Mapping[str, Any]) -> Scenario:
-    """Scenario of entries over those of another one, or over the system's default experiment; its times checked."""
+def scenario_of(
+    given: Scenario | None, system: System, keys: Mapping[str, Any], start_time: float = 0.0
+) -> Scenario:
+    """Scenario of entries over those of another one, or over the system's default experiment; its times checked.
+
+    The run starts at `start_time`. [s]
+    """
     if given is None:
-        experiment = {
-            "stop_time": system.experiment.stop_time,
-            "step_size": system.experiment.step_size,
-        }
-        entries = without_none(experiment) | dict(keys)
+        experiment = without_none({"stop_time": system.experiment.stop_time})
+        entries = experiment | dict(keys)
+        if "step_size" not in entries and "stop_time" in entries:
+            step_size = default_step_size(system, start_time, entries["stop_time"])
+            entries |= without_none({"step_size": step_size})
         entries.setdefault("description", f"Simulation of {system.name}")
-        if missing := [name for name in ("stop_time", "step_size") if name not in entries]:
+        # The step of one FMU follows from its stop time.
+        needed = ["stop_time"] if system.file.endswith(".fmu") else ["stop_time", "step_size"]
+        if missing := [name for name in needed if name not in entries]:
             raise ShipcosimError(
                 [
                     Problem(named(name), f"{name} is missing.", "Give it; times are in s.")
@@ -291,7 +308,8 @@ def scenario_of(given: Scenario | None, system: System, keys: Mapping[str, Any])
             is_time = argument in ("stop_time", "step_size", "output_interval")
             problems.append(replace(problem, where=named(argument)) if is_time else problem)
         raise ShipcosimError(problems) from None
-    if problems := [problem for problem in check_times(scenario) if problem.severity == "error"]:
+    found = check_times(scenario, start_time)
+    if problems := [problem for problem in found if problem.severity == "error"]:
         raise ShipcosimError(problems)
     return (
         scenario

@@ -28,6 +28,7 @@ from shipcosim.calls.arguments import (
 from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.cosim import Interrupted, RunError, Snapshot, interpolated, write_snapshot
 from shipcosim.cosim import simulate as simulate_system
+from shipcosim.cosim.simulate import clock_start
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
@@ -40,7 +41,7 @@ from shipcosim.scenario import (
     with_numbers,
     within_run,
 )
-from shipcosim.ssp import System, settings_of_one, with_values
+from shipcosim.ssp import System, settings_of_one, step_remarks, with_values
 from shipcosim.staging import check_targets, set_file_aside
 
 if TYPE_CHECKING:
@@ -412,8 +413,12 @@ def prepare_simulation(
     times = without_none(
         {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     )
-    happening = scenario_of(scenario, ship, times | {"set": start_values, "events": list(events)})
+    keys = times | {"set": start_values, "events": list(events)}
+    since = clock_start(how)
+    happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
+    if scenario is None and step_size is None:
+        remarks += step_remarks(ship, since, happening.stop_time)
     texts = changes(start_values, parameters, components, (), how)
     if scenario is not None:
         texts += times_changed(times, happening)
@@ -531,11 +536,14 @@ def _prepared(
 ) -> PreparedRun:
     """Check a scenario with its system, and gather what should be known before the run."""
     happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    problems = check_scenario(scenario, happening)
-    found = [*remarks, *(one for one in system.remarks if one.where not in system.components)]
+    since = clock_start(options)
+    problems = check_scenario(scenario, happening, since)
+    # Inputs that nothing feeds are named by `check`; what a run does otherwise than a file asks is named here too.
+    known = [one for one in system.remarks if one.flaw or one.where not in system.components]
+    found = [*remarks, *known]
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
     # A run that is shorter than planned leaves events and expectations out on purpose.
-    of_times = check_times(scenario) if scenario.stop_time < planned else ()
+    of_times = check_times(scenario, since) if scenario.stop_time < planned else ()
     found += [problem for problem in problems if problem not in of_times]
     return PreparedRun(system, scenario, options, tuple(changed), tuple(found), planned)

@@ -191,8 +191,11 @@ def print_report(checked: CheckedFiles, as_json: bool) -> None:
         for problem in worth_showing(problems):
             console.print(_block(problem))
         errors = sum(problem.severity == "error" for problem in problems)
-        console.print(
-            Text(
-                f"{file}: " + (f"{errors} error{'s' * (errors > 1)}" if errors else "nothing wrong")
-            )
-        )
+        remarks = len(problems) - errors
+        if errors:
+            said = f"{errors} error{'s' * (errors > 1)}"
+        elif remarks:
+            said = f"no error, {remarks} remark{'s' * (remarks > 1)}"
+        else:
+            said = "nothing wrong"
+        console.print(Text(f"{file}: {said}"))

@@ -12,10 +12,17 @@ from shipcosim.cosim.systems import system_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario, odd_values, units_of, with_numbers
+from shipcosim.snapshot import opened
 from shipcosim.ssp import System, with_values
 
 if TYPE_CHECKING:
     import xarray
+
+
+def clock_start(options: RunOptions) -> float:
+    """Time from which the steps of a run count; one that continues keeps the clock of the run before. [s]"""
+    resume = opened(options.resume)
+    return options.start_time if resume is None else resume.start_time
 
 
 def simulate(
@@ -57,9 +64,8 @@ def simulate(
     if not isinstance(system, System):
         system = system_of(scenario, system=Path(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    if errors := [
-        problem for problem in check_scenario(scenario, system) if problem.severity == "error"
-    ]:
+    found = check_scenario(scenario, system, clock_start(options))
+    if errors := [problem for problem in found if problem.severity == "error"]:
         raise ShipcosimError(errors)
     # Unusual values do not stop the run, but the table notes them.
     odd = [str(remark) for remark in odd_values(scenario, system)]

@@ -165,7 +165,7 @@ class _Runs:
         """Raise ShipcosimError if names or times of a variation do not fit the system."""
         for name in variation.values:
             self._system.split(name, "variation")
-        found = check_scenario(variation.scenario, self._system)
+        found = check_scenario(variation.scenario, self._system, self._options.start_time)
         if errors := [problem for problem in found if problem.severity == "error"]:
             raise ShipcosimError(errors)
         time_grid_of(variation.scenario, self._options.start_time)

@@ -116,19 +116,23 @@ def step_times(step_size: float, first: int, last: int, start_time: float = 0.0)
     )
 
 
-def check_times(scenario: Scenario) -> Iterator[Problem]:
-    """Find times of a scenario that miss its steps or lie after its end."""
-    for complaint in time_complaints(scenario):
+def check_times(scenario: Scenario, start_time: float = 0.0) -> Iterator[Problem]:
+    """Find times of a scenario that miss its steps, which count from `start_time` [s], or lie after its end."""
+    for complaint in time_complaints(scenario, start_time):
         yield problem_at(scenario, *complaint)
 
 
-def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
-    """Problems with the times of a scenario: (keys, found, remedy, severity)."""
+def time_complaints(
+    scenario: Scenario, start_time: float = 0.0
+) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
+    """Problems with the times of a scenario whose run starts at a time [s]: (keys, found, remedy, severity)."""
     step = scenario.step_size
     stop = scenario.stop_time
     # Too many steps would fill the memory before anything runs.
-    if stop / step > MOST_STEPS:
-        found = f"stop_time = {stop:g} s takes {stop / step:.3g} steps of {step:g} s."
+    if (stop - start_time) / step > MOST_STEPS:
+        found = (
+            f"stop_time = {stop:g} s takes {(stop - start_time) / step:.3g} steps of {step:g} s."
+        )
         yield (
             ("stop_time",),
             found,
@@ -143,11 +147,13 @@ def time_complaints(scenario: Scenario) -> Iterator[tuple[tuple[str | int, ...],
         *((("events", number, "time"), event.time) for number, event in enumerate(scenario.events)),
     ]
     for keys, time in times:
-        count = whole_steps(time, step)
+        since = 0.0 if keys[0] == "output_interval" else start_time
+        count = whole_steps(time - since, step)
         # No step at all is wrong for lengths of time, but an event may be at 0.
         if count is None or (count == 0 and keys[0] != "events"):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
-            nearest = max(1, round(time / step)) * step
+            nearest = since + max(1, round((time - since) / step)) * step
+            found = found.replace(" s.", f" s after {since:g} s.") if since else found
             yield keys, found, f"The nearest would be {nearest:g} s.", "error"
         elif keys[0] == "events" and time >= stop:
             # An event at or after the end has no effect: worth a remark.
@@ -185,7 +191,7 @@ def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
             )
 
 
-def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
+def check_scenario(scenario: Scenario, system: System, start_time: float = 0.0) -> list[Problem]:
     """Problems of the events and expectations of a scenario with a system.
 
     Parameters
@@ -194,9 +200,11 @@ def check_scenario(scenario: Scenario, system: System) -> list[Problem]:
         Checked in itself.
     system : System
         That it runs. Start values are checked by `shipcosim.ssp.with_values`.
+    start_time : float
+        Of the run. [s]
     """
     # Times and parameters first; then events and expectations, each at its line.
-    problems = [*check_times(scenario), *check_parameters(scenario, system)]
+    problems = [*check_times(scenario, start_time), *check_parameters(scenario, system)]
     wrong_changes = [
         problem_at(scenario, ("events", number, verb, signal), *complaint)
         for number, event in enumerate(scenario.events)

@@ -12,7 +12,7 @@ from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
-from shipcosim.ssp.single_fmu import settings_of_one
+from shipcosim.ssp.single_fmu import default_step_size, settings_of_one, step_remarks
 from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 
@@ -27,6 +27,7 @@ __all__ = [
     "Variable",
     "check_file",
     "check_system",
+    "default_step_size",
     "fitting_values",
     "new",
     "osp_file",
@@ -37,6 +38,7 @@ __all__ = [
     "read_system",
     "seconds_text",
     "settings_of_one",
+    "step_remarks",
     "structure_text",
     "unpack",
     "with_values",

@@ -1,12 +1,14 @@
 """One FMU as a system: one component with the file's name; its inputs are system inputs."""
 
 from collections.abc import Iterable, Mapping
+from math import inf
 from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
 
 import lxml.etree as etree
 
+from shipcosim.errors import Problem
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
@@ -16,14 +18,18 @@ from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.xml.document import Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
+from shipcosim.units import UnitError, seconds
 
-__all__ = ["assemble_fmu", "settings_of_one", "single_fmu"]
+__all__ = ["assemble_fmu", "default_step_size", "settings_of_one", "single_fmu", "step_remarks"]
 
 IN_TABLES = ("Real", "Integer", "Boolean", "Enumeration")
 """Kinds of inputs that a table can feed; the others keep their start value, which can be set."""
 
 STEPS = 500
-"""Steps of a run whose FMU says when it ends and not how long a step is, as other tools have it."""
+"""Steps of a run whose FMU does not say how long a step is, as other tools have it."""
+
+WHOLE = 1e-6
+"""Part of a step by which a number of steps may differ from a whole one."""
 
 
 def single_fmu(path: str | PathLike[str]) -> Path | None:
@@ -125,12 +131,57 @@ def _add_experiment(root: etree._Element, given: Mapping[str, float]) -> None:
     start = given.get("startTime", 0.0)
     stop = given.get("stopTime")
     step = given.get("stepSize")
-    # A step that divides the run evenly; without one as many steps as other tools take.
     if stop is not None and stop > start:
         element = add(root, "ssd:DefaultExperiment", startTime=repr(start), stopTime=repr(stop))
         annotation = add(
             add(element, "ssd:Annotations"), "ssc:Annotation", type="com.opensimulationplatform"
         )
         fixed = etree.SubElement(annotation, "FixedStepAlgorithm")
-        steps = round((stop - start) / step) if step is not None and step > 0.0 else STEPS
-        fixed.set("baseStepSize", repr((stop - start) / max(1, steps)))
+        fixed.set("baseStepSize", repr(_dividing_step(step, stop - start)))
+
+
+def default_step_size(system: System, start_time: float, stop_time: float | str) -> float | None:
+    """Step size of a run between two times where nobody gives one. [s]
+
+    Of one FMU its own step, where that divides the run, or the nearest that does; 500 steps where it has none. Of any
+    other system the step of its default experiment, or None.
+
+    Parameters
+    ----------
+    system : System
+        That runs.
+    start_time, stop_time : float
+        Of the run; the stop time may be an amount such as ``"10 min"``. [s]
+    """
+    if not system.file.lower().endswith(".fmu"):
+        return system.experiment.step_size
+    try:
+        duration = (seconds(stop_time) if isinstance(stop_time, str) else stop_time) - start_time
+    except UnitError:
+        return system.experiment.step_size  # the check of the scenario refuses the stop time
+    return _dividing_step(_step_asked(system), duration)
+
+
+def step_remarks(system: System, start_time: float, stop_time: float) -> list[Problem]:
+    """A remark where `default_step_size` is not the step that the FMU asks for."""
+    asked = _step_asked(system) if system.file.lower().endswith(".fmu") else None
+    step = default_step_size(system, start_time, stop_time)
+    is_run = stop_time > start_time  # what ends before it starts is refused elsewhere
+    if asked is None or step is None or not is_run or abs(step - asked) <= WHOLE * asked:
+        return []
+    found = f"Its step of {asked:.9g} s does not divide the run's {stop_time - start_time:.9g} s; it takes {step:.9g} s."
+    (name,) = system.components
+    return [Problem(name, found, "Give a step size or another stop time.", "remark")]
+
+
+def _step_asked(system: System) -> float | None:
+    (component,) = system.components.values()
+    return component.fmu.experiment.get("stepSize")
+
+
+def _dividing_step(asked: float | None, duration: float) -> float:
+    """A step that divides a run evenly: the one asked for, or the nearest; 500 steps where none is asked for. [s]"""
+    if asked is None or not 0.0 < asked < inf or duration <= 0.0:
+        return abs(duration or 1.0) / STEPS
+    steps = max(1, round(duration / asked))
+    return asked if abs(duration / asked - steps) <= WHOLE else duration / steps

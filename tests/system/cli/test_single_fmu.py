@@ -1,15 +1,31 @@
 """One FMU runs by itself, of every version and form: its inputs from a table, its parameters set."""
 
+import re
+import zipfile
+from dataclasses import replace
+
 import c_fmus
 import numpy as np
 import pytest
 from conformance.c_parts import build_c
 from conformance.fmus import build_part
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import shipcosim as sc
+from shipcosim.calls.arguments import without_none
 from shipcosim.cli.commands.simulate import simulate
 from shipcosim.series import read_table
-from shipcosim.ssp import read_system, settings_of_one, with_values
+from shipcosim.ssp import (
+    Component,
+    System,
+    default_step_size,
+    read_fmu,
+    read_system,
+    settings_of_one,
+    step_remarks,
+    with_values,
+)
 
 
 def test_it_runs_on_inputs_of_a_table_with_a_value_set(tmp_path, monkeypatch):
@@ -57,3 +73,84 @@ def test_every_version_and_form_runs_by_itself(name, needs, tmp_path):
     n = np.arange(17)
     exact = np.exp(-2 * n * step) if name.endswith("me") else (1 - 2 * step) ** n
     assert table[f"{name}.x"].values == pytest.approx(exact, rel=1e-6)
+
+
+def _with_experiment(fmu, target, experiment):
+    """The FMU with another default experiment."""
+    with zipfile.ZipFile(fmu) as before, zipfile.ZipFile(target, "w") as after:
+        for name in before.namelist():
+            data = before.read(name)
+            if name == "modelDescription.xml":
+                data = re.sub(rb"<DefaultExperiment[^>]*/>", b"", data)
+                where = data.index(b"<ModelVariables>")
+                data = data[:where] + experiment.encode() + data[where:]
+            after.writestr(name, data)
+    return target
+
+
+@given(
+    start=st.sampled_from([0.0, 0.1, 1.0, 1000.0]),
+    duration=st.sampled_from([0.5, 1.0, 12.5663706143592, 3600.0]),
+    step=st.sampled_from([None, 1e-3, 0.3, 0.1, 5.0]),
+)
+@settings(max_examples=40, deadline=None)
+def test_a_step_size_is_found_for_every_stop_time(start, duration, step):
+    fmu = replace(read_fmu(build_part("gain")), experiment=without_none({"stepSize": step}))
+    system = System("gain", "gain.fmu", {"gain": Component("gain", fmu)})
+    found = default_step_size(system, start, start + duration)
+    n = duration / found
+    assert n == pytest.approx(max(1, round(n)), rel=1e-6)
+    if step is None:
+        assert n == pytest.approx(500)
+    elif duration / step == pytest.approx(round(duration / step), rel=1e-9):
+        assert found == step and not step_remarks(system, start, start + duration)
+    else:
+        (remark,) = step_remarks(system, start, start + duration)
+        assert f"{step:.9g} s does not divide" in remark.found and f"{found:.9g} s" in remark.found
+
+
+@pytest.mark.parametrize(
+    ("experiment", "stop_time", "n_rows", "n_remarks"),
+    [
+        ('<DefaultExperiment startTime="0" stopTime="4"/>', 0.5, 501, 0),
+        ('<DefaultExperiment startTime="1" stopTime="4"/>', None, 501, 0),
+        ('<DefaultExperiment stopTime="12.5663706143592" stepSize="0.25"/>', 0.5, 3, 0),
+        ('<DefaultExperiment stopTime="1" stepSize="0.3"/>', None, 4, 1),
+        ("", 2.0, 501, 0),
+    ],
+)
+def test_a_stop_time_alone_is_enough(tmp_path, experiment, stop_time, n_rows, n_remarks):
+    fmu = _with_experiment(build_part("gain"), tmp_path / "own.fmu", experiment)
+    run = sc.simulate(str(fmu), stop_time=stop_time)
+    assert run.sizes["time"] == n_rows and len(run.remarks) == n_remarks
+    ends = stop_time or float(re.search('stopTime="(.*?)"', experiment)[1])
+    assert run["time"][-1] == pytest.approx(ends)
+
+
+@pytest.mark.parametrize("given_value", [None, 3.0])
+def test_an_input_is_set_only_if_somebody_gives_a_value(given_value, tmp_path, needs):
+    """The FMU counts how often its input is set."""
+    if c_fmus.compiler() is None:
+        needs("a C compiler")
+    variables = [("u", 1, "input", "Real", 1.0), ("n", 0, "output", "Integer", None)]
+    model = """
+#define NX 0
+#define NZ 0
+#define STATES {0}
+static void start(M* m) { m->r[1] = 1; m->r[2] = 1; }
+static void equations(M* m) { m->i[0] = m->r[1] != m->r[2]; }
+static void indicators(M* m, double* z) {}
+static void event(M* m) {}
+static int completed(M* m) { return 0; }
+"""
+    text = c_fmus.describe("counts", "2.0", variables, ("CoSimulation",))
+    # The FMU's value differs from the start value that its description states: setting it would show.
+    text = text.replace('start="1.0"', 'start="1.5"')
+    fmu = c_fmus.build(tmp_path, "counts", "2.0", model, text)
+    run = sc.simulate(
+        str(fmu),
+        stop_time=1.0,
+        step_size=0.5,
+        set={} if given_value is None else {"u": given_value},
+    )
+    assert run["counts.n"].values[-1] == (given_value is not None)

@@ -182,6 +182,15 @@ def _sorted_connections(plan, from_table):
         if connection.target[0] is None or not _has_values(connection.source, plan, from_table):
             continue
         plan.connected.add(connection.target)
+        # Nobody asks for another value than the FMU's own, and some FMUs refuse to be set.
+        ends = {connection.source, connection.target}
+        is_fed = connection.source[1] in from_table or not plan.modified.isdisjoint(ends)
+        if not is_fed and passes_own_start(connection, plan.system):
+            kind = plan.kind(plan.variable(connection.target))
+            if kind is not None:  # the table shows the input of the system
+                start = plan.system.inputs[connection.source[1]].start
+                plan.layouts[kind].external.setdefault(connection.source, start)
+            continue
         if connection.initial:
             plan.parameter_connections.append(connection)
         elif plan.variable(connection.target).kind in ("String", "Binary"):
@@ -248,6 +257,23 @@ def _connection_problems(system):
         ):
             found = "its value comes from a connection, but FMI 1.0 has no initialisation mode to set it in."
             yield Problem(label(connection.target), found, "Set it as a start value.")
+
+
+def passes_own_start(connection: Connection, system: System) -> bool:
+    """True if an input of the system gives an FMU's input the value that this starts with anyway."""
+    name = connection.source[1]
+    if connection.source[0] is not None or name not in system.inputs or connection.mapping:
+        return False
+    start = system.inputs[name].start
+    component, variable = connection.target
+    if component is None or start is None:
+        return False
+    own = system.components[component]
+    return (
+        variable not in own.start
+        and (connection.factor, connection.offset) == (1.0, 0.0)
+        and own.start_value(variable) == start
+    )
 
 
 def _has_values(source, plan, from_table):

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from shipcosim.cosim.master.instantiate import Components
-from shipcosim.cosim.master.plan import Plan
+from shipcosim.cosim.master.plan import Plan, passes_own_start
 from shipcosim.ssp import Component, System, Variable
 
 Values = list[tuple[Variable, object]]
@@ -28,9 +28,13 @@ def changed_values(before: System, system: System) -> dict[str, Values] | None:
         before.components
     ):
         return None
-    # An input with a start value has a row; one without has none. This must not change.
-    inputs = (
-        {name: signal.start is None for name, signal in one.inputs.items()}
+    # An input that is set has a row; one without a value, or with the FMU's own, has none. This must not change.
+    rows_before, rows = (
+        [
+            one.inputs[c.source[1]].start is None or passes_own_start(c, one)
+            for c in one.connections
+            if c.source[0] is None and c.source[1] in one.inputs
+        ]
         for one in (before, system)
     )
     # The numbers that differ, by component.
@@ -38,7 +42,7 @@ def changed_values(before: System, system: System) -> dict[str, Values] | None:
         name: _changed(before.components[name], component)
         for name, component in system.components.items()
     }
-    if next(inputs) != next(inputs) or any(values is None for values in found.values()):
+    if rows_before != rows or any(values is None for values in found.values()):
         return None
     return {name: values for name, values in found.items() if values is not None}
 

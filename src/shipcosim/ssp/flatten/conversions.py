@@ -8,7 +8,7 @@ from shipcosim.ssp.flatten.ports import Port, Setting, Wire
 from shipcosim.ssp.read.parameters import Transformation
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import Unit, conversion, relation
+from shipcosim.units import Unit, contradicts, conversion, relation
 
 TAKES = {
     "Real": ("Real", "Integer"),
@@ -137,7 +137,19 @@ def _compare_units(
         return
     # Units may be equal, convertible, of unknown definition, or incompatible.
     related = relation(flow.unit, port.unit)
-    found = f"{names[0]} is in {flow.unit.name}, {names[1]} in {port.unit.name}"
+    units = flow.unit.name, port.unit.name
+    # Where one name has two definitions, only the definitions tell what differs.
+    if units[0] == units[1]:
+        units = tuple(f"{u.name} ({u.definition})" for u in (flow.unit, port.unit))
+    found = f"{names[0]} is in {units[0]}, {names[1]} in {units[1]}"
+    if flow.unit.name == port.unit.name and related == "convertible":
+        if contradicts(flow.unit, port.unit):
+            findings.remark(
+                place,
+                f"{found}: one name, two definitions. The value is converted from one to the other.",
+                "Correct the definition that is wrong.",
+            )
+        return
     if related == "incompatible":
         remedy = (
             "Correct the unit."

@@ -13,7 +13,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.fmi1 import interfaces_of
 from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
-from shipcosim.ssp.xml.definitions import note_empty_units, read_units
+from shipcosim.ssp.xml.definitions import note_units, read_units
 from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, local, parse, parts_of
 from shipcosim.ssp.xml.validation import validate
 
@@ -108,7 +108,7 @@ def _description(
 ) -> FmuDescription:
     root = document.root
     version = f"{root.get('fmiVersion', '')[:1]}.0"
-    note_empty_units(document, parts_of(root, "UnitDefinitions"), findings)
+    note_units(document, parts_of(root, "UnitDefinitions"), findings)
     # Platforms are the folders in binaries/.
     platforms = {
         parts[1] for name in names if len(parts := name.split("/")) > 2 and parts[0] == "binaries"

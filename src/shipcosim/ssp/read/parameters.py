@@ -10,7 +10,7 @@ from os import PathLike
 import lxml.etree as etree
 
 from shipcosim.ssp.read.attributes import attribute
-from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
+from shipcosim.ssp.xml.definitions import note_units, read_enumerations, read_units
 from shipcosim.ssp.xml.document import (
     NAMESPACES,
     Document,
@@ -202,7 +202,7 @@ def read_parameter_set(document: Document, findings: Findings) -> ParameterSet:
     units = {}
     with reporting(document, root, findings):
         units = read_units(children(root, "ssv:Units", "ssc:Unit"))
-        note_empty_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
+        note_units(document, children(root, "ssv:Units", "ssc:Unit"), findings)
     for element in children(root, "ssv:Parameters", "ssv:Parameter") if sound else ():
         value = _parameter(document, element, units, findings)
         # The same parameter twice: equal values are a flaw, different ones an error.

@@ -22,7 +22,7 @@ from shipcosim.ssp.read.structure import (
     signal,
 )
 from shipcosim.ssp.xml.annotations import STEP_SIZE_HINTS, STEP_SIZES, remark_ignored
-from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
+from shipcosim.ssp.xml.definitions import note_units, read_enumerations, read_units
 from shipcosim.ssp.xml.document import (
     Document,
     Findings,
@@ -91,7 +91,7 @@ class _Reader:
         # Units and enumerations first: connectors refer to them.
         with reporting(document, root, findings):
             self.units = read_units(children(root, "ssd:Units", "ssc:Unit"))
-            note_empty_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
+            note_units(document, children(root, "ssd:Units", "ssc:Unit"), findings)
             self.enumerations = read_enumerations(
                 children(root, "ssd:Enumerations", "ssc:Enumeration")
             )

@@ -7,7 +7,7 @@ import lxml.etree as etree
 from shipcosim.ssp.xml.document import Document, Findings, children, local
 from shipcosim.ssp.xml.markup import add, ensure, free_name
 from shipcosim.ssp.xml.values import read_value
-from shipcosim.units import BASE_UNITS, Unit, relation, spelled_unit
+from shipcosim.units import AMBIGUOUS, BASE_UNITS, Unit, contradicts, relation, spelled_unit
 
 
 def read_units(elements: Iterable[etree._Element]) -> dict[str, Unit]:
@@ -42,17 +42,31 @@ def _says_nothing(element: etree._Element, base: etree._Element) -> bool:
     return not base.attrib and known is not None and any(known.exponents or ())
 
 
-def note_empty_units(
-    document: Document, elements: Iterable[etree._Element], findings: Findings
-) -> None:
-    """Report as flaws the units with an empty base unit, which get their common meaning."""
+def note_units(document: Document, elements: Iterable[etree._Element], findings: Findings) -> None:
+    """Report units with an empty base unit, which get their common meaning, and units that are defined as others."""
     for element in elements:
+        _note_contradiction(document, element, findings)
         for base in (part for part in element if local(part) == "BaseUnit"):
             if _says_nothing(element, base):
                 found = f"The base unit of '{element.get('name')}' says nothing; the unit is what it is commonly."
                 findings.flaw(
                     document.place(base), found, "State its exponents, or leave BaseUnit out."
                 )
+
+
+def _note_contradiction(document: Document, element: etree._Element, findings: Findings) -> None:
+    """Remark a unit whose definition is not what its name commonly means; the file's definition counts."""
+    name = element.get("name", "")
+    known = None if name in AMBIGUOUS else spelled_unit(name)
+    try:
+        defined = read_units([element]).get(name)
+    except ValueError:
+        return  # numbers that cannot be read are reported where all units are read
+    if known is not None and defined is not None and contradicts(defined, known):
+        found = f"'{name}' is defined as {defined.definition}; commonly it is {known.definition}."
+        findings.remark(
+            document.place(element), found, "Correct the definition, or give the unit another name."
+        )
 
 
 def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str, int]]:

@@ -111,6 +111,42 @@ def test_a_unit_that_does_not_fit_is_refused_with_its_line(ship, real):
     )
 
 
+@pytest.mark.parametrize(
+    ("name", "definition", "is_right"),
+    [
+        ("deg", 'rad="1" factor="57.29746"', False),
+        ("deg", 'rad="1" factor="0.017453"', True),
+        ("deg", 'factor="0.0174533"', True),
+        ("m", 'm="1" factor="1e-3"', False),
+        ("kn", 'm="1" s="-1" factor="0.514444"', True),
+        ("kn", 'm="1" factor="0.514444"', False),
+        ("degC", 'K="1" offset="273.15"', True),
+        ("degC", 'K="1"', False),
+        ("C", 'K="1" offset="273.15"', True),
+        ("furlong", 'm="1" factor="201.168"', True),
+    ],
+)
+def test_a_definition_that_contradicts_the_name_is_a_remark(ship, name, definition, is_right):
+    units = (
+        f'<ssd:Units><ssc:Unit name="{name}"><ssc:BaseUnit {definition}/></ssc:Unit></ssd:Units>'
+    )
+    ship.ssd(ship.component("hull", "hull"), rest=units)
+    said = [one for one in ship.read().remarks if "commonly it is" in one.found]
+    assert len(said) == (not is_right)
+
+
+def test_one_unit_name_with_two_definitions_shows_both(ship, real):
+    units = (
+        '<ssv:Units><ssc:Unit name="m"><ssc:BaseUnit m="1" factor="1e-3"/></ssc:Unit></ssv:Units>'
+    )
+    values = inline(real("mass", "1", "m")).replace(
+        "</ssv:Parameters>", "</ssv:Parameters>" + units
+    )
+    ship.ssd(ship.component("hull", "hull", more=values))
+    said = " ".join(map(str, ship.read().remarks))
+    assert "the value is in m (0.001 m), hull.mass in m (1 m): one name, two definitions" in said
+
+
 def test_a_value_without_a_unit_is_in_the_fmus(ship, real):
     ship.ssd(ship.component("hull", "hull", more=inline(real("angle", "0.5"))))
     assert start(ship) == {"angle": 0.5}
