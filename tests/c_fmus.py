@@ -93,7 +93,11 @@ int fmi2GetDerivatives(M* m, double* dx, size_t n) {
   refresh(m); for (int k = 0; k < NX; k++) dx[k] = *derivative(m, k); return 0;
 }
 int fmi2GetEventIndicators(M* m, double* z, size_t n) { refresh(m); indicators(m, z); return n == NZ ? 0 : 3; }
-int fmi2DoStep(M* m, double t, double h, int keep) { if (m->mode != STEP) return 3; euler(m, t, h); return 0; }
+int fmi2DoStep(M* m, double t, double h, int keep) {
+  if (m->mode != STEP) return 3;
+  euler(m, t, h); settle(m); return m->ends ? 2 : 0;
+}
+int fmi2GetBooleanStatus(M* m, int kind, int* value) { *value = kind == 3 && m->ends; return 0; }
 int fmi2Reset(M* m) {
   int kind = m->i[7];
   memset(m, 0, sizeof(M)); m->next = HUGE_VAL; m->dirty = 1; m->i[7] = kind; start(m); return 0;
@@ -159,7 +163,7 @@ int fmi3GetNumberOfContinuousStates(M* m, size_t* n) { *n = NX; return 0; }
 int fmi3GetNumberOfEventIndicators(M* m, size_t* n) { *n = NZ; return 0; }
 int fmi3DoStep(M* m, double t, double h, bool keep, bool* event, bool* ends, bool* early, double* last) {
   if (m->mode != STEP) return 3;
-  euler(m, t, h); *event = *ends = *early = false; *last = t + h; return 0;
+  euler(m, t, h); settle(m); *event = *early = false; *ends = m->ends; *last = t + h; return 0;
 }
 """
 FMI1 = """

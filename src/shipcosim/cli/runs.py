@@ -31,7 +31,7 @@ def run_and_print(prepared: PreparedRun, out: Path, force: bool = False) -> Run:
     Raises
     ------
     typer.Exit
-        If a component fails in its own process, which is a finding and not unusable input; if the run was interrupted.
+        If a component fails on the way, which is a finding and not unusable input; if the run was interrupted.
     ShipcosimError
         If the input cannot be used or the results cannot be written.
     """
@@ -46,7 +46,8 @@ def run_and_print(prepared: PreparedRun, out: Path, force: bool = False) -> Run:
         raise typer.Exit(INTERRUPTED) from None
     except RunError as error:
         _print_part(prepared, error, out)
-        if not prepared.options.isolate:
+        has_started = prepared.options.isolate or error.table.sizes["time"]
+        if not has_started:
             raise
         print_problems(error.problems)
         raise typer.Exit(FAILED) from None

@@ -12,7 +12,7 @@ from shipcosim.cosim.master.connections import ParameterConnection, StringConnec
 from shipcosim.cosim.master.recorder import Recorders
 from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
-from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 from shipcosim.errors import Problem
 
 MOST_ITERATIONS = 200
@@ -31,6 +31,13 @@ class Failure(Exception):
     def __init__(self, problem: Problem):
         super().__init__(str(problem))
         self.problem = problem
+
+
+class Ended(Exception):
+    """A component has ended the run at a time. [s]"""
+
+    def __init__(self, component: str, time: float):
+        super().__init__(f"{component} ends the run at t = {time:.9g} s.")
 
 
 class Master:
@@ -174,7 +181,7 @@ class Master:
 
         Raises
         ------
-        Failure, KeyboardInterrupt
+        Failure, Ended, KeyboardInterrupt
         """
         clock = grid.times.tolist()
         first = grid.first
@@ -264,8 +271,10 @@ class Master:
         )
 
 
-def failed_step(component: ComponentInstance, time: float, error: SlaveError) -> Failure:
-    """The failure of a component in its step from a time on. [s]"""
+def failed_step(component: ComponentInstance, time: float, error: SlaveError) -> Failure | Ended:
+    """The failure of a component in its step from a time on, or the end that it asks for. [s]"""
+    if isinstance(error, RunEnded):
+        return Ended(component.name, time)
     return Failure(Problem(component.name, f"failed in the step from t = {time:.9g} s. {error}"))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.cosim.master.algorithm import Failure, Master
+from shipcosim.cosim.master.algorithm import Ended, Failure, Master
 from shipcosim.cosim.master.compiled import CompiledMaster
 from shipcosim.cosim.master.events import event_actions, external_values
 from shipcosim.cosim.master.groups import couple, exchanged_at_steps, groups_of, inner_connections
@@ -82,6 +82,11 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     # Ctrl-C is held back until the master can stop.
     with delayed_interrupt() as check_interrupt, instances:
         simulation.run(instances, check_interrupt, options.progress)
+        if store is not None and simulation.is_ended:
+            raise RunError(
+                Problem("store", "an FMU has ended the run before its end, so there is no state."),
+                simulation.table(complete=True),
+            )
         if store is not None:
             store(simulation.snapshot())
         simulation.terminate()
@@ -105,6 +110,11 @@ class Simulation:
         Where the run continues from; checked.
     repeated : bool
         Whether it is to be run again with other start values.
+
+    Attributes
+    ----------
+    is_ended : bool
+        Whether an FMU has ended the run before the end of the grid.
 
     Raises
     ------
@@ -145,6 +155,7 @@ class Simulation:
         self._together: list[set[str]] = []
         self._remarks: list[str] = []
         self._master: Master | None = None
+        self.is_ended = False
         # All rows are reserved before the run.
         self._recorders = Recorders(
             {
@@ -192,6 +203,10 @@ class Simulation:
                 master.resume(grid.first)
             actions = event_actions(self._scenario, self._plan, exchanges, grid)
             master.run(grid, actions, self._external, self._recorders, progress)
+        # An FMU may end the run: what there is until then is the result.
+        except Ended as end:
+            self._remarks.append(str(end))
+            self.is_ended = True
         # Failures keep the rows so far: they show what led to it.
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=False)) from failure

@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 from shipcosim.ssp import Component, Variable
 
 DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does not outlive the run
@@ -77,9 +77,11 @@ def serve() -> None:
 
 
 def _done(method, arguments):
-    """Result and error of a call; one of them is None."""
+    """Result and error of a call; one of them is None. The error is a text, or RunEnded."""
     try:
         return method(*arguments), None
+    except RunEnded:
+        return None, RunEnded
     except SlaveError as error:
         return None, str(error)
     except Exception as error:

@@ -12,7 +12,7 @@ from time import monotonic
 from typing import Any, BinaryIO, cast
 
 from shipcosim.cosim.processes.child import receive, send
-from shipcosim.cosim.slaves.slave import SlaveError
+from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 
 START = (
     "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
@@ -99,7 +99,7 @@ class ComponentProcess:
         )
         self.messages += messages
         if not went_well:
-            raise SlaveError(result)
+            raise RunEnded if result is RunEnded else SlaveError(result)
         return result
 
     def notify(self, what: str, function: str, *arguments: Any) -> None:

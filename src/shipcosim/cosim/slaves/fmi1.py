@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.slaves.library_slave import LibrarySlave, references
+from shipcosim.cosim.slaves.messages import receive_messages
 from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, EventUpdate, ModelExchange
-from shipcosim.cosim.slaves.slave import FAILED, FATAL, OK, SlaveError
+from shipcosim.cosim.slaves.slave import FAILED, FATAL, OK, RunEnded, SlaveError
 from shipcosim.ssp import Variable
 
 TRUE = b"\x01"
@@ -110,16 +111,11 @@ class Slave1(LibrarySlave):
 
     def _instantiate(self):
         from fmpy import calloc, fmi1, free
-        from fmpy.logging import addLoggerProxy
 
         callbacks = fmi1.fmi1CallbackFunctions()
-        # Keep the callbacks in the structure as long as the instance lives.
-        callbacks.logger = fmi1.fmi1CallbackLoggerTYPE(
-            lambda env, name, status, kind, text: self._log(status, text)
-        )
         callbacks.allocateMemory = fmi1.fmi1CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi1.fmi1CallbackFreeMemoryTYPE(free)
-        addLoggerProxy(byref(callbacks))
+        receive_messages(self, callbacks, fmi1.fmi1CallbackLoggerTYPE)
         self._fmu.instantiate(functions=callbacks, loggingOn=True)
         if not self._fmu.component:
             raise SlaveError("It cannot be instantiated.")
@@ -137,7 +133,7 @@ class Model1(ModelExchange, Slave1):
         info = self._event_info()
         self.call("Initialize", FALSE, 0.0, byref(info))
         if info.terminateSimulation != FALSE:
-            raise SlaveError("It asks to end the simulation.")
+            raise RunEnded
 
     def reset(self) -> None:
         """Raise SlaveError: models of FMI 1.0 cannot be reset."""

@@ -4,6 +4,7 @@ Reference: FMI 2.0.4, section 4.
 """
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from ctypes import byref, c_double, c_int, c_size_t
 from functools import partial
 from typing import Any
@@ -11,7 +12,12 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.slaves.library_slave import LibrarySlave, references
+from shipcosim.cosim.slaves.messages import receive_messages
+from shipcosim.cosim.slaves.slave import DISCARD, OK, RunEnded, SlaveError
 from shipcosim.ssp import Variable
+
+TERMINATED = 3
+"""The kind of status that tells whether the FMU has ended the run: fmi2Terminated."""
 
 
 class Slave2(LibrarySlave):
@@ -55,6 +61,18 @@ class Slave2(LibrarySlave):
         component = self.component
         return lambda time, step_size: do_step(component, time, step_size, 1)
 
+    def check(self, function: str, status: int) -> None:
+        """Raise SlaveError if the status says that the function failed, RunEnded if the FMU ends the run."""
+        if function == "DoStep" and status == DISCARD:
+            is_ended = c_int()
+            with suppress(SlaveError):  # an FMU without this function ends no run
+                ask = self._function("GetBooleanStatus")
+                if ask(self.component, TERMINATED, byref(is_ended)) != OK:
+                    is_ended = c_int()
+            if is_ended.value:
+                raise RunEnded
+        super().check(function, status)
+
     def enter_initialisation(self, start_time: float, stop_time: float) -> None:
         """Enter the initialisation mode for a run between two times."""
         self.call("SetupExperiment", 0, 0.0, start_time, 1, stop_time)
@@ -78,16 +96,15 @@ class Slave2(LibrarySlave):
 
     def _instantiate(self):
         from fmpy import calloc, fmi2, free
-        from fmpy.logging import addLoggerProxy
 
         callbacks = fmi2.fmi2CallbackFunctions()
-        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
-            lambda env, name, status, kind, text: self._log(status, text)
-        )
         callbacks.allocateMemory = fmi2.fmi2CallbackAllocateMemoryTYPE(calloc)
         callbacks.freeMemory = fmi2.fmi2CallbackFreeMemoryTYPE(free)
-        if not (
-            self._is_python or self._is_container
-        ):  # they log text as a format: % in it would read wild memory
-            addLoggerProxy(byref(callbacks))
+        # These log text as a format: % in it would read wild memory.
+        if self._is_python or self._is_container:
+            callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
+                lambda env, name, status, kind, text: self.log_message(status, text)
+            )
+        else:
+            receive_messages(self, callbacks, fmi2.fmi2CallbackLoggerTYPE)
         self._fmu.instantiate(callbacks=callbacks, loggingOn=True)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.slaves.library_slave import LibrarySlave
-from shipcosim.cosim.slaves.slave import DISCARD, FAILED, OK
+from shipcosim.cosim.slaves.slave import DISCARD, FAILED, OK, RunEnded
 from shipcosim.ssp import Variable
 
 TYPES = {
@@ -109,10 +109,11 @@ class Slave3(LibrarySlave):
         results = byref(event), byref(terminate), byref(early), byref(reached)
 
         def step(time, step_size):
-            # Event mode and early return are not used; if the FMU asks for either, the step is not
-            # done.
             status = do_step(self.component, time, step_size, True, *results)
-            return DISCARD if status < FAILED and (terminate.value or early.value) else status
+            if status <= DISCARD and terminate.value:
+                raise RunEnded
+            # Event mode and early return are not used: a step that returns early is not done.
+            return DISCARD if status < FAILED and early.value else status
 
         return step
 
@@ -206,7 +207,7 @@ class Slave3(LibrarySlave):
         self._array_values = {}  # values that arrays were set to, by value reference
         self._fmu.instantiate(
             loggingOn=True,
-            logMessage=lambda environment, status, category, text: self._log(status, text),
+            logMessage=lambda environment, status, category, text: self.log_message(status, text),
         )
 
 

@@ -246,7 +246,8 @@ class LibrarySlave(Slave):
         """Name of a function in the FMU's library."""
         return f"{self._prefix}{function}"
 
-    def _log(self, status, message):
+    def log_message(self, status: int, message: bytes | None) -> None:
+        """Keep a message of the FMU."""
         text = (message or b"").decode("utf-8", errors="replace")
         self._note(status, text.replace("%%", "%") if self._is_python else text)
 
@@ -270,8 +271,9 @@ def references(variables: Sequence[Variable]) -> Array:
 
 
 def _platform_hint(folder):
+    # A folder without a file is no binary.
     binaries = Path(folder) / "binaries"
-    there = sorted(path.name for path in binaries.iterdir()) if binaries.is_dir() else []
+    there = sorted(path.name for path in binaries.glob("*") if any(path.glob("*")))
     return (
         f"The FMU brings binaries for: {', '.join(there) or 'no platform'}; this is {sys.platform}."
     )

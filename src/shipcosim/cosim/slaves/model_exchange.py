@@ -21,7 +21,7 @@ import numpy as np
 from shipcosim.cosim.slaves.fmi2 import Slave2
 from shipcosim.cosim.slaves.fmi3 import Slave3
 from shipcosim.cosim.slaves.library_slave import LibrarySlave
-from shipcosim.cosim.slaves.slave import DISCARD, OK, SlaveError
+from shipcosim.cosim.slaves.slave import DISCARD, OK, RunEnded, SlaveError
 from shipcosim.ssp import FmuDescription, Variable
 from shipcosim.ssp.xml.document import is_true
 
@@ -371,7 +371,7 @@ class ModelExchange(LibrarySlave):
         for _ in range(MOST_ITERATIONS):
             needs_update, terminates, self._next_event = self._update_discrete_states()
             if terminates:
-                raise SlaveError("It asks to end the simulation.")
+                raise RunEnded
             if not needs_update:
                 self._is_event_done = True
                 return
@@ -461,7 +461,7 @@ class Model2(ModelExchange, Slave2):
         terminates = c_int()
         self.call("CompletedIntegratorStep", 1, byref(event), byref(terminates))
         if terminates.value:
-            raise SlaveError("It asks to end the simulation.")
+            raise RunEnded
         return event.value != 0
 
     def _update_discrete_states(self):
@@ -501,7 +501,7 @@ class Model3(ModelExchange, Slave3):
         terminates = c_bool()
         self.call("CompletedIntegratorStep", True, byref(event), byref(terminates))
         if terminates.value:
-            raise SlaveError("It asks to end the simulation.")
+            raise RunEnded
         return event.value
 
     def _update_discrete_states(self):

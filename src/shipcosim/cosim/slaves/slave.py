@@ -26,6 +26,13 @@ class SlaveError(Exception):
     """A call to an FMU failed. The text is the FMU's message."""
 
 
+class RunEnded(SlaveError):
+    """An FMU asks to end the simulation, which is no failure."""
+
+    def __init__(self):
+        super().__init__("It asks to end the simulation.")
+
+
 class Slave:
     """One instance of an FMU: the interface that the master uses.
 

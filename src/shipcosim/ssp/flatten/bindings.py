@@ -1,6 +1,6 @@
 """Parameter bindings: their values, under the names that prefixes and mappings give them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from shipcosim.errors import it_has
@@ -8,7 +8,7 @@ from shipcosim.ssp.flatten.array_elements import element_values
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Setting
 from shipcosim.ssp.fmu.description import FmuDescription
-from shipcosim.ssp.read.parameters import MappingEntry, ParameterSet
+from shipcosim.ssp.read.parameters import MappingEntry, ParameterSet, ParameterValue
 from shipcosim.ssp.read.structure import Binding
 
 
@@ -81,13 +81,19 @@ def _mapped(
     values: ParameterSet,
     path: ElementPath,
     prefix: str,
-    mapping: Iterable[MappingEntry],
+    mapping: Sequence[MappingEntry],
 ) -> list[Setting]:
     """Values under the names of a parameter mapping; values that it does not name are not used."""
     by_name = {prefix + value.name: value for value in values.values}
     settings = []
     # The mapping may convert the value too; the conversion happens on the way to the variable.
+    templates = [entry for entry in mapping if not entry.source and "" not in by_name]
+    if templates:
+        found = f"{len(templates)} entries of the mapping name no source; they are not used."
+        tree.findings.flaw(templates[0].place, found, "Fill them in, or remove them.")
     for entry in mapping:
+        if entry in templates:
+            continue
         if entry.source not in by_name:
             found = f"The parameter set '{values.name}' has no '{entry.source}'."
             tree.findings.error(entry.place, found, it_has(entry.source, by_name))
@@ -98,4 +104,28 @@ def _mapped(
             Setting(path, one.name, one, *how, near=True)
             for one in element_values(renamed, tree.findings)
         ]
+    _remark_left_out(tree, by_name, path, mapping)
     return settings
+
+
+def _remark_left_out(
+    tree: Hierarchy,
+    by_name: Mapping[str, ParameterValue],
+    path: ElementPath,
+    mapping: Sequence[MappingEntry],
+) -> None:
+    """Remark values that a mapping leaves out although the element has a variable of their name."""
+    named = {entry.source for entry in mapping}
+    # Names as they stand below the element: of a component its variables, of a system those of its components.
+    variables = {
+        ".".join((*place[len(path) :], variable))
+        for place, (_, fmu) in tree.components.items()
+        if fmu is not None and place[: len(path)] == path
+        for variable in fmu.variables
+    }
+    for name, value in by_name.items():
+        if name in named or name not in variables:
+            continue
+        element = ".".join(path) or "The system"
+        found = f"{element} has a parameter '{name}', but the mapping does not name it; the value is not used."
+        tree.findings.remark(value.place, found, "Map it, or take it out of the parameter set.")

@@ -101,9 +101,9 @@ def advance(
         and flow.type is not None
         and flow.type not in TAKES.get(port.type, (port.type,))
     ):
-        findings.error(
-            place, f"{names[0]} is {flow.type}, {names[1]} is {port.type}.", "Connect equal types."
-        )
+        is_value = names[0] == "the value"
+        remedy = f"Write <{port.type}>." if is_value else "Connect equal types."
+        findings.error(place, f"{names[0]} is {flow.type}, {names[1]} is {port.type}.", remedy)
         return replace(flow, type=port.type)
     # Without conversion the number stays and counts in the port's unit.
     if wire.suppress_unit_conversion:

@@ -19,6 +19,7 @@ from shipcosim.ssp.flatten.swapped import take_swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.connections import ConnectionReader
 from shipcosim.ssp.osp.functions import Function, read_function
+from shipcosim.ssp.osp.mend import mend_osp
 from shipcosim.ssp.osp.schema import NAMESPACE, validate_osp
 from shipcosim.ssp.osp.simulators import Simulators
 from shipcosim.ssp.osp.times import read_experiment
@@ -62,10 +63,10 @@ def assemble_osp(
     -------
     System, None or incomplete where there are errors
     """
-    # Namespace and schema first: later steps rely on both.
+    # Flaws and schema first: later steps rely on both.
     document = read_document(path, str(path), findings)
     if document is not None:
-        _set_namespace(document, findings)
+        mend_osp(document, findings)
     if document is None or not _is_osp(document, findings):
         return None
     before = len(findings.errors)
@@ -83,15 +84,6 @@ def assemble_osp(
         tree = Hierarchy(findings, sizes=sizes_wanted(system.components), swapped=swapped)
         system = _system(document, folders, sets, tree)
     return system
-
-
-def _set_namespace(document: Document, findings: Findings) -> None:
-    """Put elements without a namespace into OSP's, if the root is named as an OSP structure."""
-    if document.root.tag == "OspSystemStructure":
-        for element in document.root.iter("{}*"):
-            element.tag = f"{{{NAMESPACE}}}{element.tag}"
-        found = f"It is in no namespace; it is taken for one of {NAMESPACE}."
-        findings.flaw(document.place(document.root), found, f'Add xmlns="{NAMESPACE}".')
 
 
 def _is_osp(document: Document, findings: Findings) -> bool:

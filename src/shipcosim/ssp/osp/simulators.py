@@ -14,7 +14,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.osp.schema import NAMESPACE
 from shipcosim.ssp.osp.times import own_step
-from shipcosim.ssp.read.addresses import PROXY, path_of
+from shipcosim.ssp.read.addresses import PROXY, alike, path_of
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.read.structure import FMU, ComponentElement
 from shipcosim.ssp.xml.document import Document, Findings, local, reporting
@@ -105,6 +105,10 @@ class Simulators:
         """File of a source address, or None with an error; any folder, as in OSP's examples."""
         try:
             # A proxy address names a file and a process: only the file is used.
+            if "\\" in source:
+                found = f"'{source}' has backslashes; they are taken for slashes."
+                self.findings.flaw(place, found, "Write an address: folder/name.fmu.")
+                source = source.replace("\\", "/")
             parts = urlsplit(source)
             if parts.scheme == PROXY and (text := path_of(source)) is not None:
                 found = f"'{source}' is an FMU in a process of its own; {text} is run here."
@@ -124,6 +128,7 @@ class Simulators:
             path = url2pathname(parts.path) if parts.scheme else unquote(parts.path)
             paths = [self.document.folder / path, self.document.folder / source]
             paths += [folder / Path(path).name for folder in self.searched]
+            paths += alike(paths[0])  # upper and lower case, as Windows takes them
             found = next((path for path in paths if path.is_file()), None)
         except (ValueError, OSError) as error:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")

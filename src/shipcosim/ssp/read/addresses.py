@@ -63,8 +63,12 @@ def _candidates(text: str, base: Path, folder: Path, rooted: bool) -> Iterator[P
     yield (base / text).resolve()
     if rooted:
         yield (folder / text.lstrip("/")).resolve()
-    near = (base / text).resolve()
-    if near.parent.is_dir():
-        alike = [path for path in near.parent.iterdir() if path.name.lower() == near.name.lower()]
-        if len(alike) == 1:
-            yield alike[0].resolve()
+    yield from (path.resolve() for path in alike(base / text))
+
+
+def alike(path: Path) -> list[Path]:
+    """The only file of a folder whose name is this one but for upper and lower case, or none."""
+    if not path.parent.is_dir():
+        return []
+    found = [one for one in path.parent.iterdir() if one.name.lower() == path.name.lower()]
+    return found if len(found) == 1 else []

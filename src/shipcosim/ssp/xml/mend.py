@@ -119,13 +119,15 @@ def _set_namespaces(document: Document, prefix: str, noted: Findings) -> None:
     said = set()
     ahead = [(document.root, prefix)]
     known = names_of("ssd").elements
+    # Some tools write the standard's names under an address of their own.
+    endings = tuple(f"/{uri.rpartition('/')[2]}" for uri in NAMESPACES.values())
     while ahead:
         element, kind = ahead.pop()
         name = local(element)
         space = etree.QName(element).namespace or ""
         # Variants of our namespaces, such as https, count as ours.
         plain = space.replace("https:", "http:").rstrip("/")
-        ours = not space or plain in NAMESPACES.values()
+        ours = not space or plain.endswith(endings)
         right = NAMESPACES[_prefix_of(element, kind)]
         # Report each pair of wrong and right namespace once.
         if ours and space != right and name in known:

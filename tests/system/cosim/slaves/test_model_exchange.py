@@ -291,7 +291,6 @@ def test_models_and_slaves_of_all_versions_run_together(model, make_scenario):
     [
         (1, "An event does not settle: discrete states still change after 1000 updates"),
         (2, "It chatters at t = 0.5 s: 100 events within 0 s"),
-        (3, "It asks to end the simulation"),
     ],
 )
 @pytest.mark.parametrize("version", VERSIONS)
@@ -301,6 +300,22 @@ def test_events_without_end_end_the_run_with_their_component(run_model, version,
             "restless", version, 1.0, 0.25, events=[{"time": 0.5, "override": {"m.how": how}}]
         )
     assert caught.value.table.sizes["time"] == 3
+
+
+@pytest.mark.parametrize("isolate", [False, True])
+@pytest.mark.parametrize("form", ["ModelExchange", "CoSimulation"])
+@pytest.mark.parametrize("version", VERSIONS)
+def test_an_fmu_that_ends_the_run_is_an_end_and_no_failure(
+    model, make_scenario, version, form, isolate
+):
+    if (version, form) == ("1.0", "CoSimulation"):
+        return  # FMI 1.0 has no such answer
+    fmu = read_fmu(model("restless", version, (form,)))
+    system = System("one", "one.ssd", {"m": Component("m", fmu)})
+    scenario = make_scenario(1.0, 0.25, events=[{"time": 0.5, "override": {"m.how": 3}}])
+    table = simulate(system, scenario, RunOptions(isolate=isolate))
+    assert table["time"].values.tolist() == [0.0, 0.25, 0.5] and table.attrs["complete"] == 1
+    assert "m ends the run at t = 0.5 s." in table.attrs["remarks"]
 
 
 def test_a_state_that_cannot_be_stored_is_said_before_the_run(

@@ -149,10 +149,6 @@ def test_an_fmu_may_lie_elsewhere_and_be_addressed_as_a_file(osp, shop, tmp_path
         ({"simulators": SIMULATORS.replace(' name="b"', "")}, "'name' is required but missing"),
         ({"head": HEAD.replace("0.1", "0.0")}, "base step size must be positive"),
         ({"head": HEAD.replace("0.1", "quick")}, "'quick' is not"),
-        (
-            {"head": "<Algorithm>fixedStep</Algorithm><BaseStepSize>1</BaseStepSize>"},
-            "This element is not expected.",
-        ),
         ({"values": value("l", "Real", "1")}, "b has no parameter 'l'. It has: k, u, v."),
         ({"values": value("k", "Boolean", "true")}, "the value is Boolean, b.k is Real"),
         ({"values": value("y", "Real", "1")}, "b.y is of causality output"),

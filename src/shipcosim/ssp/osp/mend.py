@@ -1,0 +1,109 @@
+"""Flaws of an OspSystemStructure.xml with only one possible meaning, corrected before it is read.
+
+The same as `shipcosim.ssp.xml.mend` does for the files of SSP: each is reported as a flaw.
+"""
+
+import lxml.etree as etree
+
+from shipcosim.ssp.osp.schema import NAMESPACE, SCHEMA
+from shipcosim.ssp.xml.document import Document, Findings, local
+from shipcosim.ssp.xml.schemas import is_slip, names_in
+
+VERSION = "0.1"
+"""The only version of the format."""
+
+ORDER = (
+    "StartTime",
+    "EndTime",
+    "BaseStepSize",
+    "Algorithm",
+    "Simulators",
+    "Functions",
+    "Connections",
+    "EccoConfiguration",
+)
+"""Parts of the outermost element in the order of the schema."""
+
+EMPTY_IS_ABSENT = ("stepSize", "causality", "powerBond", "factor", "offset")
+TEXTS = ("StartTime", "EndTime", "BaseStepSize", "Algorithm")
+"""Elements that say nothing without a text."""
+
+
+def mend_osp(document: Document, findings: Findings) -> None:
+    """Correct a document in place; without effect if its outermost element is of another name.
+
+    Parameters
+    ----------
+    document : Document
+        Changed in place.
+    findings : Findings
+        Takes the flaws.
+    """
+    root = document.root
+    if local(root) != "OspSystemStructure":
+        return
+    _set_namespace(document, findings)
+    version = root.get("version")
+    if version != VERSION:
+        found = "It has no version" if not version else f"Its version is '{version}'"
+        root.set("version", VERSION)
+        remedy = f'Write version="{VERSION}".'
+        findings.flaw(document.place(root), f"{found}; {VERSION} is taken.", remedy)
+    known = names_in(SCHEMA).elements
+    for element in list(root.iter(etree.Element)):
+        _drop_unknown(document, element, known, findings)
+        _mend_attributes(document, element, findings)
+    parts = [part for part in root if local(part)]
+    # An empty time or algorithm says nothing.
+    for part in parts:
+        if local(part) in TEXTS and not (part.text or "").strip():
+            root.remove(part)
+            found = f"<{local(part)}> is empty; it is taken as if it were not there."
+            findings.flaw(document.place(part), found, "Remove it.")
+    parts = [part for part in root if local(part)]
+    if all(local(part) in ORDER for part in parts):
+        ordered = sorted(parts, key=lambda part: ORDER.index(local(part)))
+        if ordered != parts:
+            root[:] = ordered
+            found = "Its parts are in another order than the schema's."
+            findings.flaw(document.place(root), found, f"Sort them: {', '.join(ORDER)}.")
+
+
+def _set_namespace(document: Document, findings: Findings) -> None:
+    """Put elements without a namespace, or in another one than OSP's, into OSP's."""
+    root = document.root
+    space = etree.QName(root).namespace or ""
+    if space == NAMESPACE:
+        return
+    for element in root.iter(f"{{{space}}}*"):
+        element.tag = f"{{{NAMESPACE}}}{local(element)}"
+    its = f"the namespace '{space}'" if space else "no namespace"
+    found = f"It is in {its}; it is taken for one of {NAMESPACE}."
+    findings.flaw(document.place(root), found, f'Add xmlns="{NAMESPACE}".')
+
+
+def _drop_unknown(
+    document: Document, element: etree._Element, known: frozenset[str], findings: Findings
+) -> None:
+    """Remove parts that the schema does not know and that are no misspelt known ones."""
+    for part in [part for part in element if local(part)]:
+        name = local(part)
+        if name not in known and not is_slip(name, known):
+            element.remove(part)
+            found = f"The element <{name}> is not of OSP's schema. It is not used."
+            findings.flaw(document.place(part), found, "Remove it.")
+
+
+def _mend_attributes(document: Document, element: etree._Element, findings: Findings) -> None:
+    """Drop empty attributes, and correct True and FALSE."""
+    for name in EMPTY_IS_ABSENT:
+        if element.get(name) == "":
+            del element.attrib[name]
+            found = f'{name}="" is taken as if it were not there.'
+            findings.flaw(document.place(element), found, "Leave it out.")
+    text = element.get("value") or ""
+    lower = text.lower()
+    if local(element) == "Boolean" and lower in ("true", "false") and text != lower:
+        element.set("value", lower)
+        found = f"'{text}' is taken for {lower}."
+        findings.flaw(document.place(element), found, "Write true or false.")
