@@ -1,5 +1,6 @@
 """Errors and remarks in one form: where, what was found, what would be right."""
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
@@ -8,6 +9,23 @@ LONGEST_TEXT = 4000  # characters of each part of a problem: a name can be as lo
 MOST_SHOWN = 100  # problems that anybody reads at once
 MOST_COMPARED = 1000  # names that a misspelt one is compared with, characters of one that is
 LONGEST_NAME = 200
+
+
+def printable(text: str) -> str:
+    """A text without characters that control a terminal; they are written as escapes, line ends and tabs stay.
+
+    Texts of files and of FMUs go through here before anybody sees them: they must not colour, clear or retitle a
+    terminal, nor turn the direction of writing.
+
+    Examples
+    --------
+    >>> printable("a\x1b[31mred")
+    'a\\x1b[31mred'
+    """
+    return _CONTROLS.sub(lambda found: ascii(found[0])[1:-1], text)
+
+
+_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 
 
 @dataclass(frozen=True)
@@ -37,11 +55,10 @@ class Problem:
 
     def __post_init__(self) -> None:
         for part in ("where", "found", "remedy"):
-            text = getattr(self, part)
+            text = printable(getattr(self, part))
             if len(text) > LONGEST_TEXT:
-                object.__setattr__(
-                    self, part, f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}"
-                )
+                text = f"{text[: LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4 :]}"
+            object.__setattr__(self, part, text)
 
     def __str__(self) -> str:
         text = f"{self.where}: {self.found}" if self.where else self.found

@@ -26,6 +26,7 @@ from shipcosim.cli.commands import (
     train,
 )
 from shipcosim.cli.exits import EXIT_CODES, guarded
+from shipcosim.cli.terminal import say
 
 app = typer.Typer(
     help="Co-simulation of ships: FMUs, system structures, scenarios.",
@@ -86,9 +87,9 @@ def options(
     if version:
         from shipcosim import __version__
 
-        typer.echo(f"shipcosim {__version__}")
+        say(f"shipcosim {__version__}")
         raise typer.Exit()
     if context.invoked_subcommand is None:
         from shipcosim.cli.start.listing import overview
 
-        typer.echo(f"{context.get_help()}\n{overview()}")
+        say(f"{context.get_help()}\n{overview()}")

@@ -5,22 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shipcosim.cli.terminal import make_console, say
+
 if TYPE_CHECKING:
     from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 
 
 def print_calibration(ship: CalibratedShip, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
-    from rich.console import Console
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
     from shipcosim.report.calibration.words import error_rows, moved_rows, sentence
 
     if as_json:
-        print(ship.reference.as_json(), end="")
+        say(ship.reference.as_json().rstrip("\n"))
         return
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     refused = bool(ship.refusals)
     console.print(
         Text("refused" if refused else "calibrated", style="bold red" if refused else "bold green"),

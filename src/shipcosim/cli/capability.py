@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from shipcosim.capability import Capability, as_json, notation
 from shipcosim.capability.result import SIMULATOR
 from shipcosim.cli.console import shown_path
+from shipcosim.cli.terminal import make_console, say_json
 
 
 def print_capability(capability: Capability, folder: Path, as_json_: bool) -> None:
     """The notation and where the page is, or all numbers as JSON, on stdout."""
-    if as_json_:
-        print(json.dumps(as_json(capability), indent=2, ensure_ascii=False))
-        return
-    from rich.console import Console
     from rich.text import Text
 
-    console = Console(highlight=False, soft_wrap=True)
+    if as_json_:
+        say_json(as_json(capability))
+        return
+    console = make_console(soft_wrap=True)
     console.print(
         Text(notation(capability), style="bold"), f"of {capability.vessel.name}, by DNV's formulae"
     )

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.calls.arguments import SYSTEM_OF_LOGS, Reading, check_inputs
+from shipcosim.cli.terminal import make_console, say
 from shipcosim.errors import Problem, ShipcosimError
 
 if TYPE_CHECKING:
@@ -88,14 +89,13 @@ def proposed(
 
 def print_channels(proposed: ProposedFile) -> None:
     """What each column is, on stdout."""
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
     from shipcosim.cli.console import WIDTH
 
-    console = Console(highlight=False)
-    console = console if console.is_terminal else Console(highlight=False, width=WIDTH)
+    console = make_console()
+    console = console if console.is_terminal else make_console(width=WIDTH)
     listed = Table(box=None, pad_edge=False)
     for heading in ("column", "is", "", "because"):
         listed.add_column(heading, overflow="fold")
@@ -133,4 +133,4 @@ def write_channels(proposed: ProposedFile, out: Path, force: bool = False) -> No
             Problem(str(out), "There is such a file already.", "--force writes over it.")
         )
     write_file(out, proposed.text.encode())
-    print(f"Channel file: {shown_path(out)}")
+    say(f"Channel file: {shown_path(out)}")

@@ -1,14 +1,13 @@
 """What `shipcosim compare` takes and says."""
 
-import json
 import math
 from collections.abc import Sequence
 
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from shipcosim.cli.console import WIDTH
+from shipcosim.cli.terminal import make_console, say_json
 from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.results.studies import EngineComparison
@@ -28,9 +27,9 @@ def not_compared() -> list[str]:
 def print_comparison(comparison: EngineComparison, as_json: bool) -> None:
     """Table of signals, then what did not run, what explains differences, and the verdict; or all of it as JSON."""
     if as_json:
-        print(json.dumps(comparison.as_json(), indent=2, ensure_ascii=False))
+        say_json(comparison.as_json())
         return
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     console.width = max(console.width, WIDTH)
     console.print(_table(comparison))
     for name, seconds in comparison.seconds.items():

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from shipcosim.cli.terminal import make_console, say_json
 from shipcosim.errors import Problem, worth_showing
 
 if TYPE_CHECKING:
@@ -38,7 +37,7 @@ def style_of(verdict: str) -> str:
 
 def print_problems(problems: Iterable[Problem]) -> None:
     """Errors as one readable block on stderr."""
-    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console = make_console(stderr=True, soft_wrap=True)
     for problem in worth_showing(problems):
         console.print(_block(problem))
 
@@ -75,7 +74,7 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
         TaskProgressColumn(),
         TextColumn("{task.fields[pace]}"),
     ]
-    console = Console(stderr=True)
+    console = make_console(stderr=True, highlight=True)
     columns.append(TimeRemainingColumn())
     with Progress(
         *columns, console=console, transient=True, disable=not console.is_terminal
@@ -99,7 +98,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     from shipcosim.report import digest
     from shipcosim.report.run.predictions import summarise, texts
 
-    console = Console(stderr=to_stderr, highlight=False, soft_wrap=True)
+    console = make_console(stderr=to_stderr, soft_wrap=True)
     outcome, remarks, judged = digest(result.table, result.expectations)
     if judged:
         console.print(_expectations(judged))
@@ -117,7 +116,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
 
 def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: Path) -> None:
     """How several scenarios went: one line each, then all together, and where the page is."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     listed = Table(box=None, pad_edge=False)
     for heading in ("", "scenario", ""):
         listed.add_column(heading, no_wrap=True)
@@ -162,7 +161,7 @@ def print_variables(rows: Iterable[Sequence[str]]) -> None:
     """An FMU's variables, nothing cut off: a line each, or a block each where the terminal is too narrow for that."""
     lines = [("variable", "causality", "type", "unit", "start", "meaning"), *rows]
     widths = [max(min(len(line[i]), WIDEST) for line in lines) for i in range(5)]
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     narrow = console.is_terminal and sum(widths) + 2 * len(widths) > console.width
     for number, line in enumerate(lines):
         name, *facts = (cell.ljust(width) for cell, width in zip(line[:5], widths, strict=True))
@@ -175,7 +174,7 @@ def print_estimates(rows: Iterable[Sequence[str]]) -> None:
     """Table of what is estimated of a ship."""
     lines = [("estimated", "value", "tolerance", "source"), *rows]
     widths = [max(len(line[i]) for line in lines) for i in range(3)]
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     for number, line in enumerate(lines):
         cells = "  ".join(cell.ljust(width) for cell, width in zip(line[:3], widths, strict=True))
         console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
@@ -184,9 +183,9 @@ def print_estimates(rows: Iterable[Sequence[str]]) -> None:
 def print_report(checked: CheckedFiles, as_json: bool) -> None:
     """Findings on files."""
     if as_json:
-        print(json.dumps(checked.as_json(), indent=2, ensure_ascii=False))
+        say_json(checked.as_json())
         return
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
         for problem in worth_showing(problems):
             console.print(_block(problem))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from shipcosim.cli.terminal import make_console, say_json
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.finding import Finding
@@ -14,16 +15,15 @@ if TYPE_CHECKING:
 
 def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
-    from rich.console import Console
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path, style_of
     from shipcosim.report.diagnosis.words import outcome
 
     if as_json:
-        print(json.dumps(diagnosis.as_json(), indent=2, ensure_ascii=False))
+        say_json(diagnosis.as_json())
         return
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     verdict = outcome(diagnosis, diagnosis.causes)
     console.print(Text(verdict.word, style=style_of(diagnosis.verdict)), Text(verdict.sentence))
     for heading, content in _sections(diagnosis):

@@ -6,6 +6,7 @@ from typing import Any
 
 import typer
 
+from shipcosim.cli.terminal import say
 from shipcosim.errors import Problem, ShipcosimError
 
 FAILED = 1
@@ -30,7 +31,7 @@ def guarded(function: Callable[..., Any]) -> Callable[..., Any]:
             explain(error.problems, debug)
             raise typer.Exit(UNUSABLE) from None
         except KeyboardInterrupt:
-            typer.echo("Interrupted.", err=True)
+            say("Interrupted.", err=True)
             raise typer.Exit(INTERRUPTED) from None
         except Exception as error:
             remedy = "This is a fault of shipcosim. Run the command again with --debug for the traceback."

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.diagnosis import table
+from shipcosim.cli.terminal import make_console, say_json
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.reference.joint_result import JointDiagnosis
@@ -14,16 +14,15 @@ if TYPE_CHECKING:
 
 def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
-    from rich.console import Console
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path, style_of
     from shipcosim.report.joint.words import outcome
 
     if as_json:
-        print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+        say_json(found.as_json())
         return
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     verdict = outcome(found)
     console.print(Text(verdict.word, style=style_of(found.verdict)), Text(verdict.sentence))
     for heading, content in _sections(found):

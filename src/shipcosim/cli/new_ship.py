@@ -14,6 +14,7 @@ import typer
 
 from shipcosim import library
 from shipcosim.cli.console import print_problems, shown_path
+from shipcosim.cli.terminal import say
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.writing import LAYOUTS, Answers, ship_text, thruster_from, usual
 
@@ -65,7 +66,7 @@ def answers_from(
     answers.description = answers.description or name
     if ask and given["layout"] is None and not answers.thrusters:
         for layout, said in LAYOUTS.items():
-            typer.echo(f"  {layout}: {said}")
+            say(f"  {layout}: {said}")
         answers.layout = _asked("Propulsion", answers.layout)
         while answers.layout not in LAYOUTS:
             answers.layout = _asked("Propulsion", "azimuths")
@@ -100,7 +101,7 @@ def _answer(answers: Answers, key: str, question: str, ask: bool) -> None:
             usual(answers, "power")
             return
         except ValueError as error:
-            typer.echo(f"{error}")
+            say(f"{error}")
     if key != "length":
         setattr(answers, key, proposed)
 
@@ -222,14 +223,14 @@ def _half_ahead(ship: Described) -> list[tuple[str, float]]:
 
 def _say(written: list[Path], remarks: list[Problem], name: str, has_dp: bool) -> None:
     for path in written:
-        typer.echo(shown_path(path))
+        say(shown_path(path))
     print_problems(remarks)
     steps = [
         f"shipcosim run {name}                      {'she holds her place in wind' if has_dp else 'she goes ahead'}",
         f"shipcosim check ships/{name}/ship.toml    what is estimated, what cannot be",
         f"shipcosim new ship {name} --from ships/{name}/ship.toml    the systems again, after a change",
     ]
-    typer.echo("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
+    say("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
 
 
 HOLDS = """\

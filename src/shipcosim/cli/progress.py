@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 from shipcosim.calls.logs import WRITING as LAST_STEP
+from shipcosim.cli.terminal import make_console
 
 LAST_TIME = 0.5
 """How long the last step typically takes. [s]"""
@@ -69,7 +70,6 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     steps : mapping of str to float
         Steps in order but for the page, which is the last of all, with the time that each typically takes. [s]
     """
-    from rich.console import Console
     from rich.progress import (
         BarColumn,
         Progress,
@@ -83,7 +83,7 @@ def shown_progress(steps: Mapping[str, float]) -> Iterator[Callable[..., None]]:
     numbers = {
         step: f"{number} of {len(steps)}: {step}" for number, step in enumerate(steps, start=1)
     }
-    console = Console(stderr=True)
+    console = make_console(stderr=True, highlight=True)
     course = Course(steps)
     said = {next(iter(steps))}
     columns = [

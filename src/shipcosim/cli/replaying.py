@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.console import shown_path
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.replays import LogReplay
@@ -13,14 +14,13 @@ if TYPE_CHECKING:
 
 def print_replay(replay: LogReplay, folder: Path) -> None:
     """The errors, on stdout."""
-    from rich.console import Console
     from rich.table import Table
 
     from shipcosim.diagnose.validation.tracks import errors_of
     from shipcosim.report.diagnosis.replay_page import replay_outcome
     from shipcosim.report.diagnosis.track_figures import error_rows
 
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     errors = error_rows(errors_of(replay.tracks))
     table = Table(*errors.head, box=None, pad_edge=False)
     for row in errors.rows:

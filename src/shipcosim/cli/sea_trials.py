@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from shipcosim.cli.terminal import make_console, say_json
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
@@ -12,16 +13,15 @@ if TYPE_CHECKING:
 
 def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
-    from rich.console import Console
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path, style_of
     from shipcosim.report.sea_trials.words import outcome, told
 
     if as_json:
-        print(json.dumps(found.as_json(), indent=2, ensure_ascii=False))
+        say_json(found.as_json())
         return
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     kinds = [trial.kind for trial in found.trials]
     console.print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in dict.fromkeys(kinds)))
     verdict = outcome(found)

@@ -3,7 +3,7 @@
 import shlex
 
 import pytest
-from rich.console import Console
+from shipcosim.cli.terminal import make_console
 from typer.main import get_command
 
 from shipcosim.cli import comparison, console
@@ -32,8 +32,8 @@ def test_each_command_has_an_example_that_its_parser_takes(words, command):
 def test_variables_are_whole_on_any_terminal(width, monkeypatch, capsys):
     monkeypatch.setattr(
         console,
-        "Console",
-        lambda **given: Console(**given, force_terminal=True, width=width, no_color=True),
+        "make_console",
+        lambda **given: make_console(**given, force_terminal=True, width=width, no_color=True),
     )
     rows = [
         (

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import Debug
+from shipcosim.cli.terminal import say
 from shipcosim.errors import Problem, ShipcosimError
 
 
@@ -61,4 +62,4 @@ def build(
             built = build_named(project, names or [], out or project / "build", progress)
     print_problems(left)
     for path in built:
-        typer.echo(shown_path(path))
+        say(shown_path(path))

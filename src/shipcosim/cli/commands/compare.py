@@ -17,6 +17,7 @@ from shipcosim.cli.options import (
     Strict,
     SystemOrScenario,
 )
+from shipcosim.cli.terminal import say
 
 
 def compare(
@@ -53,7 +54,7 @@ def compare(
     from shipcosim.cli.requests import parsed_components
 
     for line in not_compared():
-        typer.echo(line, err=True)
+        say(line, err=True)
     with progress_of("Comparing") as progress:
         comparison = compare_engines(
             what,

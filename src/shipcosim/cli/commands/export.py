@@ -18,6 +18,7 @@ from shipcosim.cli.options import (
     SystemOrScenario,
     time_option,
 )
+from shipcosim.cli.terminal import say
 
 
 def fmu(
@@ -73,7 +74,7 @@ def fmu(
     print_problems(
         export_fmu(system, target, step, connectors_only=connectors_only, check=not unchecked)
     )
-    typer.echo(shown_path(target))
+    say(shown_path(target))
 
 
 def osp(
@@ -114,4 +115,4 @@ def osp(
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))], force=force)
     print_problems(write_osp(system, scenario, out))
     for path in sorted(out.glob("*")):
-        typer.echo(shown_path(path))
+        say(shown_path(path))

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import Debug
+from shipcosim.cli.terminal import say
 
 
 def init(
@@ -21,6 +22,6 @@ def init(
     from shipcosim.cli.start.files import project_files, write_new
 
     for path in write_new(folder, project_files(folder.resolve().name)):
-        typer.echo(path)
+        say(path)
     inside = "" if folder.resolve() == Path.cwd() else f"cd {folder} && "
-    typer.echo(f"\nGo on with: {inside}shipcosim run hold_position\nREADME.md says what is what.")
+    say(f"\nGo on with: {inside}shipcosim run hold_position\nREADME.md says what is what.")

@@ -6,6 +6,7 @@ import typer
 
 from shipcosim.cli.options import Debug
 from shipcosim.cli.start.completion import LISTED, words_of
+from shipcosim.cli.terminal import say
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 
@@ -30,4 +31,4 @@ def list_(
     if unknown:
         found = "There is no such kind of thing."
         raise ShipcosimError([Problem(kind, found, suggestion(kind, LISTED)) for kind in unknown])
-    typer.echo(listed(kinds or ()))
+    say(listed(kinds or ()))

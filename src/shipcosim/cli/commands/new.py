@@ -7,6 +7,7 @@ import typer
 
 from shipcosim.cli.options import Debug
 from shipcosim.cli.start.completion import names_of
+from shipcosim.cli.terminal import say
 
 if TYPE_CHECKING:
     from shipcosim.cli.start.files import Files
@@ -86,5 +87,5 @@ def _write(files: "Files", *steps: str) -> None:
     from shipcosim.cli.start.files import write_new
 
     for path in write_new(library.project_of() or Path.cwd(), files):
-        typer.echo(shown_path(path))
-    typer.echo("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
+        say(shown_path(path))
+    say("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import Debug, Force, Out
+from shipcosim.cli.terminal import say
 
 
 def report(
@@ -32,12 +33,12 @@ def report(
     tables = read_table(_table(first)), read_table(_table(second))
     with staged(folder, force=force) as stage:
         outcome, found = write_comparison(tables, names, stage / "report.html")
-    typer.echo(f"{outcome.word} {outcome.sentence}")
+    say(f"{outcome.word} {outcome.sentence}")
     for one in found[:5]:
-        typer.echo(
+        say(
             f"  {one.signal}: {one.rms:.3g} {one.unit} rms, {one.largest:.3g} {one.unit} at {one.time:g} s"
         )
-    typer.echo(f"Page: {folder / 'report.html'}")
+    say(f"Page: {folder / 'report.html'}")
 
 
 def _table(given: Path) -> Path:

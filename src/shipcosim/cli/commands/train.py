@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import Debug, Force
+from shipcosim.cli.terminal import make_console, say
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 EVERY = 30.0  # s between lines that say how far it is, where there is no terminal
@@ -113,17 +114,16 @@ def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
     with staged(folder, force=force) as stage, _progress(kind) as progress:
         written = learn.train(component, kind, stage, progress)
     for file in written:
-        typer.echo(shown_path(folder / file.name))
+        say(shown_path(folder / file.name))
 
 
 @contextmanager
 def _progress(kind: str) -> Iterator[Callable[[int, int], None]]:
     """A bar of the epochs on a terminal, else a line now and then."""
-    from rich.console import Console
 
     from shipcosim.cli.console import progress_of
 
-    console = Console(stderr=True)
+    console = make_console(stderr=True, highlight=True)
     told = time.monotonic()
     with progress_of(kind) as report:
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.cli.console import shown_path
 from shipcosim.cli.runs import run_and_print
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from shipcosim.calls.studies import PlannedStudy
@@ -30,7 +31,6 @@ def serve(study: PlannedStudy, swept: StudyResult, port: int = 0) -> None:
     ShipcosimError
         If the port cannot be used.
     """
-    from rich.console import Console
 
     from shipcosim.report.study.server import study_server
 
@@ -42,7 +42,7 @@ def serve(study: PlannedStudy, swept: StudyResult, port: int = 0) -> None:
     numbers = [int(number) for number in swept.runs["run"]]
     server = study_server(swept.folder, numbers, simulate, port)
     text = f"{shown_path(swept.folder)} is shown at {server.url} on this machine; Ctrl-C ends it."
-    Console(highlight=False, soft_wrap=True).print(text, markup=False)
+    make_console(soft_wrap=True).print(text, markup=False)
     try:
         server.serve_forever()
     except KeyboardInterrupt:

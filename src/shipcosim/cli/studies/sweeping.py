@@ -12,6 +12,7 @@ from rich.text import Text
 
 from shipcosim.cli.console import shown_path
 from shipcosim.cli.exits import INTERRUPTED
+from shipcosim.cli.terminal import make_console, say
 from shipcosim.sweep import Plan, Swept
 
 if TYPE_CHECKING:
@@ -41,9 +42,7 @@ def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
             swept = study.run(progress=progress, **options)
         except KeyboardInterrupt:
             kept = shown_path(study.folder)
-            typer.echo(
-                f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True
-            )
+            say(f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True)
             raise typer.Exit(INTERRUPTED) from None
     _say(swept)
     return swept
@@ -63,7 +62,7 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
         TimeRemainingColumn,
     )
 
-    console = Console(stderr=True, highlight=False)
+    console = make_console(stderr=True)
     each = plan.duration / max(len(plan), 1)
     columns = [
         TextColumn("{task.description}"),
@@ -106,7 +105,7 @@ def _time(seconds: float) -> str:
 
 def _say(swept: Swept) -> None:
     """The summary, errors, and where the page is."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = make_console(soft_wrap=True)
     if 0 < len(swept.summary) <= SHOWN:
         text = swept.summary.to_string(
             index=False, na_rep="", float_format=lambda value: f"{value:.4g}"

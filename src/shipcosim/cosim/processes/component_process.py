@@ -13,6 +13,7 @@ from typing import Any, BinaryIO, cast
 
 from shipcosim.cosim.processes.child import receive, send
 from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
+from shipcosim.errors import printable
 
 START = (
     "import sys; sys.path[:] = {path!r}; from shipcosim.cosim.processes.child import serve; serve()"
@@ -179,7 +180,7 @@ class ComponentProcess:
         n = 0
         # Limit the length of a line and their number: a component may print without end.
         while line := pipe.readline(MOST_BYTES):
-            text = line.decode("utf-8", errors="replace").rstrip() + "\n"
+            text = printable(line.decode("utf-8", errors="replace").rstrip()) + "\n"
             n = n + 1
             self._last.append(text)
             if n <= MOST_LINES:

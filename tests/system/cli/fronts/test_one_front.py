@@ -169,7 +169,8 @@ def in_python(function):
     try:
         result = function()
     except sc.ShipcosimError as error:
-        return error, 2
+        has_rows = hasattr(error, "table") and error.table.sizes["time"]
+        return error, 1 if has_rows else 2  # a run that fails on its way is no unusable input
     verdict = getattr(result, "verdict", "consistent")
     refused = bool(getattr(result, "refusals", ()))
     return result, int(not getattr(result, "passed", True) or verdict != "consistent" or refused)
