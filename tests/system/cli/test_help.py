@@ -3,11 +3,11 @@
 import shlex
 
 import pytest
-from shipcosim.cli.terminal import make_console
 from typer.main import get_command
 
 from shipcosim.cli import comparison, console
 from shipcosim.cli.app import app
+from shipcosim.cli.terminal import make_console
 
 
 def commands():
