@@ -1,7 +1,9 @@
 """Errors and remarks in one form: where, what was found, what would be right."""
 
+import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
@@ -92,6 +94,38 @@ class ShipcosimError(Exception):
             f"\x1b[1;31m{head}\x1b[0m",
             *(f"  {line}" for one in shown for line in str(one).splitlines()),
         ]
+
+
+@contextmanager
+def reading(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn whatever a library raises while it reads a file into one error that names the file.
+
+    Libraries for zip, HDF5, Parquet, XML and workbooks raise errors of many kinds for damaged files.
+
+    Parameters
+    ----------
+    path : path
+        Of the file, for the message.
+
+    Raises
+    ------
+    ShipcosimError
+        Those from inside go through; all others become "cannot be read: ...".
+    """
+    try:
+        yield
+    except ShipcosimError:
+        raise
+    except MemoryError as error:
+        found = "is larger than the memory."
+        raise ShipcosimError(Problem(str(path), found, "Read a part of it.")) from error
+    except OSError as error:
+        found = f"cannot be read: {error.strerror or error}."
+        raise ShipcosimError(Problem(str(path), found)) from error
+    except Exception as error:
+        said = " ".join(str(error).split())[:200].rstrip(".") or type(error).__name__
+        found = f"cannot be read: {said}."
+        raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
 
 
 def held_strictly(problems: Iterable[Problem]) -> list[Problem]:

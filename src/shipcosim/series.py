@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.dialects import cells_in, decimal_of, is_figure, separator_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, reading
 from shipcosim.units import UnitError, spelled_conversion
 
 if TYPE_CHECKING:
@@ -50,6 +50,10 @@ _NOTHING = {
 }  # in lower case: cells without a value
 LARGEST_TABLE = 8 << 30
 """Most bytes that a table is read with: a file can declare more than any memory holds."""
+
+SMALL = 64 << 20
+MOST_PACKED = 100
+"""A packed file may unpack to so many bytes, or to so many times its size."""
 
 _HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
 
@@ -137,7 +141,9 @@ def read_table(path: str | os.PathLike) -> xarray.Dataset:
         ".csv.gz": _read_rows,
         ".parquet": _read_rows,
     }
-    table = readers[_suffix(path, readers)](Path(path))
+    read = readers[_suffix(path, readers)]
+    with reading(path):
+        table = read(Path(path))
     table.encoding["source"] = str(path)
     return table
 
@@ -164,10 +170,12 @@ def read_columns(path: str | os.PathLike) -> dict[str, tuple[np.ndarray, str]]:
         If the file cannot be read or has a column twice.
     """
     path = Path(path)
-    if _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet")) == ".nc":
-        columns = _netcdf_columns(_open_netcdf(path))
-        return {name: found for name, found in columns.items() if len(found[0])}
-    columns = _read_columns(path)
+    suffix = _suffix(path, (".nc", ".csv", ".csv.gz", ".parquet"))
+    with reading(path):
+        if suffix == ".nc":
+            columns = _netcdf_columns(_open_netcdf(path))
+            return {name: found for name, found in columns.items() if len(found[0])}
+        columns = _read_columns(path)
     problems = _repeated(path, [name for name, _, _ in columns])
     if problems:
         raise ShipcosimError(problems)
@@ -376,8 +384,7 @@ def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
 def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     """Headers, and cells by column."""
     try:
-        with gzip.open(path, "rb") if path.name.endswith(".gz") else path.open("rb") as file:
-            text = file.read().decode("utf-8-sig")
+        text = unpacked_bytes(path).decode("utf-8-sig")
         rows, decimal = _cells(path, text)
     except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
         raise ShipcosimError(_unreadable(path, error)) from error
@@ -395,6 +402,27 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
             found = f"Row {number}: Expected {width} columns, got {len(row)}: {','.join(row)}"
             raise ShipcosimError(_unreadable(path, ValueError(found)))
     return rows[0], list(zip(*rows[1:], strict=True))
+
+
+def unpacked_bytes(path: Path) -> bytes:
+    """Content of a file, unpacked where it is packed by gzip, whatever it is called.
+
+    Raises
+    ------
+    ShipcosimError
+        If it unpacks to far more than its size: no log does, a bomb would fill the memory.
+    """
+    with path.open("rb") as file:
+        content = file.read()
+    if not content.startswith(b"\x1f\x8b"):
+        return content
+    most = max(SMALL, MOST_PACKED * len(content))
+    with gzip.open(io.BytesIO(content)) as packed:
+        text = packed.read(most + 1)
+    if len(text) > most:
+        found = f"unpacks to more than {MOST_PACKED} times its size."
+        raise ShipcosimError(Problem(str(path), found, "Unpack it, and look at what it holds."))
+    return text
 
 
 def _cells(path: Path, text: str) -> tuple[list[list[str]], str]:
@@ -416,18 +444,32 @@ def _with_point(cell: str) -> str:
 def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
     """Headers and columns."""
     try:
-        from pyarrow import ArrowInvalid
-        from pyarrow.parquet import read_table as read_parquet
+        from pyarrow import Table, timestamp, types
+        from pyarrow.parquet import ParquetFile
     except ImportError as error:
         remedy = 'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.'
         raise ShipcosimError(
             Problem(str(path), "pyarrow, which reads Parquet, is not here.", remedy)
         ) from error
     try:
-        content = read_parquet(path)
-    except (OSError, ArrowInvalid) as error:
+        file = ParquetFile(path)
+        about = file.metadata
+        # What is packed well declares more than its size: bounded as for NetCDF.
+        if about.num_rows * about.num_columns * 8 > LARGEST_TABLE:
+            size = about.num_rows * about.num_columns * 8 / 2**30
+            raise ValueError(f"it declares {size:.3g} GiB, at most {LARGEST_TABLE >> 30} are read")
+        content: Table = file.read()
+        columns = []
+        for column in content.columns:
+            # Stamps are UTC inside, whatever their zone is called: some writers name zones that only they know.
+            if types.is_timestamp(column.type) and column.type.tz is not None:
+                column = column.cast(timestamp(column.type.unit))
+            columns.append(column.to_pandas().to_numpy())
+    except MemoryError:
+        raise
+    except Exception as error:  # Arrow has errors of many kinds
         raise ShipcosimError(_unreadable(path, error)) from error
-    return content.column_names, [column.to_pandas().to_numpy() for column in content.columns]
+    return content.column_names, columns
 
 
 def _name_and_unit(header: str) -> tuple[str, str]:

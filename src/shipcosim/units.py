@@ -546,6 +546,11 @@ def _pint_conversion(source: str, target: str) -> tuple[float, float]:
         raise UnitError(
             f"cannot convert '{source}' into '{target}': they measure different things."
         ) from error
+    except UnitError:
+        raise
+    except (pint.PintError, AttributeError, TypeError, ValueError, ArithmeticError) as error:
+        # Such as degC/min: a scale with a zero of its own has no place in a product.
+        raise UnitError(f"cannot convert '{source}' into '{target}'.") from error
     return one - offset, offset
 
 

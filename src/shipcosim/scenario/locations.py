@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from shipcosim.errors import Problem
@@ -33,7 +34,7 @@ def problem_at(
         As of the problem.
     """
     path = scenario.path
-    text = path.read_text(encoding="utf-8-sig") if path and path.is_file() else ""
+    text = _text_of(path, path.stat().st_mtime_ns) if path and path.is_file() else ""
     return Problem(location_of(path or "scenario", text, keys), found, remedy, severity)
 
 
@@ -51,23 +52,32 @@ def line_of(text: str, keys: Sequence[str | int]) -> int:
     >>> line_of("step_size = 0.1\\n[[events]]\\ntime = 2.0", ("events", 0, "time"))
     3
     """
-    # Walk through the lines, and remember the deepest table or key on the way to the wanted one.
-    section = ()
-    counts = {}
-    depth = 0
-    found = 0
+    lines = _lines_of_keys(text)
+    # The deepest table or key on the way to the wanted one.
+    keys = tuple(keys)
+    return next((lines[keys[:n]] for n in range(len(keys), 0, -1) if keys[:n] in lines), 0)
+
+
+@lru_cache(maxsize=4)
+def _lines_of_keys(text: str) -> dict[tuple[str | int, ...], int]:
+    """First line of each table and key of a TOML text, found once for all problems of a file."""
+    section: tuple[str | int, ...] = ()
+    counts: dict[tuple, int] = {}
+    found: dict[tuple[str | int, ...], int] = {}
     for number, line in enumerate(text.splitlines(), 1):
-        here = section
         # A header opens a table; a key belongs to the table that is open.
         if header := _HEADER.match(line):
-            section = here = _section(_names(header[2]), header[1] == "[[", counts)
+            section = _section(_names(header[2]), header[1] == "[[", counts)
+            found.setdefault(section, number)
         elif key := _KEY.match(line):
-            here = (*section, *_names(key[1]))
-        # Deeper matches are more exact.
-        if len(here) > depth and here == tuple(keys[: len(here)]):
-            depth = len(here)
-            found = number
+            found.setdefault((*section, *_names(key[1])), number)
     return found
+
+
+@lru_cache(maxsize=4)
+def _text_of(path: Path, changed: int) -> str:
+    """Text of a file that was changed last at a time in ns."""
+    return path.read_text(encoding="utf-8-sig")
 
 
 def _names(dotted: str) -> list[str]:

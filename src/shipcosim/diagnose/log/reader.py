@@ -16,12 +16,13 @@ from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.long_format import brought_together, spread
 from shipcosim.diagnose.log.files.table import LogColumns, read_file
+from shipcosim.diagnose.log.files.times import epoch_unit
 from shipcosim.diagnose.log.names.guesses import Thrusters
 from shipcosim.diagnose.log.names.proposal import Proposal, propose
 from shipcosim.diagnose.log.names.units import unit_for
-from shipcosim.diagnose.log.roles import OVER_EARTH, role_of
-from shipcosim.diagnose.log.thresholds import LATEST
-from shipcosim.diagnose.log.values import LARGEST, values_of
+from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
+from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
+from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
 
@@ -90,7 +91,8 @@ def read_log(
         mapping = _sure(columns, proposal)
     else:
         mapping = given.channels
-    signals, said = _signals(columns, mapping, form)
+    is_asked = given is not None and bool(given.channels)
+    signals, said = _signals(columns, mapping, form, is_asked)
     stated = {name: _stated(channel, name, columns) for name, channel in mapping.items()}
     used = {name for channel in mapping.values() for name in channel.columns}
     unused = [name for name in columns.values if name not in used and not _is_unnamed(name)]
@@ -184,8 +186,11 @@ def _sure(columns: LogColumns, proposal: Proposal) -> dict[str, Channel]:
 _WHICH = 'Rename one, or name it in a channel file; the second is "NAME (2)".'
 
 
-def _signals(columns, mapping, form):
-    """Values and unit of each channel, by role or connector, and what is to be said."""
+def _signals(columns, mapping, form, is_asked):
+    """Values and unit of each channel, by role or connector, and what is to be said.
+
+    A column in a wrong unit is an error where somebody asked for it or the navigation needs it; else it is not used.
+    """
     problems = []
     signals = {}
     said = []
@@ -198,6 +203,9 @@ def _signals(columns, mapping, form):
             said += more
             problems += _beyond(f"{columns.source}, {name}", values)
         except ShipcosimError as error:
+            if isinstance(error, WrongUnit) and not is_asked and name not in NAVIGATION:
+                said.append(f"'{name}' is not used: {error.problems[0].found}")
+                continue
             problems += [
                 Problem(f"{columns.source}, {name}", p.found, p.remedy) for p in error.problems
             ]
@@ -226,7 +234,19 @@ def _check_time(source, time):
         found = f"is {time[row]:g} s in row {row + 2}."
         remedy = f"Times are at most {LATEST:g} s, say since 1970."
         raise ShipcosimError(Problem(f"{source}, time", found, remedy))
-    if len(np.unique(time[np.isfinite(time)])) < 2:
+    known = time[np.isfinite(time)]
+    if (epoch := epoch_unit(known)) not in (None, "s"):
+        found = f"begins at {known[0]:.4g} s: are these {epoch} since 1970?"
+        remedy = f'Say the unit in a channel file: time = {{column = "...", unit = "{epoch}"}}.'
+        raise ShipcosimError(Problem(f"{source}, time", found, remedy))
+    # What follows takes as many rows as an even series of this step has, so a wrong unit would fill the memory.
+    steps = np.diff(known)
+    step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else np.inf
+    if step < SHORTEST_STEP:
+        found = f"its rows are {step:.2g} s apart: is the unit right?"
+        remedy = 'Say it in a channel file: time = {column = "...", unit = "s"}.'
+        raise ShipcosimError(Problem(f"{source}, time", found, remedy))
+    if len(np.unique(known)) < 2:
         raise ShipcosimError(
             Problem(
                 f"{source}, time", "has fewer than two different times.", "A log has many rows."

@@ -246,3 +246,5 @@ UNEVEN = 0.02
 """Spread of the steps as a share of the usual one, from which on it is remarked. Assumed."""
 LATEST = 1e19
 """Latest time that is one: nanoseconds since 1970 in a column of seconds. [s]"""
+SHORTEST_STEP = 2e-4
+"""Least usual time between rows, below which a unit is hardly right. Assumed. [s]"""

@@ -17,10 +17,18 @@ from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.diagnose.log.files.times import EPOCHS, epoch_unit, seconds_of, seconds_of_clock
 from shipcosim.diagnose.log.names.units import name_and_unit, unit_for
 from shipcosim.diagnose.log.roles import role_of
+from shipcosim.diagnose.log.thresholds import SHORTEST_STEP
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.series import conversion
 
-__all__ = ["CLOCK_NUMBER", "LARGEST", "TEN_MILLIONTHS", "heading_of_quaternion", "values_of"]
+__all__ = [
+    "CLOCK_NUMBER",
+    "LARGEST",
+    "TEN_MILLIONTHS",
+    "WrongUnit",
+    "heading_of_quaternion",
+    "values_of",
+]
 
 CLOCK_NUMBER = "hhmmss"
 """Spelling of the unit of clock times as numbers: 123519.5 is 12:35:19.5."""
@@ -28,7 +36,7 @@ TEN_MILLIONTHS = "1e-7 deg"
 """Spelling of the unit of latitudes and longitudes that autopilots write as whole numbers."""
 LARGEST = {"latitude": 90.0, "longitude": 180.0}
 _STEPS = (
-    2e-4,
+    SHORTEST_STEP,
     90.0,
 )  # s between rows, beyond which numbers without a unit are hardly seconds. Assumed.
 _PERIODS = {86400.0: "day", 604800.0: "week"}  # s; after which clocks start anew
@@ -73,9 +81,17 @@ def values_of(
     role = role_of(name)
     unit = stated or (role.unit if role else "")
     target = role.unit if role else unit
-    factor, zero = conversion(unit_for(unit, target) if role else unit, target)
+    try:
+        factor, zero = conversion(unit_for(unit, target) if role else unit, target)
+    except ShipcosimError as error:
+        found = f"its unit '{unit}' is none that converts to {target}."
+        raise WrongUnit(Problem("", found, "Correct it, or say it in a channel file.")) from error
     # -0.0 + 0.0 is 0.0, and the sign of a zero is all that is left of a rate in too large a unit
     return factor * (channel.sign * values + (channel.offset or -0.0)) + (zero or -0.0), target, []
+
+
+class WrongUnit(ShipcosimError):
+    """A column's unit is none of what the column holds."""
 
 
 def heading_of_quaternion(parts: np.ndarray, frame: str) -> np.ndarray:

@@ -103,7 +103,7 @@ def test_stamps_of_date_and_time_become_seconds(tmp_path):
     [
         ("moment,surge\n0,1\n1,2\n", "has no column 'time', only 'moment', 'surge'"),
         ("time,u\n0,1\n1,2\n", "no column but time has a role: 'time', 'u'"),
-        ("time,surge [deg]\n0,1\n1,2\n", "cannot convert 'deg' into 'm/s'"),
+        ("time,surge [deg]\n0,1\n1,2\n", "its unit 'deg' is none that converts to m/s"),
         ("time,surge\n0,1\n1,fast\n", "holds 'fast' in row 3, not only numbers"),
         ("time,surge\n0,1\n", "fewer than two different times"),
         ("time,surge,surge\n0,1,1\n", "column 'surge': is there twice"),
@@ -124,7 +124,7 @@ def test_an_unusable_file_is_refused_with_what_is_wrong(tmp_path, text, said):
         ('time = "t"\nnorth = "u"', "has north without east"),
         ('time = "t"\nsurge = {column = "u", sign = 2}', "surge.sign"),
         ('time = "t"\nsurge = {column = "u", scale = 2}', "surge.scale"),
-        ('time = "t"\nsurge = {column = "u", unit = "deg"}', "cannot convert 'deg' into 'm/s'"),
+        ('time = "t"\nsurge = {column = "u", unit = "deg"}', "its unit 'deg' is none that converts to m/s"),
         ("time = ", "cannot be read"),
     ],
 )

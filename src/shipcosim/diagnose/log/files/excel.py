@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import datetime
+import zipfile
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
 __all__ = ["is_workbook", "text_of_sheet"]
+
+
+LARGEST_WORKBOOK = 1 << 30
+"""Most bytes that a workbook may unpack to."""
 
 
 def is_workbook(path: Path) -> bool:
@@ -38,6 +43,10 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
             Problem(str(path), "workbooks of Excel need openpyxl.", remedy)
         ) from error
     try:
+        with zipfile.ZipFile(path) as parts:
+            size = sum(part.file_size for part in parts.infolist())
+        if size > LARGEST_WORKBOOK:
+            raise ValueError(f"it unpacks to {size / 2**30:.3g} GiB")
         book = openpyxl.load_workbook(path, read_only=True, data_only=True)
         sheets = {
             one.title: [row for row in one.iter_rows(values_only=True)] for one in book.worksheets
@@ -49,6 +58,10 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
     if sheet is not None and sheet not in sheets:
         raise ShipcosimError(
             Problem(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
+        )
+    if not sheets:
+        raise ShipcosimError(
+            Problem(str(path), "is no workbook that can be read: it has no sheet.")
         )
     used = sheet or max(sheets, key=lambda name: sum(len(row) for row in sheets[name]))
     rows = [[_text(cell) for cell in row] for row in sheets[used]]

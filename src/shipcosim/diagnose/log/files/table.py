@@ -19,7 +19,7 @@ from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, reading
 
 __all__ = ["LogColumns", "read_file"]
 
@@ -69,7 +69,11 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
     ShipcosimError
         If there is no such file, it is no table, or could be read in two ways.
     """
-    form = form or FileLayout()
+    with reading(path):
+        return _read(path, form or FileLayout())
+
+
+def _read(path: Path, form: FileLayout) -> LogColumns:
     if path.is_dir():
         raise ShipcosimError(
             Problem(str(path), "is a folder, no table.", "Name the file of a log.")

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import codecs
-import gzip
 import zlib
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.series import unpacked_bytes
 
 __all__ = ["text_of"]
 
@@ -34,9 +34,7 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
         If it cannot be read, is no text, or not in this encoding.
     """
     try:
-        content = path.read_bytes()
-        if content.startswith(b"\x1f\x8b"):
-            content = gzip.decompress(content)
+        content = unpacked_bytes(path)
     except (OSError, EOFError, zlib.error) as error:
         raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
     except MemoryError as error:
