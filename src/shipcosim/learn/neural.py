@@ -13,7 +13,7 @@ import torch
 from shipcosim.learn.requests import recorded_requests
 from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress, repeatable
-from shipcosim.models.allocation import neural, neural_named, neural_units
+from shipcosim.models.allocation import neural, neural_allocator
 from shipcosim.models.allocation.neural import Commands, Units
 
 EVERY = 10
@@ -87,8 +87,8 @@ DIAMETER = 1.9  # m
 
 
 def _dp_ship(diameter: float) -> Units:
-    parameters = neural_named.NeuralParameters(**DP_SHIP, azimuth_diameter=diameter)
-    return neural_named.units_of(parameters, POWER)
+    parameters = neural_allocator.NeuralParameters(**DP_SHIP, azimuth_diameter=diameter)
+    return neural_allocator.units_of(parameters, POWER)[0]
 
 
 def _four_azimuths() -> Units:
@@ -108,8 +108,8 @@ def _four_azimuths() -> Units:
             f"azimuth_first_{k}": middle - half,
             f"azimuth_last_{k}": middle + half,
         }
-    parameters = neural_units.NeuralUnitsParameters(**values, yaw_lever=14.0)
-    return neural_units.units_of(parameters, (POWER[0],) * 6)[0]
+    parameters = neural_allocator.NeuralUnitsParameters(**values, yaw_lever=14.0)
+    return neural_allocator.units_of(parameters, (POWER[0],) * 6)[0]
 
 
 RECIPES = {

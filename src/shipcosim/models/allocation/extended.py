@@ -125,7 +125,7 @@ def at_rest(tau: Load, *, parameters: ExtendedParameters) -> Allocated:
     ----------
     Definition.
     """
-    return no_thrust(tau, (parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi))
+    return no_thrust(tau, parameters.of_units("azimuth"))
 
 
 def step(
@@ -173,25 +173,26 @@ def step(
     X, Y, N = missed(tau, forces, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
     saturated = X**2 + Y**2 + (N / p.yaw_lever) ** 2 > 1.0
-    thrusts = []
+    # Turn each azimuth towards its force; until it has turned, it gives the part of the force along its angle.
     angles = []
-    # Turn each azimuth towards its force.
-    for unit in (0, 1):
+    wanted = []
+    for unit, (low, high) in enumerate(p.limits[:2]):
         X, Y = forces[2 * unit : 2 * unit + 2]
-        old = state.azimuths[unit]
-        share = shares[unit]
-        angle = _turned(old, X, Y, available[unit], h, parameters=p)
-        # Until it has turned, it gives the part of the force that lies along its angle.
-        along = clip(X * cos(angle) + Y * sin(angle), p.azimuth_thrust_min, p.azimuth_thrust_max)
-        limits = share * p.azimuth_thrust_min, share * p.azimuth_thrust_max
-        thrusts.append(_moved(state.thrusts[unit], along, reach, limits, available[unit]))
+        angle = _turned(state.azimuths[unit], X, Y, available[unit], h, parameters=p)
+        wanted.append(clip(X * cos(angle) + Y * sin(angle), low, high))
         angles.append(angle)
-    # The tunnel cannot turn: only limits and rate act.
-    limits = -shares[2] * p.tunnel_thrust_max, shares[2] * p.tunnel_thrust_max
-    thrusts.append(_moved(state.thrusts[2], forces[4], reach, limits, available[2]))
-    return Allocated(
-        tuple(thrusts), (*angles, 0.5 * pi), *_load(thrusts, angles, design.effect), saturated
+    # The tunnel cannot turn. Thrusts move at their rate; any excess over the power limit is removed at once.
+    units = zip(state.thrusts, (*wanted, forces[4]), shares, p.limits, available, strict=True)
+    thrusts = tuple(
+        where(on, clip(old + clip(new - old, -reach, reach), share * low, share * high), 0.0 * new)
+        for old, new, share, (low, high), on in units
     )
+    # Load of these commands; components of the azimuths in body axes, as the columns of the matrix.
+    components = []
+    for thrust, angle in zip(thrusts, angles, strict=False):
+        components += [thrust * cos(angle), thrust * sin(angle)]
+    given = load((*components, thrusts[2]), design.effect)
+    return Allocated(thrusts, (*angles, 0.5 * pi), *given, saturated)
 
 
 def _turned(old, X, Y, usable, h, *, parameters):
@@ -204,31 +205,13 @@ def _turned(old, X, Y, usable, h, *, parameters):
     return wrap(old + clip(wrap(wanted - old), -reach, reach))
 
 
-def _moved(old, new, reach, limits, usable):
-    """Thrust that moves to a new one; any excess over the power limit is removed at once."""
-    return where(usable, clip(old + clip(new - old, -reach, reach), *limits), 0.0 * new)
-
-
-def _load(thrusts, angles, effect):
-    """Load of three thrusts. [N, N, N.m]"""
-    # Components of the azimuths in body axes, as the columns of the matrix.
-    forces = []
-    for thrust, angle in zip(thrusts, angles, strict=False):
-        forces += [thrust * cos(angle), thrust * sin(angle)]
-    return load((*forces, thrusts[2]), effect)
-
-
 def _within_limits(tau, available, shares, *, parameters, design):
     """Forces for a load within limits of thrust; free units take over the rest."""
     p = parameters
     # Free units; number 8 on selects the inverses for a ship with a missing thruster.
     free = [where(usable, 1.0, 0.0) for usable in available]
     missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
-    most = (
-        shares[0] * p.azimuth_thrust_max,
-        shares[1] * p.azimuth_thrust_max,
-        shares[2] * p.tunnel_thrust_max,
-    )
+    most = [share * high for share, (_, high) in zip(shares, p.limits, strict=True)]
     # At most three rounds: in each, the unit furthest beyond its limit is held.
     held = forces = [0.0 * tau[0]] * 5
     for _ in range(3):

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed
-from shipcosim.models.core.maths import clip, cos, pi, sin, where
+from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed, unit_effect
+from shipcosim.models.core.maths import clip, where
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
@@ -59,16 +59,9 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
     full yaw arm (nominal model, DP).
     """
     p = parameters
-    units = []
-    for x, y, angle in (
-        (p.port_x, p.port_y, p.port_azimuth),
-        (p.starboard_x, p.starboard_y, p.starboard_azimuth),
-    ):
-        # Force (cos a, sin a) at (x, y), and its moment x sin a - y cos a.
-        c = cos(angle)
-        s = sin(angle)
-        units.append((c, s, x * s - y * c))
-    return (*units, (0.0, 1.0, p.tunnel_x))
+    port = unit_effect(p.port_x, p.port_y, p.port_azimuth)
+    starboard = unit_effect(p.starboard_x, p.starboard_y, p.starboard_azimuth)
+    return port, starboard, (0.0, 1.0, p.tunnel_x)
 
 
 @kept(8)
@@ -129,9 +122,7 @@ def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
     Definition.
     """
     zero = 0.0 * tau[0]
-    # Angles of port, starboard and tunnel. [rad]
-    azimuths = parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
-    return Allocated((zero,) * 3, azimuths, zero, zero, zero, zero > 0.0)
+    return Allocated((zero,) * 3, parameters.of_units("azimuth"), zero, zero, zero, zero > 0.0)
 
 
 def step(
@@ -175,7 +166,10 @@ def step(
     Weighted generalised inverse as `design`; that thrust beyond a limit is allocated to the free units is assumed.
     """
     # Thrusts within their limits, then the load that they miss.
-    limits = _limits(shares, parameters)
+    limits = [
+        (share * low, share * high)
+        for share, (low, high) in zip(shares, parameters.limits, strict=True)
+    ]
     wanted = _within_limits(tau, available, limits, design=design)
     X, Y, N = missed(tau, wanted, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
@@ -188,20 +182,6 @@ def step(
     ]
     thrusts = (port, starboard, tunnel)
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
-
-
-def _limits(shares, parameters):
-    """Least and largest thrust of port, starboard and tunnel. [N]"""
-    p = parameters
-    (port, starboard, tunnel) = shares
-    low = p.azimuth_thrust_min
-    high = p.azimuth_thrust_max
-    most = p.tunnel_thrust_max
-    return (
-        (port * low, port * high),
-        (starboard * low, starboard * high),
-        (tunnel * -most, tunnel * most),
-    )
 
 
 def _within_limits(tau, available, limits, *, design):
@@ -217,14 +197,9 @@ def _within_limits(tau, available, limits, *, design):
         given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
         over = a != given[0], b != given[1], c != given[2]
-        # True if a condition holds for any element.
-        condition = over[0] | over[1] | over[2]
-        anywhere = (
-            condition
-            if isinstance(condition, bool)
-            else bool(condition.any() if hasattr(condition, "any") else condition)
-        )
-        if not anywhere:
+        # Stop when no unit is beyond its limit, in any element.
+        anywhere = over[0] | over[1] | over[2]
+        if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
             break
         # Hold the units beyond a limit, and ask the others for the rest.
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]

@@ -9,11 +9,9 @@ Normalised conformal prediction: Papadopoulos, Gammerman and Vovk, Normalized no
 conformal prediction, AIA 2008; the measure of difficulty is chosen here.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.interpolation import interp
 from shipcosim.models.core.maths import Arithmetic, exp, hypot, sqrt, where
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.core.parameters import quantity
@@ -159,21 +157,3 @@ def widening(
         # No region while thrusters act; a smaller one after the first seconds of a drift.
         found.append(grown * where(lost_for < 0.0, 0.0, where(lost_for < JUST_LOST, 1.0, later)))
     return found[0], found[1]
-
-
-def at_horizon(horizon: Arithmetic, widths: Sequence[float]) -> Arithmetic:
-    """Half-width at any horizon: straight lines from 0 through the calibrated ones.
-
-    Parameters
-    ----------
-    horizon : float or (...) array or tensor
-        How far ahead, up to 60 s. [s]
-    widths : three floats
-        Half-widths at 10, 30 and 60 s. [any unit]
-
-    Returns
-    -------
-    like horizon
-        Half-width. [the unit of widths]
-    """
-    return interp(horizon, (0.0, *HORIZONS), (0.0, *widths))
