@@ -143,49 +143,6 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
     return widths
 
 
-def coverage(
-    found: Sequence[Scores], widths: dict[str, float], *, late: bool
-) -> dict[str, list[tuple[float, float]]]:
-    """Share of the cases that are inside calibrated regions, and the mean width of these.
-
-    Parameters
-    ----------
-    found : sequence of Scores
-        One a world, of other worlds than those of the calibration.
-    widths : dict of str to float
-        As calibrated.
-    late : bool
-        Whether of predictions made later than 20 s after the loss, or of those made before.
-
-    Returns
-    -------
-    dict of str to list of two floats
-        For position and heading: share [1] and mean width [m, rad] by horizon.
-    """
-    shares = {}
-    for column, kind in enumerate(("position", "heading")):
-        shares[kind] = []
-        # Width as the predictor applies it, wider late in the drift.
-        for i, horizon in enumerate(HORIZONS):
-            width = widths[f"{kind}_half_width_{horizon:.0f}"] * (
-                widths[f"later_{kind}_share"] if late else 1.0
-            )
-            # Only predictions of this phase of the drift.
-            chosen = [(one.lost_for >= JUST_LOST) == late for one in found]
-            values = np.concatenate(
-                [getattr(one, kind)[rows, i] for one, rows in zip(found, chosen, strict=True)]
-            )
-            factors = np.concatenate(
-                [one.factors[rows, column] for one, rows in zip(found, chosen, strict=True)]
-            )
-            # Horizons beyond the record have no error; count those within the region.
-            there = np.isfinite(values)
-            shares[kind].append(
-                (float(np.mean(values[there] <= width)), float(np.mean(width * factors[there])))
-            )
-    return shares
-
-
 def _quantile(
     found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool
 ) -> float:
