@@ -11,7 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.angles import wrap
-from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.allocation.pseudo_inverse import (
+    AllocationParameters,
+    inverses_of,
+    solved,
+)
 from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust
 from shipcosim.models.core.maths import atan2, clip, cos, hypot, minimum, pi, sin, where
 from shipcosim.models.core.motion import Load
@@ -53,7 +57,7 @@ class ComponentInverses(NamedTuple):
         X, Y, N of one newton of each component: port forward, port to starboard, the same of starboard, tunnel.
         [1, 1, m]
     inverses : tuple of sixteen tuples
-        For each set of free units five rows of three, as `pseudo_inverse.Design`. [1, 1, 1/m]
+        For each set of free units five rows of three, as of `ThrusterInverses`. [1, 1, 1/m]
     """
 
     effect: tuple
@@ -93,17 +97,8 @@ def design(parameters: ExtendedParameters) -> ComponentInverses:
     # Prices of the components, as W^-1/2 of the weighted inverse.
     side = p.azimuth_weight * p.sway_price
     price = np.array([p.azimuth_weight, side, p.azimuth_weight, side, p.tunnel_weight]) ** -0.5
-    inverses = []
-    # One lever for the whole ship, one where a thruster is missing.
-    for lever in (p.yaw_lever, p.yaw_lever_degraded):
-        scale = np.array([1.0, 1.0, 1.0 / lever])
-        # For every set of free thrusters: W^-1/2 (S B W^-1/2)^+ S.
-        for k in range(8):
-            free = np.array([(k >> unit) & 1 for unit in _UNIT_OF])
-            weighted = scale[:, None] * np.array(effect).T * (price * free)
-            inverse = price[:, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale
-            inverses.append(tuple(map(tuple, inverse.tolist())))
-    return ComponentInverses(effect, tuple(inverses))
+    levers = (p.yaw_lever, p.yaw_lever_degraded)
+    return ComponentInverses(effect, inverses_of(effect, price, levers, _UNIT_OF))
 
 
 def at_rest(tau: Load, *, parameters: ExtendedParameters) -> Allocated:
@@ -216,8 +211,7 @@ def _within_limits(tau, available, shares, *, parameters, design):
     held = forces = [0.0 * tau[0]] * 5
     for _ in range(3):
         # Solve for the free units, with the load that the held ones leave.
-        chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
-        more = _solve(missed(tau, held, design.effect), chosen, design.inverses)
+        more = solved(missed(tau, held, design.effect), free, missing, design.inverses)
         forces = [f + g for f, g in zip(held, more, strict=True)]
         # Thrust of each unit, and the share of it within its limit.
         port = hypot(forces[0], forces[1])
@@ -235,20 +229,3 @@ def _within_limits(tau, available, shares, *, parameters, design):
         held = [where(over[unit], f, h) for f, h, unit in zip(forces, held, _UNIT_OF, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
     return forces
-
-
-def _solve(tau, chosen, inverses):
-    """Force components of the free units for a load, 0 for the others."""
-    X, Y, N = tau
-    # One number: pick the inverse of this set of free units.
-    if isinstance(chosen, float):
-        return [a * X + b * Y + c * N for a, b, c in inverses[int(chosen)]]
-    # Many numbers: elements may have different sets, so try all sixteen.
-    found = [0.0 * X] * 5
-    for number, rows in enumerate(inverses):
-        here = chosen == number
-        found = [
-            where(here, a * X + b * Y + c * N, old)
-            for (a, b, c), old in zip(rows, found, strict=True)
-        ]
-    return found
