@@ -12,7 +12,7 @@ import torch
 
 from shipcosim.learn.requests import recorded_requests
 from shipcosim.learn.results import Trained
-from shipcosim.learn.training import Progress, repeatable
+from shipcosim.learn.training import BestWeights, Descent, Progress, repeatable
 from shipcosim.models.allocation import neural, neural_allocator
 from shipcosim.models.allocation.neural import Commands, Units
 
@@ -356,11 +356,10 @@ def fit(
     training = Sequences(recipe, held_out=False)
     checked = Sequences(replace(recipe, batch=256), held_out=True)
     test = checked.draw()
-    # Adam with a learning rate that falls as a cosine.
-    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
-    rate = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.iterations, eta_min=1e-4)
-    best = math.inf
-    kept = []
+    # Adam with a learning rate that falls as a cosine; the gradient is clipped, since it passes many requests.
+    adam = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    descent = Descent(adam, recipe.iterations, 1e-4, clipped=True)
+    best = BestWeights(weights)
     history = []
     for number in range(recipe.iterations + 1):
         # Check on the held-out sequences now and then, and keep the best weights.
@@ -370,16 +369,9 @@ def fit(
             history.append(
                 {"iteration": number} | {name: float(value) for name, value in found.items()}
             )
-            if history[-1]["objective"] < best:
-                best = history[-1]["objective"]
-                kept = [w.detach().numpy().astype(float).copy() for w in weights]
-        # One step of the optimiser; the gradient is clipped, since it passes many requests.
+            best.judge(history[-1]["objective"])
         if number < recipe.iterations:
             parts = cost(recipe, units, paired(weights), training.draw(), training.interval)
-            optimiser.zero_grad()
-            parts["objective"].backward()
-            torch.nn.utils.clip_grad_norm_(weights, 1.0)
-            optimiser.step()
-            rate.step()
+            descent.step(parts["objective"])
             progress(number + 1, recipe.iterations)
-    return kept, history
+    return [one.numpy().astype(float) for one in best.kept], history
