@@ -11,7 +11,7 @@ import numpy as np
 import torch
 
 from shipcosim.learn.requests import recorded_requests
-from shipcosim.learn.results import Trained
+from shipcosim.learn.results import Trained, settings_of
 from shipcosim.learn.training import BestWeights, Descent, Progress, repeatable
 from shipcosim.models.allocation import neural, neural_allocator
 from shipcosim.models.allocation.neural import Commands, Units
@@ -172,9 +172,7 @@ def train(recipe: NeuralTraining, progress: Progress) -> Trained:
         "missed",
         "turning",
     )
-    settings = {name: getattr(recipe, name) for name in names} | {
-        "optimiser": "Adam, cosine schedule"
-    }
+    settings = settings_of(recipe, names, "Adam, cosine schedule")
     return Trained(arrays, recipe.description, recipe.seed, data, settings, history)
 
 

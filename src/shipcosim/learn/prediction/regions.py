@@ -5,9 +5,8 @@ outputs are then the factors by which it widens regions. The score is error over
 is its quantile.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 
@@ -15,13 +14,12 @@ from shipcosim import library
 from shipcosim.angles import wrap
 from shipcosim.cosim import RunOptions, simulate, system_of
 from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, STEP, SYSTEM, Record
+from shipcosim.learn.regions import SHARE, conformal
 from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system, with_values
 
-SHARE = 0.9
-"""Of the cases that a region is to have inside. [1]"""
 UNCALIBRATED = {
     **{
         f"{kind}_half_width_{horizon:.0f}": 1.0
@@ -135,24 +133,18 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
         later = []
         # Width soon after the loss, and how much wider it is later.
         for i, horizon in enumerate(HORIZONS):
-            early, rest = (_quantile(found, kind, i, level, late=late) for late in (False, True))
+            phases = [
+                np.concatenate(
+                    [getattr(s, kind)[(s.lost_for >= JUST_LOST) == late, i] for s in found]
+                )
+                for late in (False, True)
+            ]
+            early, rest = (conformal(scores, level) for scores in phases)
             widths[f"{kind}_half_width_{horizon:.0f}"] = early
             later.append(rest / early)
         # One share serves all horizons, so the largest.
         widths[f"later_{kind}_share"] = max(later)
     return widths
-
-
-def _quantile(
-    found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool
-) -> float:
-    """Quantile of the scores of all starts, early or late in the drift."""
-    values = np.concatenate(
-        [getattr(one, kind)[(one.lost_for >= JUST_LOST) == late, horizon] for one in found]
-    )
-    # Conformal rank ceil(level n), at most the largest score.
-    values = np.sort(values[np.isfinite(values)])
-    return float(values[min(len(values), ceil(level * len(values))) - 1])
 
 
 def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | bool]):

@@ -14,6 +14,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.allocation.pseudo_inverse import (
     AllocationParameters,
     inverses_of,
+    missing_units,
     solved,
 )
 from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust
@@ -203,9 +204,8 @@ def _turned(old, X, Y, usable, h, *, parameters):
 def _within_limits(tau, available, shares, *, parameters, design):
     """Forces for a load within limits of thrust; free units take over the rest."""
     p = parameters
-    # Free units; number 8 on selects the inverses for a ship with a missing thruster.
     free = [where(usable, 1.0, 0.0) for usable in available]
-    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
+    missing = missing_units(available)
     most = [share * high for share, (_, high) in zip(shares, p.limits, strict=True)]
     # At most three rounds: in each, the unit furthest beyond its limit is held.
     held = forces = [0.0 * tau[0]] * 5

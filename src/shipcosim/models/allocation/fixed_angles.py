@@ -5,14 +5,13 @@ without thrust does not exist. As in `pseudo_inverse`, free units take over what
 give.
 """
 
-import functools
 import math
-import operator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.models.allocation.pseudo_inverse import within_limits
 from shipcosim.models.allocation.units import Allocated, load, missed, unit_effect
 from shipcosim.models.core.maths import clip, is_single, row_of, where
 from shipcosim.models.core.motion import Load
@@ -172,7 +171,14 @@ def step(
     As `design`; that thrust beyond a limit is asked of the free units is assumed.
     """
     # Thrusts within their limits, then the load that they miss.
-    wanted = _within_limits(tau, available, design)
+    wanted = within_limits(
+        tau,
+        available,
+        list(zip(design.least, design.most, strict=True)),
+        design.effect,
+        lambda left, free: _solve(left, free, design.inverses),
+        1e-9,
+    )
     X, Y, N = missed(tau, wanted, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
@@ -183,31 +189,6 @@ def step(
         for old, new, on, rate in limits
     )
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
-
-
-def _within_limits(tau, available, design):
-    """Thrusts for a load, without rate limits."""
-    # Units beyond a limit are held there, and the free ones take over the rest.
-    free = [where(on, 1.0, 0.0) for on in available]
-    held = [0.0 * tau[0]] * UNITS
-    thrusts = held
-    for _ in range(UNITS):
-        # Solve for the free units, with the load that the held ones leave.
-        found = _solve(missed(tau, held, design.effect), free, design.inverses)
-        given = [
-            clip(f, low, high)
-            for f, low, high in zip(found, design.least, design.most, strict=True)
-        ]
-        thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        # Stop when no unit is beyond its limit, in any element.
-        over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]
-        anywhere = functools.reduce(operator.or_, over)
-        if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
-            break
-        # Hold the units beyond a limit, and go on with the others.
-        held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
-        free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
-    return thrusts
 
 
 def _solve(tau, free, inverses):

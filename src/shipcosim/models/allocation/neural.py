@@ -30,6 +30,7 @@ from shipcosim.models.core.maths import (
     sqrt,
     where,
 )
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.propulsion.interaction import kept_share
 
 SMOOTHING = 20.0
@@ -331,7 +332,7 @@ def completed(
     prices: Arithmetic,
     *,
     units: Units,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Thrusts within limits that meet a request at the least power, and what a newton of each load is worth.
 
     Parameters

@@ -4,6 +4,9 @@ An allocator is two functions: `design` computes once what it needs of its param
 into commands.
 """
 
+import functools
+import operator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -90,7 +93,7 @@ def design(parameters: AllocationParameters) -> ThrusterInverses:
     """
     p = parameters
     units = effect(p)
-    price = vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
+    price = _vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
     levers = (p.yaw_lever, p.yaw_lever_degraded)
     return ThrusterInverses(units, inverses_of(units, price, levers, (0, 1, 2)))
 
@@ -118,10 +121,10 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
     ----------
     As `design`.
     """
-    matrix = np.stack(np.broadcast_arrays(*(vector(*column) for column in effect)), -1)
+    matrix = np.stack(np.broadcast_arrays(*(_vector(*column) for column in effect)), -1)
     found = []
     for lever in levers:
-        scale = vector(1.0, 1.0, 1.0 / lever)
+        scale = _vector(1.0, 1.0, 1.0 / lever)
         for k in range(8):
             # W^-1/2 (S B W^-1/2)^+ S, with S for the yaw lever and only the free units' columns.
             free = np.array([(k >> unit) & 1 for unit in unit_of])
@@ -135,6 +138,27 @@ def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple)
                 )
             )
     return tuple(found)
+
+
+def missing_units(available: tuple) -> Arithmetic:
+    """Number of the first inverse of `inverses_of` for a ship that has all units, or misses one.
+
+    Parameters
+    ----------
+    available : tuple of three bools or (...) arrays or tensors of bool
+        Whether port, starboard and tunnel can be used. [1]
+
+    Returns
+    -------
+    float or (...) array or tensor
+        0, or 8 where a unit is missing. [1]
+
+    References
+    ----------
+    Definition.
+    """
+    port, starboard, tunnel = (where(usable, 1.0, 0.0) for usable in available)
+    return 8.0 * (1.0 - port * starboard * tunnel)
 
 
 def solved(tau: Load, free: list, missing: Arithmetic, inverses: tuple) -> list:
@@ -244,7 +268,14 @@ def step(
         (share * low, share * high)
         for share, (low, high) in zip(shares, parameters.limits, strict=True)
     ]
-    wanted = _within_limits(tau, available, limits, design=design)
+    missing = missing_units(available)
+    wanted = within_limits(
+        tau,
+        available,
+        limits,
+        design.effect,
+        lambda left, free: solved(left, free, missing, design.inverses),
+    )
     X, Y, N = missed(tau, wanted, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
@@ -258,21 +289,51 @@ def step(
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
-def _within_limits(tau, available, limits, *, design):
-    """Thrusts for a load, without rate limits; free units take over what another cannot give."""
-    # Free units; number 8 on selects the inverses for a ship with a missing unit.
+def within_limits(
+    tau: Load,
+    available: tuple,
+    limits: list,
+    effect: tuple,
+    solve: Callable[[Load, list], list],
+    tolerance: float = 0.0,
+) -> list:
+    """Thrusts for a load, without rate limits; free units take over what another cannot give.
+
+    Parameters
+    ----------
+    tau : tuple of three
+        Load. [N, N, N.m]
+    available : tuple of n bools or (...) arrays or tensors of bool
+        Whether the units can be used. [1]
+    limits : list of n tuples of two
+        Least and largest thrust. [N]
+    effect : tuple of n tuples of three
+        Load of one newton of each unit. [1, 1, m]
+    solve : callable
+        From a load and a 1 for each free unit to their thrusts. [N]
+    tolerance : float
+        Beyond a limit by more than this a unit is held there. [N]
+
+    Returns
+    -------
+    list of n, like tau
+        Thrusts. [N]
+
+    References
+    ----------
+    Assumed.
+    """
     free = [where(usable, 1.0, 0.0) for usable in available]
-    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
-    held = [0.0, 0.0, 0.0]
-    # At most three rounds: each holds the units that are beyond a limit.
-    for _ in range(3):
+    thrusts = held = [0.0] * len(limits)
+    # Each round holds the units that are beyond a limit.
+    for _ in limits:
         # Solve for the free units, with the load that the held ones leave.
-        a, b, c = solved(missed(tau, held, design.effect), free, missing, design.inverses)
-        given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
+        found = solve(missed(tau, held, effect), free)
+        given = [clip(f, *limit) for f, limit in zip(found, limits, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        over = a != given[0], b != given[1], c != given[2]
         # Stop when no unit is beyond its limit, in any element.
-        anywhere = over[0] | over[1] | over[2]
+        over = [abs(f - g) > tolerance for f, g in zip(found, given, strict=True)]
+        anywhere = functools.reduce(operator.or_, over)
         if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
             break
         # Hold the units beyond a limit, and ask the others for the rest.
@@ -281,7 +342,7 @@ def _within_limits(tau, available, limits, *, design):
     return thrusts
 
 
-def vector(*values: Arithmetic) -> np.ndarray:
+def _vector(*values: Arithmetic) -> np.ndarray:
     """(..., n) array of scalars or arrays of one shape."""
     return np.stack(np.broadcast_arrays(*values), -1)
 

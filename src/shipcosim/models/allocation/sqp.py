@@ -29,7 +29,7 @@ from shipcosim.models.core.maths import (
     sqrt,
     where,
 )
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Triple
 
 _GENTLE = 0.02  # share of a unit's largest thrust below which its price is taken as quadratic
 _STIR = 0.004  # share of a unit's largest thrust that turning reckons with at least, so that a unit at rest turns
@@ -336,8 +336,8 @@ class _Around(NamedTuple):
     unit: AllocatedThruster
     thrust: Arithmetic
     azimuth: Arithmetic
-    effect: tuple[Arithmetic, Arithmetic, Arithmetic]
-    turning: tuple[Arithmetic, Arithmetic, Arithmetic]
+    effect: Triple
+    turning: Triple
     low: Arithmetic
     high: Arithmetic
     left: Arithmetic
@@ -449,9 +449,7 @@ def _nearest(at, thrusts, azimuths):
     )
 
 
-def _effect(
-    unit: AllocatedThruster, s: Arithmetic, c: Arithmetic
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def _effect(unit: AllocatedThruster, s: Arithmetic, c: Arithmetic) -> Triple:
     """Load of one newton at an angle of given sine and cosine."""
     return c, s, unit.x * s - unit.y * c
 

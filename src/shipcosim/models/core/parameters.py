@@ -117,7 +117,7 @@ def numbered_units(fields_of: Callable[[int], dict[str, Any]]) -> Any:
     Returns
     -------
     type
-        A frozen dataclass with the fields of unit 1, then those of unit 2, and so on.
+        A frozen dataclass with the fields of unit 1, then those of unit 2, and so on. [as the fields]
     """
     fields = [
         (f"{name}_{number}", float, declared)
@@ -130,7 +130,20 @@ def numbered_units(fields_of: Callable[[int], dict[str, Any]]) -> Any:
 
 
 def of_units(parameters: Any, name: str) -> list[float]:
-    """A parameter of all units, in their order."""
+    """A parameter of all units, in their order.
+
+    Parameters
+    ----------
+    parameters : any
+        With a base class made by `numbered_units`. [as its fields]
+    name : str
+        Of the parameter, without the number.
+
+    Returns
+    -------
+    list of float
+        One a unit. [as the parameter]
+    """
     return [getattr(parameters, f"{name}_{number}") for number in range(1, UNITS + 1)]
 
 

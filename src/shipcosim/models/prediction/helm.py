@@ -15,7 +15,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import load_at, to_body, to_ned, velocity_at
 from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin
-from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.propulsion.propeller import (
@@ -115,10 +115,10 @@ class Aboard(NamedTuple):
     ship: Motion
     wind_speed: Arithmetic
     wind_from: Arithmetic
-    thrust_cmd: tuple[Arithmetic, Arithmetic, Arithmetic]
-    azimuth_cmd: tuple[Arithmetic, Arithmetic]
-    rpm: tuple[Arithmetic, Arithmetic, Arithmetic]
-    azimuth: tuple[Arithmetic, Arithmetic]
+    thrust_cmd: Triple
+    azimuth_cmd: Vector
+    rpm: Triple
+    azimuth: Vector
 
 
 KNOWN = (
@@ -233,7 +233,7 @@ def smoothed(latest: Start, ship: Motion) -> Motion:
 
 
 def thruster_loads(
-    aboard: Aboard, water: tuple[Arithmetic, Arithmetic], *, helm: HelmParameters
+    aboard: Aboard, water: Vector, *, helm: HelmParameters
 ) -> Callable[[float], Callable[[Arithmetic, Arithmetic, Arithmetic], Load]]:
     """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
 
@@ -317,7 +317,7 @@ def _towards(now, told, most):
 
 def predict(
     aboard: Aboard,
-    current: tuple[Arithmetic, Arithmetic] = (0.0, 0.0),
+    current: Vector = (0.0, 0.0),
     left: Load = (0.0, 0.0, 0.0),
     *,
     hull: HullParameters,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, sqrt, where
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Vector
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
@@ -240,7 +240,7 @@ def residual_load(
 
 def moved(
     states: Sequence[Arithmetic],
-    air: tuple[Arithmetic, Arithmetic],
+    air: Vector,
     thrust: Thrust,
     h: float,
     *,

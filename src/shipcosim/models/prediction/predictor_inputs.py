@@ -9,7 +9,7 @@ from typing import NamedTuple
 from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic, cos, sin
-from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 
 
 class Known(NamedTuple):
@@ -44,11 +44,11 @@ class Known(NamedTuple):
     wind_from: Arithmetic
     wind_believed: Arithmetic = 1.0
     desired: Desired | None = None
-    goal: tuple[Arithmetic, Arithmetic, Arithmetic] | None = None
+    goal: Triple | None = None
     wave_frequency: Arithmetic | None = None
 
 
-def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:
+def air_velocity(known: Known) -> Vector:
     """Velocity of the air over ground: the measured apparent wind, and the ship's own velocity.
 
     Parameters

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, exp, hypot, sqrt, where
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Motion, Vector
 from shipcosim.models.core.parameters import quantity
 
 FORESIGHT = 10.0
@@ -93,13 +93,13 @@ class RegionParameters:
 
 
 def own_errors(
-    errors: tuple[Arithmetic, Arithmetic],
+    errors: Vector,
     ship: Motion,
     foreseen: Motion,
     h: float,
     *,
     regions: RegionParameters,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Mean errors of the predictor's own record, a sample later.
 
     Parameters
@@ -127,9 +127,7 @@ def own_errors(
     return errors[0] + share * (position - errors[0]), errors[1] + share * (heading - errors[1])
 
 
-def widening(
-    errors: tuple[Arithmetic, Arithmetic], lost_for: Arithmetic, *, regions: RegionParameters
-) -> tuple[Arithmetic, Arithmetic]:
+def widening(errors: Vector, lost_for: Arithmetic, *, regions: RegionParameters) -> Vector:
     """Factors on the calibrated widths: larger by the own errors, smaller in a long drift, 0 while thrusters act.
 
     Parameters
