@@ -7,8 +7,6 @@ from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
-__all__ = ["is_workbook", "text_of_sheet"]
-
 
 def is_workbook(path: Path) -> bool:
     """Whether a file is a workbook by its name."""

@@ -17,8 +17,6 @@ from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
 from shipcosim.errors import ShipcosimError
 
-__all__ = ["settled"]
-
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
 _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
 
