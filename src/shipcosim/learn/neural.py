@@ -66,20 +66,19 @@ class NeuralTraining:
 
 
 DP_SHIP = {
-    **{
-        "port_x": -14.02,
-        "port_y": -2.0,
-        "starboard_x": -14.02,
-        "starboard_y": 2.0,
-        "tunnel_x": 14.48,
-    },
-    **{
-        "port_azimuth": -0.7853981633974483,
-        "starboard_azimuth": 0.7853981633974483,
-        "azimuth_thrust_min": -30e3,
-    },
-    **{"azimuth_thrust_max": 60e3, "tunnel_thrust_max": 21.6e3, "thrust_rate_max": 1000.0},
-    **{"yaw_lever": 14.0, "yaw_lever_degraded": 300.0},
+    "port_x": -14.02,
+    "port_y": -2.0,
+    "starboard_x": -14.02,
+    "starboard_y": 2.0,
+    "tunnel_x": 14.48,
+    "port_azimuth": -0.7853981633974483,
+    "starboard_azimuth": 0.7853981633974483,
+    "azimuth_thrust_min": -30e3,
+    "azimuth_thrust_max": 60e3,
+    "tunnel_thrust_max": 21.6e3,
+    "thrust_rate_max": 1000.0,
+    "yaw_lever": 14.0,
+    "yaw_lever_degraded": 300.0,
 }
 """The DP ship, as her files have her; a test holds it."""
 POWER = (194e3, 194e3, 200e3)  # W, at the limits of thrust

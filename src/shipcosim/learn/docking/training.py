@@ -103,12 +103,11 @@ def learn_ours(
     Trained
         Weights, regions of this predictor and of the kinetic one, and report.
     """
-    # Replay the records once; features and targets come from the same replay.
-    replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {
-        name: (distance_ensemble.features(one, model.hull), distance_ensemble.targets(one))
-        for name, one in replayed.items()
-    }
+
+    def inputs(one):
+        return distance_ensemble.features(one, model.hull)
+
+    replayed, pairs = _replayed(records, model, inputs, distance_ensemble.targets)
     # Train on some dockings; others decide which epoch to keep.
     arrays, epochs = distance_ensemble.fit(pairs["training"], pairs["choices"], recipe, progress)
     # Calibrate regions on dockings of their own: errors on training data are too small.
@@ -140,11 +139,7 @@ def learn_paper_iii(
     Trained
         Weights, regions and report.
     """
-    # Replay the records once; inputs and targets come from the same replay.
-    replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {
-        name: (paper_iii.inputs_of(one), paper_iii.targets(one)) for name, one in replayed.items()
-    }
+    replayed, pairs = _replayed(records, model, paper_iii.inputs_of, paper_iii.targets)
     # Search settings and train; other dockings decide.
     arrays, epochs, tried = paper_iii.fit(pairs["training"], pairs["choices"], recipe, progress)
     # Calibrate regions on dockings of their own: errors on training data are too small.
@@ -160,6 +155,12 @@ def learn_paper_iii(
         ] = round(loss, 4)
     data = about(records, pairs["training"][0])
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
+
+
+def _replayed(records, model, inputs, targets):
+    """Replayed records, and inputs and targets of the same replay, by what they are for."""
+    replayed = {name: replay(some, model) for name, some in records.items()}
+    return replayed, {name: (inputs(one), targets(one)) for name, one in replayed.items()}
 
 
 def about(records: dict[str, list[Record]], inputs: np.ndarray) -> dict[str, Any]:

@@ -26,7 +26,8 @@ UNCALIBRATED = {
         for kind in ("position", "heading")
         for horizon in HORIZONS
     },
-    **{"later_position_share": 1.0, "later_heading_share": 1.0},
+    "later_position_share": 1.0,
+    "later_heading_share": 1.0,
 }
 """Regions of width 1."""
 

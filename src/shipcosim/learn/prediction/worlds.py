@@ -36,25 +36,21 @@ TUNING = range(300, 400)
 HELD_OUT = range(8700, 8748)
 """Seeds of worlds that nobody looks at before the end."""
 KNOWN = (
-    *(
-        "x_hat",
-        "y_hat",
-        "psi_hat",
-        "u_hat",
-        "v_hat",
-        "r_hat",
-        "tau_X_bias",
-        "tau_Y_bias",
-        "tau_N_bias",
-    ),
-    *(
-        "tau_X_allocated",
-        "tau_Y_allocated",
-        "tau_N_allocated",
-        "wind_speed_meas",
-        "wind_from_meas",
-        "wind_rejected",
-    ),
+    "x_hat",
+    "y_hat",
+    "psi_hat",
+    "u_hat",
+    "v_hat",
+    "r_hat",
+    "tau_X_bias",
+    "tau_Y_bias",
+    "tau_N_bias",
+    "tau_X_allocated",
+    "tau_Y_allocated",
+    "tau_N_allocated",
+    "wind_speed_meas",
+    "wind_from_meas",
+    "wind_rejected",
 )
 """Inputs of a predictor, from the observer, the allocator and the wind sensor."""
 TRUTH = ("x", "y", "psi", "u", "v", "r")
@@ -72,14 +68,14 @@ PARAMETERS = "gunnerus-33m9"
 NOISY = tuple(
     f"sensors.{name}"
     for name in (
-        *(
-            "position_noise_std",
-            "position_drift_std",
-            "velocity_noise_std",
-            "heading_noise_std",
-            "heading_drift_std",
-        ),
-        *("yaw_rate_noise_std", "wind_speed_noise", "wind_from_noise_std"),
+        "position_noise_std",
+        "position_drift_std",
+        "velocity_noise_std",
+        "heading_noise_std",
+        "heading_drift_std",
+        "yaw_rate_noise_std",
+        "wind_speed_noise",
+        "wind_from_noise_std",
     )
 )
 """Errors of sensors that are larger or smaller than those of the parameter set."""

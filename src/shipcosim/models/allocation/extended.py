@@ -91,8 +91,10 @@ def design(parameters: ExtendedParameters) -> ComponentInverses:
     # gives N = -y X, a force Y gives N = x Y.
     p = parameters
     effect = (
-        *((1.0, 0.0, -p.port_y), (0.0, 1.0, p.port_x)),
-        *((1.0, 0.0, -p.starboard_y), (0.0, 1.0, p.starboard_x)),
+        (1.0, 0.0, -p.port_y),
+        (0.0, 1.0, p.port_x),
+        (1.0, 0.0, -p.starboard_y),
+        (0.0, 1.0, p.starboard_x),
         (0.0, 1.0, p.tunnel_x),
     )
     # Prices of the components, as W^-1/2 of the weighted inverse.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.allocation.pseudo_inverse import within_limits
-from shipcosim.models.allocation.units import Allocated, load, missed, unit_effect
+from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust, unit_effect
 from shipcosim.models.core.maths import clip, is_single, row_of, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import UNITS, numbered_units, quantity, required
@@ -131,8 +131,7 @@ def at_rest(tau: Load, *, parameters: FixedAngleParameters) -> Allocated:
     ----------
     Definition.
     """
-    zero = 0.0 * tau[0]
-    return Allocated((zero,) * UNITS, parameters.start_azimuths, zero, zero, zero, zero > 0.0)
+    return no_thrust(tau, parameters.start_azimuths)
 
 
 def step(

@@ -166,42 +166,4 @@ def at_rest(tau: Load, *, parameters: NeuralParameters | NeuralUnitsParameters) 
     return resting(tau, parameters.start_azimuths)
 
 
-def step(
-    state: Remembered,
-    tau: Load,
-    available: tuple,
-    h: float,
-    *,
-    parameters: NeuralParameters | NeuralUnitsParameters,
-    design: NeuralLaw,
-    shares: tuple | None = None,
-) -> Remembered:
-    """Commands for a requested load, `h` after the last ones.
-
-    Parameters
-    ----------
-    state : Remembered
-        State at the last commands.
-    tau : tuple of three floats or (...) arrays
-        Requested load, body frame. [N, N, N.m]
-    available : tuple of bools or (...) arrays of bool
-        Whether each unit can be used. [1]
-    h : float
-        Time since the last commands. [s]
-    parameters : NeuralParameters or NeuralUnitsParameters
-        Units and limits.
-    design : NeuralLaw
-        Made of the same parameters by `design`.
-    shares : tuple of floats or (...) arrays, optional
-        Shares of their limits of thrust that power leaves to the units. [1]
-
-    Returns
-    -------
-    Remembered
-        Commands and the load they give.
-
-    References
-    ----------
-    As `neural_law.step`.
-    """
-    return neural_law.step(state, tau, available, h, design=design, shares=shares)
+step = neural_law.step

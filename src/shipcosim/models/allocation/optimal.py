@@ -224,42 +224,4 @@ def at_rest(tau: Load, *, parameters: OptimalParameters | OptimalUnitsParameters
     return resting(tau, parameters.start_azimuths)
 
 
-def step(
-    state: Turned,
-    tau: Load,
-    available: tuple,
-    h: float,
-    *,
-    parameters: OptimalParameters | OptimalUnitsParameters,
-    design: OptimalProblem,
-    shares: tuple | None = None,
-) -> Turned:
-    """Commands for a requested load, `h` after the last ones.
-
-    Parameters
-    ----------
-    state : Turned
-        State at the last commands.
-    tau : tuple of three floats or (...) arrays or tensors
-        Requested load, body frame. [N, N, N.m]
-    available : tuple of bools or (...) arrays or tensors of bool
-        Whether each unit can be used; one that cannot gives 0 at once and keeps its angle. [1]
-    h : float
-        Time since the last commands, for the limits of the rates. [s]
-    parameters : OptimalParameters or OptimalUnitsParameters
-        Units and limits.
-    design : OptimalProblem
-        Made of the same parameters by `design`.
-    shares : tuple of floats or (...) arrays or tensors, optional
-        Shares of their limits of thrust that power leaves to the units. [1]
-
-    Returns
-    -------
-    Turned
-        Commands and the load they give.
-
-    References
-    ----------
-    As `sqp.power_step`.
-    """
-    return power_step(state, tau, available, h, design=design, shares=shares)
+step = power_step

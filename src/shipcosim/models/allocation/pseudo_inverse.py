@@ -12,7 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed, unit_effect
+from shipcosim.models.allocation.units import (
+    Allocated,
+    NamedUnits,
+    load,
+    missed,
+    no_thrust,
+    unit_effect,
+)
 from shipcosim.models.core.maths import Arithmetic, clip, where
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
@@ -219,8 +226,7 @@ def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
     ----------
     Definition.
     """
-    zero = 0.0 * tau[0]
-    return Allocated((zero,) * 3, parameters.of_units("azimuth"), zero, zero, zero, zero > 0.0)
+    return no_thrust(tau, parameters.of_units("azimuth"))
 
 
 def step(

@@ -15,7 +15,7 @@ has an effect at once. It may reverse only where another unit is missing: the re
 not push the other way in time.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from shipcosim.models.allocation.box_qp import Command, solve
 from shipcosim.models.allocation.units import no_thrust
@@ -172,6 +172,7 @@ def power_step(
     *,
     design: OptimalProblem,
     shares: tuple | None = None,
+    parameters: Any = None,
 ) -> Turned:
     """Commands that meet a requested load at the least power, `h` after the last ones.
 
@@ -190,6 +191,8 @@ def power_step(
     shares : tuple of floats or (...) arrays or tensors, optional
         Shares of their limits of thrust that power leaves to the units; what exceeds them is taken back at once,
         without limit of the rate. [1]
+    parameters : any
+        Of the FMU, as every law gets them; the design has what is needed of them. [as their fields]
 
     Returns
     -------

@@ -18,6 +18,7 @@ from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin
 from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.prediction.predictor_inputs import air_velocity
 from shipcosim.models.propulsion.propeller import (
     PropellerParameters,
     bollard_speed,
@@ -122,19 +123,24 @@ class Aboard(NamedTuple):
 
 
 KNOWN = (
-    *(
-        "x_meas",
-        "y_meas",
-        "psi_meas",
-        "u_meas",
-        "v_meas",
-        "r_meas",
-        "wind_speed_meas",
-        "wind_from_meas",
-    ),
-    *("port_thrust_cmd", "port_azimuth_cmd", "port_rpm", "port_azimuth"),
-    *("starboard_thrust_cmd", "starboard_azimuth_cmd", "starboard_rpm", "starboard_azimuth"),
-    *("tunnel_thrust_cmd", "tunnel_rpm"),
+    "x_meas",
+    "y_meas",
+    "psi_meas",
+    "u_meas",
+    "v_meas",
+    "r_meas",
+    "wind_speed_meas",
+    "wind_from_meas",
+    "port_thrust_cmd",
+    "port_azimuth_cmd",
+    "port_rpm",
+    "port_azimuth",
+    "starboard_thrust_cmd",
+    "starboard_azimuth_cmd",
+    "starboard_rpm",
+    "starboard_azimuth",
+    "tunnel_thrust_cmd",
+    "tunnel_rpm",
 )
 """Inputs of a predictor of dockings, by name."""
 
@@ -351,7 +357,7 @@ def predict(
     """
     ship = aboard.ship
     # The air's velocity over ground is held, not the apparent wind, which changes with her motion.
-    air = _air(aboard)
+    air = air_velocity(aboard)
     x, y, psi, _, _, r = ship
     # Hull loads depend on the velocity through the water, so it is integrated.
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
@@ -378,13 +384,3 @@ def _rates(thrusters, heading, current, air, left, hull, wind):
         return accelerations(u_r, v_r, r, *tau, hull=hull)
 
     return rates
-
-
-def _air(aboard):
-    """Velocity of the air over ground, north and east, as in `air_velocity`."""
-    # Air velocity = ship velocity - apparent wind (given by where it comes from).
-    ship = aboard.ship
-    speed = aboard.wind_speed
-    return to_ned(
-        ship.psi, ship.u - speed * cos(aboard.wind_from), ship.v - speed * sin(aboard.wind_from)
-    )

@@ -15,10 +15,24 @@ from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
 
 COEFFICIENTS = (
-    *("surge_square", "surge_linear", "sway_square", "sway_linear"),
-    *("yaw_by_sway_square", "yaw_by_sway_linear", "yaw_by_surge_sway", "yaw_square", "yaw_linear"),
-    *("wind_X", "wind_Y", "wind_N", "wind_lever"),
-    *("thrust_stern_X", "thrust_stern_Y", "thrust_bow", "wash_X", "wash_Y"),
+    "surge_square",
+    "surge_linear",
+    "sway_square",
+    "sway_linear",
+    "yaw_by_sway_square",
+    "yaw_by_sway_linear",
+    "yaw_by_surge_sway",
+    "yaw_square",
+    "yaw_linear",
+    "wind_X",
+    "wind_Y",
+    "wind_N",
+    "wind_lever",
+    "thrust_stern_X",
+    "thrust_stern_Y",
+    "thrust_bow",
+    "wash_X",
+    "wash_Y",
 )
 """Coefficients of the residual load, in their order in the state."""
 MEASURED = ("x", "y", "psi", "u", "v", "r")

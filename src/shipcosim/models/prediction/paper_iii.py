@@ -18,25 +18,21 @@ from shipcosim.models.core.networks import Memory, Network, evaluate_members, me
 from shipcosim.models.prediction.helm import LONGEST, Aboard
 
 INPUTS = (
-    *(
-        "north",
-        "east",
-        "heading",
-        "surge speed",
-        "sway speed",
-        "heading rate",
-        "wind direction",
-        "wind speed",
-    ),
-    *(
-        "course",
-        "total speed",
-        "port rpm",
-        "port angle",
-        "starboard rpm",
-        "starboard angle",
-        "tunnel rpm",
-    ),
+    "north",
+    "east",
+    "heading",
+    "surge speed",
+    "sway speed",
+    "heading rate",
+    "wind direction",
+    "wind speed",
+    "course",
+    "total speed",
+    "port rpm",
+    "port angle",
+    "starboard rpm",
+    "starboard angle",
+    "tunnel rpm",
 )
 """Table III without roll, pitch and heave and their rates, which a ship of three degrees of freedom has not."""
 

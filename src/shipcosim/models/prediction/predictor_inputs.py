@@ -4,7 +4,7 @@ A predictor is a state and two functions: `step` takes the state and a `Known` t
 motion to come from both. Dead reckoning has its state in `surroundings`, and `predict` in `dead_reckoning`.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.kinematics import to_ned
@@ -48,13 +48,13 @@ class Known(NamedTuple):
     wave_frequency: Arithmetic | None = None
 
 
-def air_velocity(known: Known) -> Vector:
+def air_velocity(known: Any) -> Vector:
     """Velocity of the air over ground: the measured apparent wind, and the ship's own velocity.
 
     Parameters
     ----------
-    known : Known
-        Floats, (...) arrays or tensors.
+    known : Known or helm.Aboard
+        Ship and apparent wind; floats, (...) arrays or tensors. [as its fields]
 
     Returns
     -------
