@@ -707,7 +707,6 @@ CASES = [
     Case(waves.elevation, PAIRS, lambda x, y: (7.0, x, y, SEA)),
     Case(wave_loads.drift, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT)),
     Case(wave_loads.mean_drift, ANGLES, lambda psi: (psi, SEA, DRIFT)),
-    Case(wave_motion.first_order_motion, [s[:3] for s in SHIP], lambda *s: (7.0, *s, SEA), BOX),
     Case(wave_motion.wave_response, [s[:5] for s in SHIP], lambda *s: (7.0, *s, SEA, DRIFT), BOX),
     Case(
         reference.critically_damped,

@@ -12,9 +12,10 @@ import numpy as np
 
 from shipcosim import library
 from shipcosim.angles import wrap
-from shipcosim.cosim import RunOptions, simulate, system_of
-from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, STEP, SYSTEM, Record
+from shipcosim.cosim import RunOptions, simulate
+from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, SYSTEM, Record
 from shipcosim.learn.regions import SHARE, conformal
+from shipcosim.learn.true_ships import system_with
 from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
@@ -151,9 +152,7 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
 def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | bool]):
     """Table of a predictor's outputs over a record, one row a second."""
     # The predictor gets the parameters of the system's predictor that it has too.
-    nominal = system_of(
-        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
-    )
+    nominal = system_with(SYSTEM, PARAMETERS)
     system = read_system(library.find("fmu", fmu))
     known = system.components[fmu].fmu.variables
     values = {

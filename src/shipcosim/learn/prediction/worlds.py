@@ -26,6 +26,7 @@ from shipcosim.learn.true_ships import (
     TrueLoads,
     factors,
     sailed,
+    system_with,
 )
 from shipcosim.scenario import Event, Scenario
 
@@ -264,9 +265,7 @@ def _source(name: str) -> str:
 def _nominal() -> dict[str, tuple[float, float]]:
     """Value and tolerance of each number of `TOLERATED`, `NOISY` and `HULL`."""
     # Read the nominal system once; worlds differ from it.
-    system = system_of(
-        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
-    )
+    system = system_with(SYSTEM, PARAMETERS)
     found = {}
     # Numbers without a tolerance keep their value.
     for signal in (*TOLERATED, *NOISY, *HULL):
