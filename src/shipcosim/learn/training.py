@@ -104,7 +104,7 @@ class Descent:
         self.schedule = cosine(optimiser, steps, eta_min=least) if steps else None
         self.clipped = clipped
 
-    def step(self, loss: torch.Tensor) -> float:
+    def step(self, loss: Any) -> float:
         """Take one step.
 
         Parameters

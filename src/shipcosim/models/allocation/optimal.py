@@ -196,8 +196,9 @@ def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, least, turns, sec
     """A unit as `sqp` needs it."""
     # A unit that turns keeps its least thrust; any other has one direction, and reverses.
     if turns:
+        first, last = sector
         return AllocatedThruster(
-            x, y, min(least, high), high, low, thrust_rate, *sector, azimuth_rate, price
+            x, y, min(least, high), high, low, thrust_rate, first, last, azimuth_rate, price
         )
     return AllocatedThruster(x, y, low, high, low, thrust_rate, azimuth, azimuth, 0.0, price)
 
