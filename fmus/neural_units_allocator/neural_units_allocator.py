@@ -4,7 +4,7 @@ from pathlib import Path
 
 from shipcosim.fmi import Parameters
 from shipcosim.interfaces import NumberedAllocator
-from shipcosim.models.allocation import neural_units
+from shipcosim.models.allocation import neural_allocator
 from shipcosim.models.core.networks import read_arrays
 
 WEIGHTS = Path(__file__).with_name("weights")
@@ -13,8 +13,10 @@ WEIGHTS = Path(__file__).with_name("weights")
 class NeuralUnitsAllocator(NumberedAllocator):
     """Thrust allocation by a trained network within all limits: four azimuth thrusters that know their slipstreams."""
 
-    model = Parameters(neural_units.NeuralUnitsParameters)
-    law = neural_units
+    model = Parameters(neural_allocator.NeuralUnitsParameters)
+    law = neural_allocator
 
     def designed(self):
-        return neural_units.design(self.model, read_arrays(WEIGHTS / "neural-four-azimuths.npz"))
+        return neural_allocator.design(
+            self.model, read_arrays(WEIGHTS / "neural-four-azimuths.npz")
+        )

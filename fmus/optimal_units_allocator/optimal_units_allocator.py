@@ -2,11 +2,11 @@
 
 from shipcosim.fmi import Parameters
 from shipcosim.interfaces import NumberedAllocator
-from shipcosim.models.allocation import optimal_units
+from shipcosim.models.allocation import optimal
 
 
 class OptimalUnitsAllocator(NumberedAllocator):
     """Thrust allocation at the least power within all limits: up to six units, each fixed or turning."""
 
-    model = Parameters(optimal_units.OptimalUnitsParameters)
-    law = optimal_units
+    model = Parameters(optimal.OptimalUnitsParameters)
+    law = optimal

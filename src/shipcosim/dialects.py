@@ -8,18 +8,6 @@ from collections import Counter
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = [
-    "NOTHING",
-    "WITH_UNIT",
-    "cells_in",
-    "decimal_of",
-    "is_comment",
-    "is_figure",
-    "is_nothing",
-    "separator_of",
-]
-
-
 NOTHING = frozenset(
     (
         "",

@@ -28,15 +28,6 @@ from shipcosim.units import UnitError, spelled_conversion
 if TYPE_CHECKING:
     import xarray
 
-__all__ = [
-    "conversion",
-    "make_table",
-    "read_columns",
-    "read_table",
-    "write_file",
-    "write_json",
-    "write_table",
-]
 
 _NOTHING = {
     "",

@@ -17,8 +17,6 @@ from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["check_targets", "set_aside", "set_file_aside", "staged"]
-
 
 def check_targets(folder: Path | None, file: Path | None = None) -> None:
     """Whether results can be written, as far as that can be known before a long run.

@@ -15,27 +15,8 @@ WATER_DENSITY = 1026.0
 GRAVITY = 9.81
 
 
-def level_1_loads(hull: Hull, condition: Condition, weather_from: NDArray) -> NDArray:
-    """Sum of the mean loads of wind, current and waves.
-
-    Parameters
-    ----------
-    hull : Hull
-    condition : Condition
-    weather_from : (n,) array
-        Clockwise from the bow. [rad]
-
-    Returns
-    -------
-    (n, 3) array
-        X, Y, N. [N, N, N.m]
-    """
-    parts = level_1_parts(hull, condition, weather_from)
-    return sum(parts.values(), np.zeros((len(weather_from), 3)))
-
-
 def level_1_parts(hull: Hull, condition: Condition, weather_from: NDArray) -> dict[str, NDArray]:
-    """The same loads by source: ``"wind"``, ``"current"``, ``"waves"``."""
+    """Mean loads X, Y, N by source, ``"wind"``, ``"current"``, ``"waves"``; weather clockwise from the bow in rad."""
     return {
         "wind": wind(hull, condition.wind_speed, weather_from),
         "current": current(hull, condition.current_speed, weather_from),

@@ -26,7 +26,6 @@ ETA_2_ASTERN = {
 }
 ETA_M = {"geared": 0.93, "cycloidal": 0.91, "shaft": 0.97, "pod": 0.98, "rim-driven": 0.995}
 BETA_MISC = 0.9
-_SOURCE = "DNV-ST-0111, December 2021, Level 1, as transcribed in a public student implementation."
 
 
 @dataclass(frozen=True)

@@ -70,8 +70,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.reference.reference import Reference
     from shipcosim.ssp import System, SystemStructure
 
-__all__ = ["JointDiagnosis", "diagnose_jointly", "find_common_causes", "steps_of"]
-
 
 def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
     """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""

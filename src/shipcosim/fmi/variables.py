@@ -88,6 +88,12 @@ class Variable:
     def __repr__(self) -> str:
         return f"<{self.causality} {self.name}: {self.type}, {self.start!r} {self.unit}>"
 
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Minimum and maximum, infinite where there is none."""
+        low = -math.inf if self.minimum is None else self.minimum
+        return low, math.inf if self.maximum is None else self.maximum
+
     def is_left_out(self, value: Any) -> bool:
         """True if a value is the mark of a parameter without a default."""
         return self.required and left_out(value)
@@ -105,38 +111,31 @@ class Variable:
         return ""
 
 
-class Input(Variable):
+class Signal(Variable):
+    """Input or output: its unit comes first, and it starts at zero."""
+
+    def __init__(
+        self,
+        unit: str,
+        description: str,
+        *,
+        start: Value = 0.0,
+        minimum: float | None = None,
+        maximum: float | None = None,
+    ):
+        super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
+
+
+class Input(Signal):
     """Input at every step: ``thrust_cmd = Input("N", "commanded thrust")``."""
 
     causality = "input"
 
-    def __init__(
-        self,
-        unit: str,
-        description: str,
-        *,
-        start: Value = 0.0,
-        minimum: float | None = None,
-        maximum: float | None = None,
-    ):
-        super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
 
-
-class Output(Variable):
+class Output(Signal):
     """Result of the FMU: ``thrust = Output("N", "delivered thrust")``."""
 
     causality = "output"
-
-    def __init__(
-        self,
-        unit: str,
-        description: str,
-        *,
-        start: Value = 0.0,
-        minimum: float | None = None,
-        maximum: float | None = None,
-    ):
-        super().__init__(start, unit, description, minimum=minimum, maximum=maximum)
 
 
 class Parameter(Variable):

@@ -3,7 +3,9 @@
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from shipcosim.learn import neural, paper_i, paper_v
 from shipcosim.learn.dead_reckoning import recipes as dead_reckoning
@@ -29,32 +31,26 @@ class Kind:
     train: Callable[[Progress], Trained]
 
 
-def _paper_v(recipe: paper_v.PaperVTraining) -> Kind:
-    return Kind(recipe.description, lambda progress: paper_v.train(recipe, progress))
-
-
-def _paper_i(recipe: paper_i.PaperITraining) -> Kind:
-    return Kind(recipe.description, lambda progress: paper_i.train(recipe, progress))
-
-
-def _neural(recipe: neural.NeuralTraining) -> Kind:
-    return Kind(recipe.description, lambda progress: neural.train(recipe, progress))
+def _kinds(
+    recipes: Mapping[str, Any], train: Callable[[Any, Progress], Trained]
+) -> dict[str, Kind]:
+    """A kind for each recipe of a module."""
+    return {
+        name: Kind(recipe.description, partial(train, recipe)) for name, recipe in recipes.items()
+    }
 
 
 ALLOCATORS: Mapping[str, Kind] = {
-    **{name: _paper_v(recipe) for name, recipe in paper_v.RECIPES.items()},
-    **{name: _paper_i(recipe) for name, recipe in paper_i.RECIPES.items()},
-    **{name: _neural(recipe) for name, recipe in neural.RECIPES.items()},
+    **_kinds(paper_v.RECIPES, paper_v.train),
+    **_kinds(paper_i.RECIPES, paper_i.train),
+    **_kinds(neural.RECIPES, neural.train),
 }
 """Allocators by the name that `shipcosim train allocator --kind NAME` takes; the first is the default."""
 
 DRIFT: Mapping[str, Kind] = {
-    "ours": Kind(
-        drift.OURS.description, lambda progress: drift.train(drift.ours, drift.OURS, progress)
-    ),
+    "ours": Kind(drift.OURS.description, partial(drift.train, drift.ours, drift.OURS)),
     "paper-iv": Kind(
-        drift.PAPER_IV.description,
-        lambda progress: drift.train(drift.as_paper_iv, drift.PAPER_IV, progress),
+        drift.PAPER_IV.description, partial(drift.train, drift.as_paper_iv, drift.PAPER_IV)
     ),
 }
 """Drift predictors by the name that `shipcosim train drift --kind NAME` takes; the first is the default."""
@@ -66,12 +62,11 @@ DEAD_RECKONING: Mapping[str, Kind] = {
 
 DOCKING: Mapping[str, Kind] = {
     "ours": Kind(
-        docking.OURS.description,
-        lambda progress: docking.train(docking.learn_ours, docking.OURS, progress),
+        docking.OURS.description, partial(docking.train, docking.learn_ours, docking.OURS)
     ),
     "paper-iii": Kind(
         docking.PAPER_III.description,
-        lambda progress: docking.train(docking.learn_paper_iii, docking.PAPER_III, progress),
+        partial(docking.train, docking.learn_paper_iii, docking.PAPER_III),
     ),
 }
 """Predictors of dockings by the name that `shipcosim train docking --kind NAME` takes; the first is the default."""

@@ -11,9 +11,9 @@ import numpy as np
 import torch
 
 from shipcosim.learn.requests import recorded_requests
-from shipcosim.learn.results import Trained
-from shipcosim.learn.training import Progress, repeatable
-from shipcosim.models.allocation import neural, neural_named, neural_units
+from shipcosim.learn.results import Trained, settings_of
+from shipcosim.learn.training import BestWeights, Descent, Progress, repeatable
+from shipcosim.models.allocation import neural, neural_allocator
 from shipcosim.models.allocation.neural import Commands, Units
 
 EVERY = 10
@@ -66,20 +66,19 @@ class NeuralTraining:
 
 
 DP_SHIP = {
-    **{
-        "port_x": -14.02,
-        "port_y": -2.0,
-        "starboard_x": -14.02,
-        "starboard_y": 2.0,
-        "tunnel_x": 14.48,
-    },
-    **{
-        "port_azimuth": -0.7853981633974483,
-        "starboard_azimuth": 0.7853981633974483,
-        "azimuth_thrust_min": -30e3,
-    },
-    **{"azimuth_thrust_max": 60e3, "tunnel_thrust_max": 21.6e3, "thrust_rate_max": 1000.0},
-    **{"yaw_lever": 14.0, "yaw_lever_degraded": 300.0},
+    "port_x": -14.02,
+    "port_y": -2.0,
+    "starboard_x": -14.02,
+    "starboard_y": 2.0,
+    "tunnel_x": 14.48,
+    "port_azimuth": -0.7853981633974483,
+    "starboard_azimuth": 0.7853981633974483,
+    "azimuth_thrust_min": -30e3,
+    "azimuth_thrust_max": 60e3,
+    "tunnel_thrust_max": 21.6e3,
+    "thrust_rate_max": 1000.0,
+    "yaw_lever": 14.0,
+    "yaw_lever_degraded": 300.0,
 }
 """The DP ship, as her files have her; a test holds it."""
 POWER = (194e3, 194e3, 200e3)  # W, at the limits of thrust
@@ -87,8 +86,8 @@ DIAMETER = 1.9  # m
 
 
 def _dp_ship(diameter: float) -> Units:
-    parameters = neural_named.NeuralParameters(**DP_SHIP, azimuth_diameter=diameter)
-    return neural_named.units_of(parameters, POWER)
+    parameters = neural_allocator.NeuralParameters(**DP_SHIP, azimuth_diameter=diameter)
+    return neural_allocator.units_of(parameters, POWER)[0]
 
 
 def _four_azimuths() -> Units:
@@ -108,8 +107,8 @@ def _four_azimuths() -> Units:
             f"azimuth_first_{k}": middle - half,
             f"azimuth_last_{k}": middle + half,
         }
-    parameters = neural_units.NeuralUnitsParameters(**values, yaw_lever=14.0)
-    return neural_units.units_of(parameters, (POWER[0],) * 6)[0]
+    parameters = neural_allocator.NeuralUnitsParameters(**values, yaw_lever=14.0)
+    return neural_allocator.units_of(parameters, (POWER[0],) * 6)[0]
 
 
 RECIPES = {
@@ -172,9 +171,7 @@ def train(recipe: NeuralTraining, progress: Progress) -> Trained:
         "missed",
         "turning",
     )
-    settings = {name: getattr(recipe, name) for name in names} | {
-        "optimiser": "Adam, cosine schedule"
-    }
+    settings = settings_of(recipe, names, "Adam, cosine schedule")
     return Trained(arrays, recipe.description, recipe.seed, data, settings, history)
 
 
@@ -356,11 +353,10 @@ def fit(
     training = Sequences(recipe, held_out=False)
     checked = Sequences(replace(recipe, batch=256), held_out=True)
     test = checked.draw()
-    # Adam with a learning rate that falls as a cosine.
-    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
-    rate = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.iterations, eta_min=1e-4)
-    best = math.inf
-    kept = []
+    # Adam with a learning rate that falls as a cosine; the gradient is clipped, since it passes many requests.
+    adam = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    descent = Descent(adam, recipe.iterations, 1e-4, clipped=True)
+    best = BestWeights(weights)
     history = []
     for number in range(recipe.iterations + 1):
         # Check on the held-out sequences now and then, and keep the best weights.
@@ -370,16 +366,9 @@ def fit(
             history.append(
                 {"iteration": number} | {name: float(value) for name, value in found.items()}
             )
-            if history[-1]["objective"] < best:
-                best = history[-1]["objective"]
-                kept = [w.detach().numpy().astype(float).copy() for w in weights]
-        # One step of the optimiser; the gradient is clipped, since it passes many requests.
+            best.judge(history[-1]["objective"])
         if number < recipe.iterations:
             parts = cost(recipe, units, paired(weights), training.draw(), training.interval)
-            optimiser.zero_grad()
-            parts["objective"].backward()
-            torch.nn.utils.clip_grad_norm_(weights, 1.0)
-            optimiser.step()
-            rate.step()
+            descent.step(parts["objective"])
             progress(number + 1, recipe.iterations)
-    return kept, history
+    return [one.numpy().astype(float) for one in best.kept], history

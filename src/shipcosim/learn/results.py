@@ -45,6 +45,26 @@ class Trained:
     notes: Sequence[str] = ()
 
 
+def settings_of(recipe: Any, names: Sequence[str], optimiser: str) -> dict[str, Any]:
+    """Settings of a training for its report.
+
+    Parameters
+    ----------
+    recipe : any
+        How it is trained.
+    names : sequence of str
+        Fields of the recipe that the report names.
+    optimiser : str
+        What minimises the loss.
+
+    Returns
+    -------
+    dict of str
+        Settings by name.
+    """
+    return {name: getattr(recipe, name) for name in names} | {"optimiser": optimiser}
+
+
 def write_trained(
     trained: Trained, folder: Path, name: str, time: float = 0.0, processor_time: float = 0.0
 ) -> list[Path]:

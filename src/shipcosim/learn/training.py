@@ -1,7 +1,6 @@
 """The training loop: mini-batches, Adam, early stopping, the same weights from the same seed."""
 
-import copy
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -78,6 +77,92 @@ def repeatable(seed: int) -> Iterator[None]:
         torch.set_num_threads(threads)
 
 
+class Descent:
+    """Steps of an optimiser down a loss.
+
+    Parameters
+    ----------
+    optimiser : Optimizer
+        Adam or AdamW with the weights.
+    steps : int
+        Over which the learning rate falls as a cosine; 0: it stays. [1]
+    least : float
+        Learning rate at their end. [1]
+    clipped : bool
+        Whether the gradient is clipped: one that passes many samples can be very large.
+    """
+
+    def __init__(
+        self,
+        optimiser: torch.optim.Optimizer,
+        steps: int = 0,
+        least: float = 0.0,
+        clipped: bool = False,
+    ):
+        self.optimiser = optimiser
+        cosine = torch.optim.lr_scheduler.CosineAnnealingLR
+        self.schedule = cosine(optimiser, steps, eta_min=least) if steps else None
+        self.clipped = clipped
+
+    def step(self, loss: Any) -> float:
+        """Take one step.
+
+        Parameters
+        ----------
+        loss : () tensor
+            Loss with the present weights. [1]
+
+        Returns
+        -------
+        float
+            The same. [1]
+        """
+        self.optimiser.zero_grad()
+        loss.backward()
+        if self.clipped:
+            torch.nn.utils.clip_grad_norm_(self.optimiser.param_groups[0]["params"], 1.0)
+        self.optimiser.step()
+        if self.schedule:
+            self.schedule.step()
+        return float(loss.detach())
+
+
+class BestWeights:
+    """Weights with the least held-out loss so far.
+
+    Parameters
+    ----------
+    weights : iterable of tensor
+        The weights that are trained.
+    """
+
+    def __init__(self, weights: Iterable[torch.Tensor]):
+        self.weights = list(weights)
+        self.kept = [one.detach().clone() for one in self.weights]
+        self.loss = np.inf
+        self.since = 0
+
+    def judge(self, loss: float) -> None:
+        """Keep the present weights if they are the best, and count how often none were since.
+
+        Parameters
+        ----------
+        loss : float
+            Held-out loss with the present weights. [1]
+        """
+        self.since += 1
+        if loss < self.loss:
+            self.loss = loss
+            self.since = 0
+            self.kept = [one.detach().clone() for one in self.weights]
+
+    def restore(self) -> None:
+        """Go back to the best weights."""
+        with torch.no_grad():
+            for one, kept in zip(self.weights, self.kept, strict=True):
+                one.copy_(kept)
+
+
 def fit(
     network: torch.nn.Module,
     losses: Callable[[Any], dict[str, torch.Tensor]],
@@ -108,36 +193,25 @@ def fit(
     """
     # The order of mini-batches has its own generator: it does not depend on the network.
     order = np.random.default_rng(schedule.seed)
-    optimiser = torch.optim.Adam(network.parameters(), lr=schedule.learning_rate, fused=True)
+    weights = list(network.parameters())
+    descent = Descent(torch.optim.Adam(weights, lr=schedule.learning_rate, fused=True))
+    best = BestWeights(weights)
     epochs: list[dict[str, float]] = []
-    best = np.inf
-    weights = copy.deepcopy(network.state_dict())
     total = schedule.most_epochs * len(batches)
     for number in range(schedule.most_epochs):
         # One epoch: a step for each mini-batch, in random order.
         trained = 0.0
         for done, index in enumerate(order.permutation(len(batches)), number * len(batches) + 1):
-            trained += _descend(optimiser, sum(losses(batches[index]).values()))
+            trained += descent.step(sum(losses(batches[index]).values()))
             progress(done, total)
-        # Judge the epoch on held-out data; keep the best weights.
+        # Judge the epoch on held-out data; stop when none of the last `patience` epochs was the best.
         found = _held_out(losses, held_out)
         epochs.append({"training": trained / len(batches), "held out": sum(found.values())} | found)
-        if epochs[-1]["held out"] < best:
-            best = epochs[-1]["held out"]
-            weights = copy.deepcopy(network.state_dict())
-        # Stop when none of the last `patience` epochs reached the best loss.
-        if best < min(epoch["held out"] for epoch in epochs[-schedule.patience :]):
+        best.judge(epochs[-1]["held out"])
+        if best.since >= schedule.patience:
             break
-    network.load_state_dict(weights)
+    best.restore()
     return epochs
-
-
-def _descend(optimiser, loss):
-    """One step of the optimiser; the loss before it."""
-    optimiser.zero_grad()
-    loss.backward()
-    optimiser.step()
-    return float(loss.detach())
 
 
 def _held_out(losses, held_out):

@@ -7,8 +7,10 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
+from shipcosim.cosim import system_of
 from shipcosim.models.core.tables import text
-from shipcosim.ssp import Component
+from shipcosim.scenario import Scenario
+from shipcosim.ssp import Component, System
 
 Drawn = TypeVar("Drawn")
 Record = TypeVar("Record")
@@ -82,6 +84,31 @@ def factors(
         [1]
     """
     return 1.0 + distance * most * rng.uniform(-1.0, 1.0, size)
+
+
+def system_with(system: str, parameters: str, components: dict[str, str] | None = None) -> System:
+    """A system with the parameters of a ship.
+
+    Parameters
+    ----------
+    system, parameters : str
+        Their names.
+    components : dict of str to str, optional
+        FMUs in the place of those of the system.
+
+    Returns
+    -------
+    System
+        Read anew.
+    """
+    scenario = Scenario(
+        system=system,
+        parameters=[parameters],
+        components=components or {},
+        stop_time=1.0,
+        step_size=0.1,
+    )
+    return system_of(scenario)
 
 
 def known_to(component: Component, *kinds: type) -> list[Any]:

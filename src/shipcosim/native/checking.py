@@ -89,8 +89,7 @@ def _give_inputs(fmu, compiled, random):
             continue
         value = getattr(compiled.fmu, variable.name)
         if variable.type == "Real":
-            low = -np.inf if variable.minimum is None else variable.minimum
-            high = np.inf if variable.maximum is None else variable.maximum
+            low, high = variable.bounds
             # 10 % of the start value, or 0.1 where it is small: large enough to move the state,
             # small enough to stay in the model's range. The declared bounds are kept.
             drawn = value + 0.1 * random.standard_normal() * max(abs(value), 1.0)

@@ -229,11 +229,16 @@ class Writer:
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
             self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
-        where = f"k + {first}, k + {self.results[number]}"
         # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
-        self._put(depth + 1, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
+        where = f"k + {first}, k + {self.results[number]}"
+        for line in self._calling(number, where, again):
+            self._put(depth + 1, line)
         self._put(depth, "}")
+
+    def _calling(self, number: int, where: str, again: str) -> list[str]:
+        """Call a function with a cached result, and give up where it fails."""
+        return [f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}"]
 
     def _loop(self, loop: RecordedLoop, number, depth):
         # Carried values that nobody reads need no variable.

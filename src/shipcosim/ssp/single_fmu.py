@@ -20,8 +20,6 @@ from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import UnitError, seconds
 
-__all__ = ["assemble_fmu", "default_step_size", "settings_of_one", "single_fmu", "step_remarks"]
-
 IN_TABLES = ("Real", "Integer", "Boolean", "Enumeration")
 """Kinds of inputs that a table can feed; the others keep their start value, which can be set."""
 

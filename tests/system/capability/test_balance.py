@@ -6,7 +6,7 @@ from capability.psv import HULL, THRUSTERS, thruster
 
 from shipcosim.capability.balance import MOST, Actuator, largest_share
 from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS
-from shipcosim.capability.loads import level_1_loads
+from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.sectors import Sector, pieces, sectors
 from shipcosim.capability.thrust import ventilation
 
@@ -102,7 +102,7 @@ def test_forbidden_sectors_of_two_azimuths_are_as_brute_force_has_them(load, bow
 
 def test_a_sector_cut_out_never_helps_and_its_pieces_together_are_the_disc():
     """Cut at an angle without forbidding anything, the pieces give what the whole disc gives."""
-    loads = level_1_loads(HULL, CONDITIONS[3], DIRECTIONS)
+    loads = sum(level_1_parts(HULL, CONDITIONS[3], DIRECTIONS).values())
     left = np.ones(len(DIRECTIONS))
 
     def share(narrowed):
@@ -137,7 +137,7 @@ def test_share_of_thrust_used_is_that_of_another_implementation():
             )
             for t in THRUSTERS
         ]
-        (share,) = largest_share(made, 1.25 * level_1_loads(HULL, condition, angle))
+        (share,) = largest_share(made, 1.25 * sum(level_1_parts(HULL, condition, angle).values()))
         assert 1.0 / share == pytest.approx(expected, abs=2e-3)
 
 

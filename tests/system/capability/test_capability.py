@@ -18,7 +18,7 @@ from shipcosim.capability import (
 )
 from shipcosim.capability.compute import level_1_share
 from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, Condition
-from shipcosim.capability.loads import level_1_loads
+from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.result import BALANCED, LEVEL_1, SIMULATOR, Capability, Case
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.errors import ShipcosimError
@@ -55,7 +55,9 @@ def test_two_azimuths_in_line_hold_twice_what_one_holds_and_the_race_on_a_dead_o
 
     alone = from_ahead([fore], [aft])
     assert alone == pytest.approx(
-        0.9 * fore.ahead / -(1.25 * level_1_loads(HULL, CONDITIONS[6], DIRECTIONS)[0, 0])
+        0.9
+        * fore.ahead
+        / -(1.25 * sum(level_1_parts(HULL, CONDITIONS[6], DIRECTIONS).values())[0, 0])
     )
     assert from_ahead([fore, aft], []) == pytest.approx(2.0 * alone)
     assert from_ahead([fore], [near]) == pytest.approx(0.531 * alone, rel=1e-3)

@@ -22,7 +22,9 @@ def tiny(monkeypatch):
         samples=8,
         schedule=Schedule(most_epochs=1),
     )
-    monkeypatch.setitem(learn.COMPONENTS, "allocator", {"tiny": kinds._paper_v(recipe)})
+    monkeypatch.setitem(
+        learn.COMPONENTS, "allocator", kinds._kinds({"tiny": recipe}, paper_v.train)
+    )
 
 
 def train(*arguments):

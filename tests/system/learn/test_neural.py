@@ -12,9 +12,11 @@ from ships import parameters, ship
 from shipcosim.learn import neural
 from shipcosim.learn.requests import recorded_requests
 from shipcosim.learn.training import repeatable
-from shipcosim.models.allocation.neural_named import NeuralParameters, units_of
-from shipcosim.models.allocation.neural_units import NeuralUnitsParameters
-from shipcosim.models.allocation.neural_units import units_of as numbered_units_of
+from shipcosim.models.allocation.neural_allocator import (
+    NeuralParameters,
+    NeuralUnitsParameters,
+    units_of,
+)
 from shipcosim.models.core.networks import read_arrays
 
 FMUS = {
@@ -62,7 +64,7 @@ def test_runs_that_choose_the_weights_are_not_trained_on():
 @pytest.mark.parametrize(("kind", "diameter"), [("neural", 0.0), ("neural-slipstreams", 1.9)])
 def test_recipe_has_the_units_of_the_ship(kind, diameter):
     made = replace(parameters(NeuralParameters, component="allocator"), azimuth_diameter=diameter)
-    same(neural.RECIPES[kind].units, units_of(made, neural.POWER))
+    same(neural.RECIPES[kind].units, units_of(made, neural.POWER)[0])
 
 
 def test_recipe_of_four_azimuths_has_her_units():
@@ -73,7 +75,7 @@ def test_recipe_of_four_azimuths_has_her_units():
     )
     same(
         neural.RECIPES["neural-four-azimuths"].units,
-        numbered_units_of(made, (neural.POWER[0],) * 6)[0],
+        units_of(made, (neural.POWER[0],) * 6)[0],
         "azimuth",
     )
 

@@ -9,6 +9,7 @@ from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 
 from shipcosim.errors import ShipcosimError
+from shipcosim.fmi import Parameter
 from shipcosim.fmi.export.builder import build_fmu
 from shipcosim.native import Untraceable
 from shipcosim.native.export import checking, packing
@@ -190,13 +191,9 @@ def test_a_build_that_differs_from_python_is_refused_with_variable_and_step(
 
 
 def test_random_parameters_stay_within_their_bounds():
-    class Variable:
-        name, causality, type, start, minimum, maximum = "a", "parameter", "Real", 1.0, 0.999, 1.001
-
-        def is_left_out(self, value):
-            return False
-
-    cls = type("Cls", (), {"variables": (Variable(),)})
+    variable = Parameter(1.0, "m", "a length", minimum=0.999, maximum=1.001)
+    variable.name = "a"
+    cls = type("Cls", (), {"variables": (variable,)})
     random = np.random.default_rng(3)
     drawn = [checking._near(cls, {}, random)["a"] for _ in range(200)]
     assert min(drawn) == 0.999 and max(drawn) == 1.001 and len(set(drawn)) > 2

@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from shipcosim.calls.studies import PlannedStudy
     from shipcosim.results.study import StudyResult
 
-__all__ = ["serve"]
-
 
 def serve(study: PlannedStudy, swept: StudyResult, port: int = 0) -> None:
     """Show the page of a study, where a click on a row simulates it, until Ctrl-C.

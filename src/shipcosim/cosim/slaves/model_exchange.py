@@ -184,11 +184,6 @@ class ModelExchange(LibrarySlave):
         return self._n
 
     @property
-    def has_indicators(self) -> bool:
-        """True if it has event indicators; known from the end of the initialisation on."""
-        return self._n_indicators > 0
-
-    @property
     def tolerance(self) -> float:
         """Relative tolerance of the solver that its default experiment asks for."""
         return self._description.experiment.get("tolerance", TOLERANCE)

@@ -37,12 +37,11 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import LabelError, Labels
+    from shipcosim.diagnose.comparison.label_hypotheses import LabelError
+    from shipcosim.diagnose.comparison.labels import Labels
     from shipcosim.diagnose.comparison.missing_loads import MissingLoad
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
-
-__all__ = ["ComparedLog", "LogComparison", "compared", "ratio_finding", "with_crude"]
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,6 @@ import numpy as np
 from shipcosim.diagnose.comparison.causality import causal_support
 from shipcosim.diagnose.comparison.commanded import commanded_by, late
 from shipcosim.diagnose.comparison.label_hypotheses import (
-    LabelError,
     LabelHypothesis,
     changes_of,
     driven,
@@ -51,8 +50,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
-
-__all__ = ["LabelError", "LabelHypothesis", "Labels", "read_labels"]
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,6 @@ from shipcosim.diagnose.log.roles import ROLES, role_of
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import toml_of
 
-__all__ = ["Channel", "ChannelFile", "read_channels"]
-
 
 class Channel(BaseModel):
     """Where a role comes from: ``sign * column + offset``, in `unit`, then turned into the role's unit."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["metres_per_degree"]
-
 EQUATORIAL_RADIUS = 6378137.0  # [m, 1] WGS 84
 ECCENTRICITY_SQUARED = 6.69437999014e-3
 

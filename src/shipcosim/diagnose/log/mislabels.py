@@ -13,33 +13,6 @@ from shipcosim.diagnose.log.checks.samples import quantum
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
 
-__all__ = [
-    "CHANNEL_UNITS",
-    "HEADING_FROM_EAST",
-    "HEADING_LABELS",
-    "KNOT",
-    "MISLABELS",
-    "POSITION",
-    "POSITION_IN_DEGREES",
-    "POSITION_LABELS",
-    "THRUSTER_LABELS",
-    "TURNED",
-    "VELOCITY",
-    "WIND_LABELS",
-    "Mislabel",
-    "exchanged",
-    "finding_of",
-    "mislabel_in",
-    "mislabel_of",
-    "mislabel_of_unit",
-    "negative",
-    "possible",
-    "swap_of",
-    "turned_grid",
-    "undone",
-    "velocity_frame",
-]
-
 THRUSTER_LABELS = ("channel_swap", "sign")
 """What can be wrong of the labels of what drives thrusters."""
 DRIVES = ("_rpm", "_azimuth", "_thrust")

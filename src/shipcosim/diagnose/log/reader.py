@@ -29,8 +29,6 @@ from shipcosim.series import make_table
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["columns_of", "read_log"]
-
 
 _FARTHEST = {
     "latitude": 90.0,

@@ -13,8 +13,6 @@ from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["handled", "remarks"]
-
 
 def remarks(log: xarray.Dataset) -> list[str]:
     """One sentence for everything that a repair changes or leaves out, faults of the data apart.

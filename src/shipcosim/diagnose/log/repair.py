@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.finding import Finding
 
-__all__ = ["rate_of", "read_anew", "repaired"]
 
 CUT_OUT = ("gap", "heading_wrap")
 

@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-__all__ = ["NAVIGATION", "OVER_EARTH", "ROLES", "Role", "role_of"]
-
 
 @dataclass(frozen=True)
 class Role:

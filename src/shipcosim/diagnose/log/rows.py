@@ -12,8 +12,6 @@ from shipcosim.diagnose.log.thresholds import UNEVEN
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["arrays_of", "inside", "usable_rows", "usual_distance", "usual_step"]
-
 
 def usable_rows(time: np.ndarray) -> np.ndarray:
     """Rows in order of time, without those that have no time or one that was there already: (k,) indices."""

@@ -15,8 +15,6 @@ from shipcosim.diagnose.log.channels import Channel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table, read_columns
 
-__all__ = ["channels_of_run", "run_as_log"]
-
 _SHIP = {
     "north": ("x", "m"),
     "east": ("y", "m"),

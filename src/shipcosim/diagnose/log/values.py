@@ -21,15 +21,6 @@ from shipcosim.diagnose.log.thresholds import SHORTEST_STEP
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.series import conversion
 
-__all__ = [
-    "CLOCK_NUMBER",
-    "LARGEST",
-    "TEN_MILLIONTHS",
-    "WrongUnit",
-    "heading_of_quaternion",
-    "values_of",
-]
-
 CLOCK_NUMBER = "hhmmss"
 """Spelling of the unit of clock times as numbers: 123519.5 is 12:35:19.5."""
 TEN_MILLIONTHS = "1e-7 deg"

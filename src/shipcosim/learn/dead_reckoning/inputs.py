@@ -88,9 +88,13 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
     found = {}
     # Mean information over the shortest, middle and longest lag that a network sees.
     for axis, velocity in (("surge", m["u"]), ("sway", m["v"])):
+        later = velocity[:, HISTORY:].ravel()
         lagged = {
             name: np.mean(
-                [_lagged(signals[name], velocity, lag) for lag in (1, HISTORY // 2, HISTORY)]
+                [
+                    mutual_information(signals[name][:, HISTORY - lag : -lag].ravel(), later)
+                    for lag in (1, HISTORY // 2, HISTORY)
+                ]
             )
             for name in OF_AXIS[axis]
         }
@@ -99,10 +103,3 @@ def table(record: Record, features: np.ndarray) -> dict[str, dict[str, float]]:
         most = max(lagged.values())
         found[axis] = {name: float((one - least) / (most - least)) for name, one in lagged.items()}
     return found
-
-
-def _lagged(signal, velocity, lag):
-    """Mutual information of a signal with the velocity so many samples later."""
-    return mutual_information(
-        signal[:, HISTORY - lag : -lag].ravel(), velocity[:, HISTORY:].ravel()
-    )

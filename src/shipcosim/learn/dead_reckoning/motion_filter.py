@@ -25,23 +25,30 @@ MASS_SURGE, MASS_SWAY = (
     10.18e6 + 7.068e6,
 )  # kg, with added mass
 KNOWN = {
-    **{"bow": 176e3 / 204.0**2 / MASS_SWAY, "stern": 124e3 / 276.0**2 / MASS_SWAY},
-    **{"ahead": 378e3 / 28.7**2 / MASS_SURGE, "astern": 245.7e3 / 21.5**2 / MASS_SURGE},
-    **{"surge_time": MASS_SURGE / 3.0e5, "sway_time": MASS_SWAY / 5.5e5},
-    **{"wind_surge_1": -169.0 / MASS_SURGE, "wind_surge_3": 9.8 / MASS_SURGE},
-    **{"wind_sway_1": -581.0 / MASS_SWAY, "wind_sway_3": -31.0 / MASS_SWAY},
+    "bow": 176e3 / 204.0**2 / MASS_SWAY,
+    "stern": 124e3 / 276.0**2 / MASS_SWAY,
+    "ahead": 378e3 / 28.7**2 / MASS_SURGE,
+    "astern": 245.7e3 / 21.5**2 / MASS_SURGE,
+    "surge_time": MASS_SURGE / 3.0e5,
+    "sway_time": MASS_SWAY / 5.5e5,
+    "wind_surge_1": -169.0 / MASS_SURGE,
+    "wind_surge_3": 9.8 / MASS_SURGE,
+    "wind_sway_1": -581.0 / MASS_SWAY,
+    "wind_sway_3": -31.0 / MASS_SWAY,
 }
 """The model as the files of ssp/ships/osv have it, which a test holds: what a filter knows that learned nothing."""
 GAINS = {
-    **{"position_by_position": 0.06, "position_by_velocity": 0.2, "velocity_by_position": 0.002},
-    **{"velocity_by_velocity": 0.06, "load_by_position": 1e-5, "load_by_velocity": 5e-4},
-    **{
-        "position_in_sea": 1.0,
-        "velocity_in_sea": 1.0,
-        "load_in_sea": 1.0,
-        "load_time": 100.0,
-        "mean_time": 200.0,
-    },
+    "position_by_position": 0.06,
+    "position_by_velocity": 0.2,
+    "velocity_by_position": 0.002,
+    "velocity_by_velocity": 0.06,
+    "load_by_position": 1e-5,
+    "load_by_velocity": 5e-4,
+    "position_in_sea": 1.0,
+    "velocity_in_sea": 1.0,
+    "load_in_sea": 1.0,
+    "load_time": 100.0,
+    "mean_time": 200.0,
 }
 """Gains at the start: chosen by hand, for poles at some 5 to 60 s."""
 SIGNED = ("wind_surge_1", "wind_surge_3", "wind_sway_1", "wind_sway_3")

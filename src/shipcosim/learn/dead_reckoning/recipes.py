@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from shipcosim.learn.dead_reckoning.motion_filter import GAINS, KNOWN, reckoned
 from shipcosim.learn.dead_reckoning.regions import TIMES, calibrated
 from shipcosim.learn.dead_reckoning.worlds import CALIBRATION, TRAINING, Record
 from shipcosim.learn.results import Trained
-from shipcosim.learn.training import Progress
+from shipcosim.learn.training import Progress, part_of
 from shipcosim.models.prediction import motion_filter as filter_law
 from shipcosim.models.prediction import velocity_network as network_law
 from shipcosim.models.prediction.motion_filter import FilterNumbers
@@ -57,7 +58,7 @@ def train(name: str, progress: Progress, size: Size | None = None) -> Trained:
     name : str
         One of `UNLEARNED`, `FILTER` or `paper_ii.RECIPES`.
     progress : callable
-        Is told how far it is, in hundredths.
+        Is told how far it is, in thousandths.
     size : Size, optional
         How much is trained on.
 
@@ -111,11 +112,11 @@ STILL = {
 def _filter(progress, size):
     """Train the filter on drills and calibrate its region."""
     # Sail the drills, then fit the filter to them.
-    record = _recorded(size.training, size.duration, _share(progress, 0, 35), worlds.DRILLS)
-    design, epochs = motion_filter.fitted(record, _share(progress, 35, 45))
+    record = _recorded(size.training, size.duration, part_of(progress, 0.0, 0.35), worlds.DRILLS)
+    design, epochs = motion_filter.fitted(record, part_of(progress, 0.35, 0.1))
     # Calibrate the region in other worlds than those of the training.
     apart = _recorded(
-        size.calibration, size.calibrated_for, _share(progress, 45, 100), worlds.DRILLS
+        size.calibration, size.calibrated_for, part_of(progress, 0.45, 0.55), worlds.DRILLS
     )
     arrays = _arrays(design) | _region(apart, reckoned(apart, filter_law, design))
     # The report shows each parameter before and after the fit.
@@ -130,11 +131,11 @@ def _networks(name, progress, size):
     """Train the networks on records with GNSS and calibrate their region."""
     # The paper trains with GNSS available: no losses in the records.
     recipe = paper_ii.RECIPES[name]
-    record = _recorded(size.training, size.duration, _share(progress, 0, 40), ())
-    arrays, epochs = paper_ii.trained(recipe, record, _share(progress, 40, 60))
+    record = _recorded(size.training, size.duration, part_of(progress, 0.0, 0.4), ())
+    arrays, epochs = paper_ii.trained(recipe, record, part_of(progress, 0.4, 0.2))
     # The region is calibrated in drills of other worlds, as for the filter.
     apart = _recorded(
-        size.calibration, size.calibrated_for, _share(progress, 60, 100), worlds.DRILLS
+        size.calibration, size.calibrated_for, part_of(progress, 0.6, 0.4), worlds.DRILLS
     )
     arrays |= _region(apart, reckoned(apart, network_law, network_law.design(arrays)))
     # Mutual information by input, to compare with Table III of the paper.
@@ -192,17 +193,8 @@ def _arrays(design: FilterNumbers) -> dict[str, np.ndarray]:
     return {name: np.array(float(one)) for name, one in design._asdict().items()}
 
 
-def _share(progress: Progress, first: int, last: int) -> Progress:
-    """Tells part of the way as hundredths of the whole."""
-
-    def told(done: int, total: int) -> None:
-        progress(round(first + (last - first) * done / max(total, 1)), 100)
-
-    return told
-
-
 KINDS: dict[str, tuple[str, Callable[[Progress], Trained]]] = {
-    name: (about, lambda progress, name=name: train(name, progress))
+    name: (about, partial(train, name))
     for name, about in (
         (FILTER, DESCRIPTION),
         *((name, recipe.description) for name, recipe in paper_ii.RECIPES.items()),

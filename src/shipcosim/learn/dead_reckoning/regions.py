@@ -2,7 +2,8 @@
 
 import numpy as np
 
-COVERED = 0.9
+from shipcosim.learn.regions import conformal
+
 TIMES = tuple(range(0, 61, 5))  # s
 SEA_SHARES = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0)  # s/m, tried
 
@@ -26,10 +27,13 @@ def calibrated(lost_for: np.ndarray, sea: np.ndarray, error: np.ndarray) -> dict
     share is the one with the smallest mean radius. Radii never fall with time.
     """
     # Choose how much the sea widens the region: the share with the smallest mean radius.
-    tried = [(_mean_radius(lost_for, sea, error, share), share) for share in SEA_SHARES]
-    share = min(tried)[1]
-    # Radii never fall with time, though their samples scatter.
-    radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
+    tried = []
+    for share in SEA_SHARES:
+        # Radii never fall with time, though their samples scatter.
+        radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
+        sizes = np.interp(lost_for, TIMES, radii) * (1.0 + share * np.sqrt(sea))
+        tried.append((float(np.mean(sizes)), share, radii))
+    _, share, radii = min(tried, key=lambda one: one[:2])
     return {
         "region.times": np.array(TIMES, dtype=float),
         "region.radii": radii,
@@ -44,12 +48,5 @@ def _radii(lost_for, sea, error, share):
     found = []
     for time in TIMES:
         # Conformal quantile, rank ceil(0.9 (n + 1)): it covers 90 % of new cases.
-        near = np.sort(scaled[abs(lost_for - time) < 2.5])
-        found.append(near[min(len(near) - 1, int(np.ceil(COVERED * (len(near) + 1))) - 1)])
+        found.append(conformal(scaled[abs(lost_for - time) < 2.5], more=1))
     return np.array(found)
-
-
-def _mean_radius(lost_for, sea, error, share):
-    """Mean radius over all cases, to compare sea shares."""
-    radii = np.maximum.accumulate(_radii(lost_for, sea, error, share))
-    return float(np.mean(np.interp(lost_for, TIMES, radii) * (1.0 + share * np.sqrt(sea))))

@@ -43,28 +43,32 @@ SHIP: Mapping[str, float | str] = tomllib.loads(
 )
 """The true ship where she differs from her parameter set, within its tolerances or in a form that it does not have."""
 SENSORS: Mapping[str, float | str] = {
-    **{"sensors.period": 0.2, "sensors.position_period": 0.2, "sensors.position_drift_std": 0.1},
-    **{
-        "sensors.position_noise_std": 0.2,
-        "sensors.velocity_noise_std": 0.02,
-        "sensors.heading_drift_std": "0.1 deg",
-    },
-    **{"sensors.heading_noise_std": "0.1 deg", "sensors.yaw_rate_noise_std": "0.05 deg/s"},
-    **{"sensors.wind_speed_noise": 0.02, "sensors.wind_from_noise_std": "1 deg"},
+    "sensors.period": 0.2,
+    "sensors.position_period": 0.2,
+    "sensors.position_drift_std": 0.1,
+    "sensors.position_noise_std": 0.2,
+    "sensors.velocity_noise_std": 0.02,
+    "sensors.heading_drift_std": "0.1 deg",
+    "sensors.heading_noise_std": "0.1 deg",
+    "sensors.yaw_rate_noise_std": "0.05 deg/s",
+    "sensors.wind_speed_noise": 0.02,
+    "sensors.wind_from_noise_std": "1 deg",
 }
 """Noise of Table I of paper II; of velocities, yaw rate and wind, which it does not print, as of the DP ship."""
 UNITS = ("bow_1", "bow_2", "stern_1", "stern_2", "port", "starboard")
 MEASURED: Mapping[str, str] = {
-    **{"x": "sensors.x_1_meas", "y": "sensors.y_1_meas", "psi": "sensors.psi_1_meas"},
-    **{"u": "sensors.u_1_meas", "v": "sensors.v_1_meas"},
-    **{"wind_speed": "sensors.wind_speed_meas", "wind_from": "sensors.wind_from_meas"},
+    "x": "sensors.x_1_meas",
+    "y": "sensors.y_1_meas",
+    "psi": "sensors.psi_1_meas",
+    "u": "sensors.u_1_meas",
+    "v": "sensors.v_1_meas",
+    "wind_speed": "sensors.wind_speed_meas",
+    "wind_from": "sensors.wind_from_meas",
     **{f"command_{number}": f"{unit}.command" for number, unit in enumerate(UNITS, 1)},
     **{f"asked_{number}": f"allocator.thrust_cmd_{number}" for number in range(1, 7)},
-    **{
-        "valid": "sensors.position_1_valid",
-        "second_x": "sensors.x_2_meas",
-        "second_y": "sensors.y_2_meas",
-    },
+    "valid": "sensors.position_1_valid",
+    "second_x": "sensors.x_2_meas",
+    "second_y": "sensors.y_2_meas",
 }
 """What is aboard, by our name: the signal that measures it. The second receiver is logged, and DP does not see it."""
 RECKONED: Mapping[str, str] = {

@@ -14,7 +14,6 @@ from shipcosim.learn.training import Progress, repeatable
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.prediction import docking
 from shipcosim.models.prediction.docking import CUT
-from shipcosim.models.prediction.helm import LONGEST
 from shipcosim.models.ship.hull import HullParameters
 
 HEADING = 10.0
@@ -85,12 +84,6 @@ def targets(replay: Replay) -> np.ndarray:
     return np.moveaxis(found, (0, 1), (2, 3))
 
 
-def basis() -> torch.Tensor:
-    """Polynomials in time by which the outputs correct the path."""
-    share = np.arange(1, LONGEST + 1) / LONGEST
-    return torch.tensor(np.stack([share**power for power in docking.POWERS]), dtype=torch.float32)
-
-
 def distance(given: torch.Tensor, target: torch.Tensor, polynomials: torch.Tensor) -> torch.Tensor:
     """Mean remaining position error plus weighted heading error. [m]
 
@@ -101,7 +94,7 @@ def distance(given: torch.Tensor, target: torch.Tensor, polynomials: torch.Tenso
     target : (m, n, 3, LONGEST) tensor
         As `targets`.
     polynomials : (k, LONGEST) tensor
-        As `basis`.
+        As `docking.basis`.
     """
     # Error that remains after the correction, a polynomial in the horizon.
     left = target - given.unflatten(-1, (3, len(docking.POWERS))) @ polynomials
@@ -146,7 +139,7 @@ def fit(
     x, held = (tensor(np.clip((one[0] - mean) / std, -CUT, CUT)) for one in (found, choice))
     y = tensor(found[1])
     sizes = tensor(scale())
-    polynomials = basis()
+    polynomials = tensor(docking.basis())
     # Add the mirror image of every docking: port and starboard then give mirrored corrections.
     x = torch.cat((x, (x * tensor(MIRROR_SIGNS))[..., torch.tensor(MIRROR_ORDER)]))
     y = torch.cat((y, y * tensor(np.array([1.0, -1.0, -1.0])).reshape(1, 1, 3, 1)))
@@ -178,7 +171,7 @@ def standard(found: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def given_by(trained: docking.Trained, found: np.ndarray) -> np.ndarray:
     """Outputs of members over (m, n) features, from empty memories: (members, m, n, 3 k) array."""
-    memory = docking.empty(trained, found.shape[:1])
+    memory = ()
     rows = []
     inputs = docking.standardised(found, trained)
     for k in range(found.shape[1]):

@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 
-from shipcosim.cosim import simulate, system_of
+from shipcosim.cosim import simulate
 from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
 from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
 from shipcosim.learn.true_ships import (
@@ -25,6 +25,7 @@ from shipcosim.learn.true_ships import (
     TrueLoads,
     factors,
     sailed,
+    system_with,
 )
 from shipcosim.models.core.tables import text
 from shipcosim.scenario import Scenario
@@ -248,11 +249,7 @@ def true_ship(distance: float = 1.0) -> dict[str, float | str]:
 @lru_cache(maxsize=1)
 def _without_predictor() -> System:
     """The system without the predictor, which acts on nothing."""
-    system = system_of(
-        Scenario(
-            system=SYSTEM, parameters=[PARAMETERS], components=TRUE, stop_time=1.0, step_size=STEP
-        )
-    )
+    system = system_with(SYSTEM, PARAMETERS, TRUE)
     # Remove the component and all connections into it.
     components = {name: one for name, one in system.components.items() if name != PREDICTOR}
     connections = tuple(one for one in system.connections if one.target[0] != PREDICTOR)
@@ -262,9 +259,7 @@ def _without_predictor() -> System:
 @lru_cache(maxsize=1)
 def _tolerated() -> tuple[tuple[str, float, float], ...]:
     """Name, value and tolerance of each parameter of ship and thrusters with a tolerance."""
-    system = system_of(
-        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
-    )
+    system = system_with(SYSTEM, PARAMETERS)
     found = []
     for name in ("vessel", "port", "starboard", "tunnel"):
         component = system.components[name]

@@ -7,7 +7,7 @@ import numpy as np
 import torch
 
 from shipcosim.learn.networks import Recurrent
-from shipcosim.learn.training import Progress
+from shipcosim.learn.training import BestWeights, Descent, Progress
 
 Loss = Callable[[torch.Tensor, torch.Tensor], torch.Tensor]
 """From outputs and targets, (m, n, ...), to a mean."""
@@ -65,13 +65,10 @@ def _fit_one(network, found, choice, loss, recipe, progress):
     x, y = found
     batches = len(x) // recipe.batch
     steps = recipe.epochs * batches
-    # AdamW with a learning rate that falls as a cosine over all steps.
-    optimiser = torch.optim.AdamW(
-        network.parameters(), recipe.learning_rate, weight_decay=recipe.decay
-    )
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, steps)
-    best = np.inf
-    kept = network.state_dict()
+    # AdamW with a learning rate that falls as a cosine over all steps; a network over 1000 s can have large gradients.
+    adam = torch.optim.AdamW(network.parameters(), recipe.learning_rate, weight_decay=recipe.decay)
+    descent = Descent(adam, steps, clipped=True)
+    best = BestWeights(network.parameters())
     history = []
     for epoch in range(recipe.epochs):
         total = 0.0
@@ -79,29 +76,16 @@ def _fit_one(network, found, choice, loss, recipe, progress):
         for number, rows in enumerate(torch.randperm(len(x)).split(recipe.batch)[:batches]):
             network.train()
             given = network(x[rows] + recipe.noise * torch.randn(x[rows].shape))
-            total += _descend(network, optimiser, loss(given, y[rows]))
-            schedule.step()
+            total += descent.step(loss(given, y[rows]))
             progress(epoch * batches + number + 1, steps)
-        # Judge the epoch on other dockings, and remember the best weights.
+        # Judge the epoch on other dockings.
         left = left_over(network, choice, loss)
         history.append({"training": total / batches, "choices": left})
-        if left < best:
-            best = left
-            kept = {name: value.clone() for name, value in network.state_dict().items()}
+        best.judge(left)
     # Early stopping: return to the best epoch.
-    network.load_state_dict(kept)
+    best.restore()
     network.eval()
     return history
-
-
-def _descend(network, optimiser, loss):
-    """One step of the optimiser; the loss before it."""
-    optimiser.zero_grad()
-    loss.backward()
-    # Clip the gradient: a recurrent network over 1000 s can have very large ones.
-    torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
-    optimiser.step()
-    return float(loss.detach())
 
 
 def left_over(network: Recurrent, choice: tuple[torch.Tensor, torch.Tensor], loss: Loss) -> float:

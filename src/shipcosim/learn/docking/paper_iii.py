@@ -164,7 +164,7 @@ def expected(arrays: Mapping[str, np.ndarray], found: np.ndarray) -> np.ndarray:
     """
     # Second by second with its memory, as the predictor runs aboard.
     ensemble = paper_iii.ensemble_of(arrays)
-    memory = paper_iii.empty(ensemble, found.shape[:1])
+    memory = ()
     rows = []
     for k in range(found.shape[1]):
         given, memory = paper_iii.errors(found[:, k], memory, ensemble)

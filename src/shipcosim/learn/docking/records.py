@@ -6,22 +6,24 @@ from dataclasses import dataclass
 import numpy as np
 
 KNOWN: Mapping[str, str] = {
-    **{
-        "x_meas": "sensors.x_1_meas",
-        "y_meas": "sensors.y_1_meas",
-        "psi_meas": "sensors.psi_1_meas",
-    },
-    **{"u_meas": "sensors.u_1_meas", "v_meas": "sensors.v_1_meas", "r_meas": "sensors.r_meas"},
-    **{"wind_speed_meas": "sensors.wind_speed_meas", "wind_from_meas": "sensors.wind_from_meas"},
-    **{
-        "port_thrust_cmd": "helmsman.port_thrust_cmd",
-        "port_azimuth_cmd": "helmsman.port_azimuth_cmd",
-    },
-    **{"port_rpm": "port.rpm", "port_azimuth": "port.azimuth_feedback"},
-    **{"starboard_thrust_cmd": "helmsman.starboard_thrust_cmd"},
-    **{"starboard_azimuth_cmd": "helmsman.starboard_azimuth_cmd"},
-    **{"starboard_rpm": "starboard.rpm", "starboard_azimuth": "starboard.azimuth_feedback"},
-    **{"tunnel_thrust_cmd": "helmsman.tunnel_thrust_cmd", "tunnel_rpm": "tunnel.rpm"},
+    "x_meas": "sensors.x_1_meas",
+    "y_meas": "sensors.y_1_meas",
+    "psi_meas": "sensors.psi_1_meas",
+    "u_meas": "sensors.u_1_meas",
+    "v_meas": "sensors.v_1_meas",
+    "r_meas": "sensors.r_meas",
+    "wind_speed_meas": "sensors.wind_speed_meas",
+    "wind_from_meas": "sensors.wind_from_meas",
+    "port_thrust_cmd": "helmsman.port_thrust_cmd",
+    "port_azimuth_cmd": "helmsman.port_azimuth_cmd",
+    "port_rpm": "port.rpm",
+    "port_azimuth": "port.azimuth_feedback",
+    "starboard_thrust_cmd": "helmsman.starboard_thrust_cmd",
+    "starboard_azimuth_cmd": "helmsman.starboard_azimuth_cmd",
+    "starboard_rpm": "starboard.rpm",
+    "starboard_azimuth": "starboard.azimuth_feedback",
+    "tunnel_thrust_cmd": "helmsman.tunnel_thrust_cmd",
+    "tunnel_rpm": "tunnel.rpm",
 }
 """Inputs of a docking predictor by their names, and the signal of the docking system that each is connected to.
 

@@ -5,19 +5,16 @@ References
 As `models.prediction.regions`.
 """
 
-from math import ceil
-
 import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.learn.docking.inputs import Replay, ahead
 from shipcosim.learn.docking.predictions import Places, Predicted, own_record
+from shipcosim.learn.regions import conformal
 from shipcosim.models.prediction import docking
 
 HORIZONS = (10, 20, 30)
 """Of the regions. [s]"""
-SHARE = 0.9
-"""Of the cases that a region is to have inside. [1]"""
 
 
 def misses(places: Places, after: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
@@ -63,7 +60,5 @@ def calibrated(predicted: Predicted, replay: Replay) -> np.ndarray:
     # Score = error over factor. Its quantile at rank ceil(0.9 n) is the width (split conformal).
     for found, factor in zip(misses(predicted.places, after), factors, strict=True):
         for one in found:
-            # Starts whose horizon lies beyond the record have no error.
-            scores = np.sort((one / factor)[np.isfinite(one)])
-            widths.append(scores[min(len(scores), ceil(SHARE * len(scores))) - 1])
+            widths.append(conformal(one / factor))
     return np.array([*widths, *ordinary])

@@ -1,6 +1,6 @@
 """Steps of `shipcosim train docking`: sail dockings, learn from them, calibrate, report."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from shipcosim.learn.datasets import digest
 from shipcosim.learn.docking import distance_ensemble, dockings, paper_iii, predictions, regions
 from shipcosim.learn.docking.inputs import ShipModel, replay
 from shipcosim.learn.docking.records import Record
-from shipcosim.learn.results import Trained
+from shipcosim.learn.results import Trained, settings_of
 from shipcosim.learn.training import Progress, part_of
 from shipcosim.learn.true_ships import known_to
 from shipcosim.models.environment.wind_loads import WindParameters
@@ -103,12 +103,11 @@ def learn_ours(
     Trained
         Weights, regions of this predictor and of the kinetic one, and report.
     """
-    # Replay the records once; features and targets come from the same replay.
-    replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {
-        name: (distance_ensemble.features(one, model.hull), distance_ensemble.targets(one))
-        for name, one in replayed.items()
-    }
+
+    def inputs(one):
+        return distance_ensemble.features(one, model.hull)
+
+    replayed, pairs = _replayed(records, model, inputs, distance_ensemble.targets)
     # Train on some dockings; others decide which epoch to keep.
     arrays, epochs = distance_ensemble.fit(pairs["training"], pairs["choices"], recipe, progress)
     # Calibrate regions on dockings of their own: errors on training data are too small.
@@ -117,9 +116,7 @@ def learn_ours(
     arrays["widths"] = regions.calibrated(predicted, calibration)
     arrays["kinetic_widths"] = regions.calibrated(predictions.kinetic(calibration), calibration)
     names = ("members", "width", "layers", "epochs", "batch", "learning_rate", "decay", "noise")
-    settings = {name: getattr(recipe, name) for name in names} | {
-        "optimiser": "AdamW, cosine schedule"
-    }
+    settings = settings_of(recipe, names, "AdamW, cosine schedule")
     data = about(records, pairs["training"][0])
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
 
@@ -142,11 +139,7 @@ def learn_paper_iii(
     Trained
         Weights, regions and report.
     """
-    # Replay the records once; inputs and targets come from the same replay.
-    replayed = {name: replay(some, model) for name, some in records.items()}
-    pairs = {
-        name: (paper_iii.inputs_of(one), paper_iii.targets(one)) for name, one in replayed.items()
-    }
+    replayed, pairs = _replayed(records, model, paper_iii.inputs_of, paper_iii.targets)
     # Search settings and train; other dockings decide.
     arrays, epochs, tried = paper_iii.fit(pairs["training"], pairs["choices"], recipe, progress)
     # Calibrate regions on dockings of their own: errors on training data are too small.
@@ -154,9 +147,7 @@ def learn_paper_iii(
     predicted = predictions.by_paper_iii(calibration, arrays)
     arrays["widths"] = regions.calibrated(predicted, calibration)
     names = ("members", "dropout", "epochs", "batch", "trial_epochs")
-    settings = {name: getattr(recipe, name) for name in names} | {
-        "optimiser": "Adam, cosine schedule"
-    }
+    settings = settings_of(recipe, names, "Adam, cosine schedule")
     # The report lists every setting that the search tried, with its loss.
     for one, loss in tried:
         settings[
@@ -166,11 +157,18 @@ def learn_paper_iii(
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, NOTES)
 
 
+def _replayed(records, model, inputs, targets):
+    """Replayed records, and inputs and targets of the same replay, by what they are for."""
+    replayed = {name: replay(some, model) for name, some in records.items()}
+    return replayed, {name: (inputs(one), targets(one)) for name, one in replayed.items()}
+
+
 def about(records: dict[str, list[Record]], inputs: np.ndarray) -> dict[str, Any]:
     """Describe the data for the report."""
-    found = {name: _seeds([record.seed for record in some]) for name, some in records.items()}
+    found = {}
+    for name, some in records.items():
+        seeds = [record.seed for record in some]
+        found[name] = (
+            f"{len(seeds)} that end in time, of seeds {min(seeds)} to {max(seeds)}, learn/docking/dockings"
+        )
     return found | {"SHA-256 of the inputs to train on, rounded": digest(np.round(inputs, 3) + 0.0)}
-
-
-def _seeds(seeds: Sequence[int]) -> str:
-    return f"{len(seeds)} that end in time, of seeds {min(seeds)} to {max(seeds)}, learn/docking/dockings"

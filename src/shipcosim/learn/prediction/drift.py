@@ -12,7 +12,7 @@ import numpy as np
 import torch
 
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, errors, followed
-from shipcosim.learn.training import Progress
+from shipcosim.learn.training import Descent, Progress
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.prediction.own_model import COEFFICIENT, COEFFICIENTS, STATES, Learned
 
@@ -173,16 +173,9 @@ def fit(
     at = torch.zeros(SIZE, dtype=torch.float64, requires_grad=True)
     history = []
     # All worlds in each step; the rate falls as a cosine.
-    optimiser = torch.optim.Adam([at], lr=recipe.learning_rate)
-    schedule = torch.optim.lr_scheduler.CosineAnnealingLR(optimiser, recipe.steps)
+    # The gradient passes minutes of filter and prediction, so it is clipped.
+    descent = Descent(torch.optim.Adam([at], lr=recipe.learning_rate), recipe.steps, clipped=True)
     for done in range(1, recipe.steps + 1):
-        optimiser.zero_grad()
-        value = loss(at, sailed, ship, recipe)
-        value.backward()
-        # Clip the gradient: it passes minutes of filter and prediction.
-        torch.nn.utils.clip_grad_norm_([at], 1.0)
-        optimiser.step()
-        schedule.step()
-        history.append({"all worlds": float(value.detach())})
+        history.append({"all worlds": descent.step(loss(at, sailed, ship, recipe))})
         progress(done, recipe.steps)
     return at.detach().numpy().copy(), history

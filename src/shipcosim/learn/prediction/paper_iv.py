@@ -12,7 +12,7 @@ import numpy as np
 import torch
 
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, known_of, mapped
-from shipcosim.learn.training import Progress, repeatable
+from shipcosim.learn.training import BestWeights, Descent, Progress, repeatable
 from shipcosim.models.prediction import paper_iv
 
 NOTES = (
@@ -140,19 +140,15 @@ def fit(
         weights = first_weights(
             (x.shape[1], recipe.width, recipe.width, y.shape[1]), recipe.members
         )
-    optimiser = torch.optim.Adam(weights, lr=recipe.learning_rate)
+    descent = Descent(torch.optim.Adam(weights, lr=recipe.learning_rate))
+    best = BestWeights(weights)
     epochs = []
-    best = np.inf
-    kept = [one.detach().clone() for one in weights]
-    since = 0
     for number in range(recipe.most_epochs):
         # One epoch of mini-batches in random order.
         for rows in np.array_split(
             held + order.permutation(len(x) - held), (len(x) - held) // recipe.batch or 1
         ):
-            optimiser.zero_grad()
-            squares(weights, x[rows], y[rows]).backward()
-            optimiser.step()
+            descent.step(squares(weights, x[rows], y[rows]))
         # Error on training and held-out samples after the epoch.
         with torch.no_grad():
             found = {
@@ -162,14 +158,10 @@ def fit(
         epochs.append(found)
         progress(number + 1, recipe.most_epochs)
         # Keep the best weights; stop after `patience` epochs without gain.
-        since += 1
-        if found["held out"] < best:
-            best = found["held out"]
-            kept = [one.detach().clone() for one in weights]
-            since = 0
-        if since >= recipe.patience:
+        best.judge(found["held out"])
+        if best.since >= recipe.patience:
             break
-    return arrays_of(kept) | scales, epochs
+    return arrays_of(best.kept) | scales, epochs
 
 
 def first_weights(sizes: Sequence[int], members: int) -> list[torch.Tensor]:

@@ -5,30 +5,30 @@ outputs are then the factors by which it widens regions. The score is error over
 is its quantile.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import ceil
 
 import numpy as np
 
 from shipcosim import library
 from shipcosim.angles import wrap
-from shipcosim.cosim import RunOptions, simulate, system_of
-from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, STEP, SYSTEM, Record
+from shipcosim.cosim import RunOptions, simulate
+from shipcosim.learn.prediction.worlds import KNOWN, PARAMETERS, SYSTEM, Record
+from shipcosim.learn.regions import SHARE, conformal
+from shipcosim.learn.true_ships import system_with
 from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import read_system, with_values
 
-SHARE = 0.9
-"""Of the cases that a region is to have inside. [1]"""
 UNCALIBRATED = {
     **{
         f"{kind}_half_width_{horizon:.0f}": 1.0
         for kind in ("position", "heading")
         for horizon in HORIZONS
     },
-    **{"later_position_share": 1.0, "later_heading_share": 1.0},
+    "later_position_share": 1.0,
+    "later_heading_share": 1.0,
 }
 """Regions of width 1."""
 
@@ -135,7 +135,13 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
         later = []
         # Width soon after the loss, and how much wider it is later.
         for i, horizon in enumerate(HORIZONS):
-            early, rest = (_quantile(found, kind, i, level, late=late) for late in (False, True))
+            phases = [
+                np.concatenate(
+                    [getattr(s, kind)[(s.lost_for >= JUST_LOST) == late, i] for s in found]
+                )
+                for late in (False, True)
+            ]
+            early, rest = (conformal(scores, level) for scores in phases)
             widths[f"{kind}_half_width_{horizon:.0f}"] = early
             later.append(rest / early)
         # One share serves all horizons, so the largest.
@@ -143,67 +149,10 @@ def calibrated(found: Sequence[Scores]) -> dict[str, float]:
     return widths
 
 
-def coverage(
-    found: Sequence[Scores], widths: dict[str, float], *, late: bool
-) -> dict[str, list[tuple[float, float]]]:
-    """Share of the cases that are inside calibrated regions, and the mean width of these.
-
-    Parameters
-    ----------
-    found : sequence of Scores
-        One a world, of other worlds than those of the calibration.
-    widths : dict of str to float
-        As calibrated.
-    late : bool
-        Whether of predictions made later than 20 s after the loss, or of those made before.
-
-    Returns
-    -------
-    dict of str to list of two floats
-        For position and heading: share [1] and mean width [m, rad] by horizon.
-    """
-    shares = {}
-    for column, kind in enumerate(("position", "heading")):
-        shares[kind] = []
-        # Width as the predictor applies it, wider late in the drift.
-        for i, horizon in enumerate(HORIZONS):
-            width = widths[f"{kind}_half_width_{horizon:.0f}"] * (
-                widths[f"later_{kind}_share"] if late else 1.0
-            )
-            # Only predictions of this phase of the drift.
-            chosen = [(one.lost_for >= JUST_LOST) == late for one in found]
-            values = np.concatenate(
-                [getattr(one, kind)[rows, i] for one, rows in zip(found, chosen, strict=True)]
-            )
-            factors = np.concatenate(
-                [one.factors[rows, column] for one, rows in zip(found, chosen, strict=True)]
-            )
-            # Horizons beyond the record have no error; count those within the region.
-            there = np.isfinite(values)
-            shares[kind].append(
-                (float(np.mean(values[there] <= width)), float(np.mean(width * factors[there])))
-            )
-    return shares
-
-
-def _quantile(
-    found: Iterable[Scores], kind: str, horizon: int, level: float, *, late: bool
-) -> float:
-    """Quantile of the scores of all starts, early or late in the drift."""
-    values = np.concatenate(
-        [getattr(one, kind)[(one.lost_for >= JUST_LOST) == late, horizon] for one in found]
-    )
-    # Conformal rank ceil(level n), at most the largest score.
-    values = np.sort(values[np.isfinite(values)])
-    return float(values[min(len(values), ceil(level * len(values))) - 1])
-
-
 def _predictions(record: Record, fmu: str, settings: Mapping[str, float | str | bool]):
     """Table of a predictor's outputs over a record, one row a second."""
     # The predictor gets the parameters of the system's predictor that it has too.
-    nominal = system_of(
-        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
-    )
+    nominal = system_with(SYSTEM, PARAMETERS)
     system = read_system(library.find("fmu", fmu))
     known = system.components[fmu].fmu.variables
     values = {

@@ -9,7 +9,7 @@ from shipcosim.cosim import system_of
 from shipcosim.learn.datasets import digest
 from shipcosim.learn.prediction import drift, paper_iv, worlds
 from shipcosim.learn.prediction.rollouts import HORIZONS, Sailed, Ship, followed
-from shipcosim.learn.results import Trained
+from shipcosim.learn.results import Trained, settings_of
 from shipcosim.learn.training import Progress, part_of, repeatable
 from shipcosim.learn.true_ships import known_to
 from shipcosim.models.environment.wind_loads import WindParameters
@@ -137,11 +137,8 @@ def ours(
     arrays = {name: np.asarray(getattr(learned, name)) for name in Learned._fields}
     # Beyond these limits the predictor does not trust what was learned.
     arrays["limits"] = recipe.margin * limits(learned, sailed, about)
-    settings = {name: getattr(recipe, name) for name in SETTINGS}
-    settings |= {
-        "optimiser": "Adam, cosine schedule",
-        "starts of predictions after the loss (s)": drift.STARTS,
-    }
+    settings = settings_of(recipe, SETTINGS, "Adam, cosine schedule")
+    settings["starts of predictions after the loss (s)"] = drift.STARTS
     return Trained(
         arrays,
         recipe.description,
@@ -202,7 +199,7 @@ def as_paper_iv(
     inputs, targets = paper_iv.samples(aligned(records, OURS.before), ship())
     arrays, epochs = paper_iv.fit(inputs, targets, recipe, progress)
     names = ("samples", "members", "width", "batch", "most_epochs", "patience", "learning_rate")
-    settings = {name: getattr(recipe, name) for name in names} | {"optimiser": "Adam"}
+    settings = settings_of(recipe, names, "Adam")
     data = _about(recipe.seeds, inputs)
     return Trained(arrays, recipe.description, recipe.seed, data, settings, epochs, paper_iv.NOTES)
 

@@ -26,6 +26,7 @@ from shipcosim.learn.true_ships import (
     TrueLoads,
     factors,
     sailed,
+    system_with,
 )
 from shipcosim.scenario import Event, Scenario
 
@@ -36,25 +37,21 @@ TUNING = range(300, 400)
 HELD_OUT = range(8700, 8748)
 """Seeds of worlds that nobody looks at before the end."""
 KNOWN = (
-    *(
-        "x_hat",
-        "y_hat",
-        "psi_hat",
-        "u_hat",
-        "v_hat",
-        "r_hat",
-        "tau_X_bias",
-        "tau_Y_bias",
-        "tau_N_bias",
-    ),
-    *(
-        "tau_X_allocated",
-        "tau_Y_allocated",
-        "tau_N_allocated",
-        "wind_speed_meas",
-        "wind_from_meas",
-        "wind_rejected",
-    ),
+    "x_hat",
+    "y_hat",
+    "psi_hat",
+    "u_hat",
+    "v_hat",
+    "r_hat",
+    "tau_X_bias",
+    "tau_Y_bias",
+    "tau_N_bias",
+    "tau_X_allocated",
+    "tau_Y_allocated",
+    "tau_N_allocated",
+    "wind_speed_meas",
+    "wind_from_meas",
+    "wind_rejected",
 )
 """Inputs of a predictor, from the observer, the allocator and the wind sensor."""
 TRUTH = ("x", "y", "psi", "u", "v", "r")
@@ -72,14 +69,14 @@ PARAMETERS = "gunnerus-33m9"
 NOISY = tuple(
     f"sensors.{name}"
     for name in (
-        *(
-            "position_noise_std",
-            "position_drift_std",
-            "velocity_noise_std",
-            "heading_noise_std",
-            "heading_drift_std",
-        ),
-        *("yaw_rate_noise_std", "wind_speed_noise", "wind_from_noise_std"),
+        "position_noise_std",
+        "position_drift_std",
+        "velocity_noise_std",
+        "heading_noise_std",
+        "heading_drift_std",
+        "yaw_rate_noise_std",
+        "wind_speed_noise",
+        "wind_from_noise_std",
     )
 )
 """Errors of sensors that are larger or smaller than those of the parameter set."""
@@ -268,9 +265,7 @@ def _source(name: str) -> str:
 def _nominal() -> dict[str, tuple[float, float]]:
     """Value and tolerance of each number of `TOLERATED`, `NOISY` and `HULL`."""
     # Read the nominal system once; worlds differ from it.
-    system = system_of(
-        Scenario(system=SYSTEM, parameters=[PARAMETERS], stop_time=1.0, step_size=STEP)
-    )
+    system = system_with(SYSTEM, PARAMETERS)
     found = {}
     # Numbers without a tolerance keep their value.
     for signal in (*TOLERATED, *NOISY, *HULL):

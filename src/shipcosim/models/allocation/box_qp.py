@@ -150,30 +150,51 @@ def _solve_floats(request, commands, slack, start):
 
 def _multipliers_floats(request, commands, slack, x, side):
     """Multipliers at the optimum of the free commands."""
+    # Free commands count with their wanted value and their ease; those at a bound give a fixed load.
+    rows = [
+        (c[0], c[1], c[2], value, 0.0) if at else (c[0], c[1], c[2], c[4], c[3])
+        for c, at, value in zip(commands, side, x, strict=True)
+    ]
+    return multipliers_of(request, slack, rows)
+
+
+def multipliers_of(request: tuple, slack: tuple, rows: list[tuple]) -> tuple:
+    """Multipliers λ of (Σ ease effect effectᵀ + diag(slack)) λ = request - Σ effect value.
+
+    Parameters
+    ----------
+    request : tuple of three floats or (...) arrays or tensors
+        Load to be met. [N, N, N.m]
+    slack : tuple of three, like request
+        As of `solve`. [N, N, N.m]
+    rows : list of tuples of five, like request
+        Of each command its effect X, Y, N, its value, and its ease, 0 for one at a bound. [units of `Command`]
+
+    Returns
+    -------
+    tuple of three, like request
+        Multipliers. [price over N, N, N.m]
+
+    References
+    ----------
+    Lagrangian of a quadratic program with equality constraints.
+    """
+    # Remaining load, and the symmetric matrix of rows (a b c), (b d e), (c e f).
     X0, Y0, N0 = request
     a, d, f = slack
-    # Remaining load: request minus commands at bounds, and
-    # minus the free ones at their wanted value.
     b = c = e = 0.0
-    for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
-        # A command at its bound gives a fixed load.
-        if at:
-            X0 = X0 - X * value
-            Y0 = Y0 - Y * value
-            N0 = N0 - N * value
-        else:
-            X0 = X0 - X * wanted
-            Y0 = Y0 - Y * wanted
-            N0 = N0 - N * wanted
-            # Normal matrix of the free commands, sum of ease_i effect_i effect_i^T, plus the slack.
-            p = ease * X
-            q = ease * Y
-            a = a + p * X
-            b = b + p * Y
-            c = c + p * N
-            d = d + q * Y
-            e = e + q * N
-            f = f + ease * N * N
+    for X, Y, N, value, ease in rows:
+        X0 = X0 - X * value
+        Y0 = Y0 - Y * value
+        N0 = N0 - N * value
+        p = ease * X
+        q = ease * Y
+        a = a + p * X
+        b = b + p * Y
+        c = c + p * N
+        d = d + q * Y
+        e = e + q * N
+        f = f + ease * N * N
     return _three_equations(a, b, c, d, e, f, X0, Y0, N0)
 
 
@@ -227,29 +248,12 @@ def _solve_many(request, commands, slack, start):
 
 def _multipliers(request, commands, slack, x, side):
     """`_multipliers_floats` for arrays or tensors."""
-    X0, Y0, N0 = request
-    a, d, f = slack
-    b = c = e = 0.0
+    rows = []
     for (X, Y, N, ease, wanted, _, _), at, value in zip(commands, side, x, strict=True):
-        # Free commands count with their wanted value and their ease; those at a bound have ease 0.
         free = at == 0.0
-        value, ease = (
-            where(free, 0.0 * value + wanted, value),
-            where(free, 0.0 * value + ease, 0.0 * value),
-        )
-        X0 = X0 - X * value
-        Y0 = Y0 - Y * value
-        N0 = N0 - N * value
-        # Normal matrix of the free commands, sum of ease_i effect_i effect_i^T, plus the slack.
-        p = ease * X
-        q = ease * Y
-        a = a + p * X
-        b = b + p * Y
-        c = c + p * N
-        d = d + q * Y
-        e = e + q * N
-        f = f + ease * N * N
-    return _three_equations(a, b, c, d, e, f, X0, Y0, N0)
+        none = 0.0 * value
+        rows.append((X, Y, N, where(free, none + wanted, value), where(free, none + ease, none)))
+    return multipliers_of(request, slack, rows)
 
 
 def _towards(commands, multipliers, x, side):

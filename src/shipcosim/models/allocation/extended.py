@@ -11,7 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.angles import wrap
-from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
+from shipcosim.models.allocation.pseudo_inverse import (
+    AllocationParameters,
+    inverses_of,
+    missing_units,
+    solved,
+)
 from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust
 from shipcosim.models.core.maths import atan2, clip, cos, hypot, minimum, pi, sin, where
 from shipcosim.models.core.motion import Load
@@ -53,7 +58,7 @@ class ComponentInverses(NamedTuple):
         X, Y, N of one newton of each component: port forward, port to starboard, the same of starboard, tunnel.
         [1, 1, m]
     inverses : tuple of sixteen tuples
-        For each set of free units five rows of three, as `pseudo_inverse.Design`. [1, 1, 1/m]
+        For each set of free units five rows of three, as of `ThrusterInverses`. [1, 1, 1/m]
     """
 
     effect: tuple
@@ -86,24 +91,17 @@ def design(parameters: ExtendedParameters) -> ComponentInverses:
     # gives N = -y X, a force Y gives N = x Y.
     p = parameters
     effect = (
-        *((1.0, 0.0, -p.port_y), (0.0, 1.0, p.port_x)),
-        *((1.0, 0.0, -p.starboard_y), (0.0, 1.0, p.starboard_x)),
+        (1.0, 0.0, -p.port_y),
+        (0.0, 1.0, p.port_x),
+        (1.0, 0.0, -p.starboard_y),
+        (0.0, 1.0, p.starboard_x),
         (0.0, 1.0, p.tunnel_x),
     )
     # Prices of the components, as W^-1/2 of the weighted inverse.
     side = p.azimuth_weight * p.sway_price
     price = np.array([p.azimuth_weight, side, p.azimuth_weight, side, p.tunnel_weight]) ** -0.5
-    inverses = []
-    # One lever for the whole ship, one where a thruster is missing.
-    for lever in (p.yaw_lever, p.yaw_lever_degraded):
-        scale = np.array([1.0, 1.0, 1.0 / lever])
-        # For every set of free thrusters: W^-1/2 (S B W^-1/2)^+ S.
-        for k in range(8):
-            free = np.array([(k >> unit) & 1 for unit in _UNIT_OF])
-            weighted = scale[:, None] * np.array(effect).T * (price * free)
-            inverse = price[:, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale
-            inverses.append(tuple(map(tuple, inverse.tolist())))
-    return ComponentInverses(effect, tuple(inverses))
+    levers = (p.yaw_lever, p.yaw_lever_degraded)
+    return ComponentInverses(effect, inverses_of(effect, price, levers, _UNIT_OF))
 
 
 def at_rest(tau: Load, *, parameters: ExtendedParameters) -> Allocated:
@@ -125,7 +123,7 @@ def at_rest(tau: Load, *, parameters: ExtendedParameters) -> Allocated:
     ----------
     Definition.
     """
-    return no_thrust(tau, (parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi))
+    return no_thrust(tau, parameters.of_units("azimuth"))
 
 
 def step(
@@ -173,25 +171,26 @@ def step(
     X, Y, N = missed(tau, forces, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
     saturated = X**2 + Y**2 + (N / p.yaw_lever) ** 2 > 1.0
-    thrusts = []
+    # Turn each azimuth towards its force; until it has turned, it gives the part of the force along its angle.
     angles = []
-    # Turn each azimuth towards its force.
-    for unit in (0, 1):
+    wanted = []
+    for unit, (low, high) in enumerate(p.limits[:2]):
         X, Y = forces[2 * unit : 2 * unit + 2]
-        old = state.azimuths[unit]
-        share = shares[unit]
-        angle = _turned(old, X, Y, available[unit], h, parameters=p)
-        # Until it has turned, it gives the part of the force that lies along its angle.
-        along = clip(X * cos(angle) + Y * sin(angle), p.azimuth_thrust_min, p.azimuth_thrust_max)
-        limits = share * p.azimuth_thrust_min, share * p.azimuth_thrust_max
-        thrusts.append(_moved(state.thrusts[unit], along, reach, limits, available[unit]))
+        angle = _turned(state.azimuths[unit], X, Y, available[unit], h, parameters=p)
+        wanted.append(clip(X * cos(angle) + Y * sin(angle), low, high))
         angles.append(angle)
-    # The tunnel cannot turn: only limits and rate act.
-    limits = -shares[2] * p.tunnel_thrust_max, shares[2] * p.tunnel_thrust_max
-    thrusts.append(_moved(state.thrusts[2], forces[4], reach, limits, available[2]))
-    return Allocated(
-        tuple(thrusts), (*angles, 0.5 * pi), *_load(thrusts, angles, design.effect), saturated
+    # The tunnel cannot turn. Thrusts move at their rate; any excess over the power limit is removed at once.
+    units = zip(state.thrusts, (*wanted, forces[4]), shares, p.limits, available, strict=True)
+    thrusts = tuple(
+        where(on, clip(old + clip(new - old, -reach, reach), share * low, share * high), 0.0 * new)
+        for old, new, share, (low, high), on in units
     )
+    # Load of these commands; components of the azimuths in body axes, as the columns of the matrix.
+    components = []
+    for thrust, angle in zip(thrusts, angles, strict=False):
+        components += [thrust * cos(angle), thrust * sin(angle)]
+    given = load((*components, thrusts[2]), design.effect)
+    return Allocated(thrusts, (*angles, 0.5 * pi), *given, saturated)
 
 
 def _turned(old, X, Y, usable, h, *, parameters):
@@ -204,37 +203,17 @@ def _turned(old, X, Y, usable, h, *, parameters):
     return wrap(old + clip(wrap(wanted - old), -reach, reach))
 
 
-def _moved(old, new, reach, limits, usable):
-    """Thrust that moves to a new one; any excess over the power limit is removed at once."""
-    return where(usable, clip(old + clip(new - old, -reach, reach), *limits), 0.0 * new)
-
-
-def _load(thrusts, angles, effect):
-    """Load of three thrusts. [N, N, N.m]"""
-    # Components of the azimuths in body axes, as the columns of the matrix.
-    forces = []
-    for thrust, angle in zip(thrusts, angles, strict=False):
-        forces += [thrust * cos(angle), thrust * sin(angle)]
-    return load((*forces, thrusts[2]), effect)
-
-
 def _within_limits(tau, available, shares, *, parameters, design):
     """Forces for a load within limits of thrust; free units take over the rest."""
     p = parameters
-    # Free units; number 8 on selects the inverses for a ship with a missing thruster.
     free = [where(usable, 1.0, 0.0) for usable in available]
-    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
-    most = (
-        shares[0] * p.azimuth_thrust_max,
-        shares[1] * p.azimuth_thrust_max,
-        shares[2] * p.tunnel_thrust_max,
-    )
+    missing = missing_units(available)
+    most = [share * high for share, (_, high) in zip(shares, p.limits, strict=True)]
     # At most three rounds: in each, the unit furthest beyond its limit is held.
     held = forces = [0.0 * tau[0]] * 5
     for _ in range(3):
         # Solve for the free units, with the load that the held ones leave.
-        chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
-        more = _solve(missed(tau, held, design.effect), chosen, design.inverses)
+        more = solved(missed(tau, held, design.effect), free, missing, design.inverses)
         forces = [f + g for f, g in zip(held, more, strict=True)]
         # Thrust of each unit, and the share of it within its limit.
         port = hypot(forces[0], forces[1])
@@ -252,20 +231,3 @@ def _within_limits(tau, available, shares, *, parameters, design):
         held = [where(over[unit], f, h) for f, h, unit in zip(forces, held, _UNIT_OF, strict=True)]
         free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
     return forces
-
-
-def _solve(tau, chosen, inverses):
-    """Force components of the free units for a load, 0 for the others."""
-    X, Y, N = tau
-    # One number: pick the inverse of this set of free units.
-    if isinstance(chosen, float):
-        return [a * X + b * Y + c * N for a, b, c in inverses[int(chosen)]]
-    # Many numbers: elements may have different sets, so try all sixteen.
-    found = [0.0 * X] * 5
-    for number, rows in enumerate(inverses):
-        here = chosen == number
-        found = [
-            where(here, a * X + b * Y + c * N, old)
-            for (a, b, c), old in zip(rows, found, strict=True)
-        ]
-    return found

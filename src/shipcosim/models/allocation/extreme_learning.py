@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.fixed_angles import UNITS, FixedAngleParameters
-from shipcosim.models.allocation.units import load, no_thrust
-from shipcosim.models.core.maths import Arithmetic, clip, cos, exp, sin, where
+from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
+from shipcosim.models.allocation.units import load, no_thrust, unit_effect
+from shipcosim.models.core.maths import Arithmetic, clip, exp, where
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import UNITS, quantity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,9 +175,7 @@ def at_rest(tau: Load, *, parameters: ExtremeLearningParameters) -> Commanded:
     ----------
     Definition.
     """
-    return Commanded(
-        *no_thrust(tau, tuple(parameters.of_units("azimuth"))), (0.0 * tau[0],) * UNITS
-    )
+    return Commanded(*no_thrust(tau, parameters.start_azimuths), (0.0 * tau[0],) * UNITS)
 
 
 def step(
@@ -237,9 +235,9 @@ def step(
         for one, (low, high, *_) in zip(found, limits, strict=True)
     )
     missing = sum(where(on, 0.0, 1.0) for on in available)
-    return Commanded(
-        thrusts, state.azimuths, *_load(thrusts, parameters), over + missing > 0.5, commands
-    )
+    effect = tuple(map(unit_effect, *map(parameters.of_units, ("x", "y", "azimuth"))))
+    given = load(thrusts, effect)
+    return Commanded(thrusts, state.azimuths, *given, over + missing > 0.5, commands)
 
 
 def _thrust(command, least, most, weakest, strongest):
@@ -247,10 +245,3 @@ def _thrust(command, least, most, weakest, strongest):
     # Share of the range on this side; thrust of a propeller grows as the square of its speed.
     share = clip(where(command < 0.0, command / least, command / most), 0.0, 1.0)
     return share * share * where(command < 0.0, weakest, strongest)
-
-
-def _load(thrusts, parameters):
-    """Load of the thrusters."""
-    # Columns of the configuration matrix: (cos a, sin a, x sin a - y cos a).
-    places = zip(*map(parameters.of_units, ("x", "y", "azimuth")), strict=True)
-    return load(thrusts, tuple((cos(a), sin(a), x * sin(a) - y * cos(a)) for x, y, a in places))

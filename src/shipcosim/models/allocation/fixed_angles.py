@@ -5,103 +5,50 @@ without thrust does not exist. As in `pseudo_inverse`, free units take over what
 give.
 """
 
-import functools
 import math
-import operator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.units import Allocated, load, missed
-from shipcosim.models.core.maths import clip, cos, is_single, row_of, sin, where
+from shipcosim.models.allocation.pseudo_inverse import within_limits
+from shipcosim.models.allocation.units import Allocated, load, missed, no_thrust, unit_effect
+from shipcosim.models.core.maths import clip, is_single, row_of, where
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import quantity, required
+from shipcosim.models.core.parameters import UNITS, numbered_units, quantity, required
 
-UNITS = 6
-
-
-def _place(unit, description):
-    return quantity(0.0, unit, description, "no such unit")
+_NONE = "no such unit"
 
 
-def _least(number):
-    return quantity(
-        0.0, "N", f"least thrust of unit {number}, negative", "no such unit", maximum=0.0
-    )
-
-
-def _most(number):
-    return quantity(
-        0.0, "N", f"most thrust of unit {number}; 0: there is none", "no such unit", minimum=0.0
-    )
-
-
-def _rate(number):
-    return quantity(
-        0.0, "N/s", f"quickest change of the command to unit {number}", "no such unit", minimum=0.0
-    )
+def _fields(number):
+    """Place, direction and limits of a unit."""
+    unit = f"unit {number}"
+    direction = f"direction of positive thrust of {unit}, clockwise from the bow"
+    least = f"least thrust of {unit}, negative"
+    most = f"most thrust of {unit}; 0: there is none"
+    rate = f"quickest change of the command to {unit}"
+    return {
+        "x": quantity(0.0, "m", f"{unit} forward of the origin", _NONE),
+        "y": quantity(0.0, "m", f"{unit} to starboard of the origin", _NONE),
+        "azimuth": quantity(0.0, "rad", direction, _NONE),
+        "thrust_min": quantity(0.0, "N", least, _NONE, maximum=0.0),
+        "thrust_max": quantity(0.0, "N", most, _NONE, minimum=0.0),
+        "thrust_rate": quantity(0.0, "N/s", rate, _NONE, minimum=0.0),
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
-class FixedAngleParameters:
+class FixedAngleParameters(numbered_units(_fields)):
     """Places, directions and limits of the units."""
 
-    x_1: float = _place("m", "unit 1 forward of the origin")
-    y_1: float = _place("m", "unit 1 to starboard of the origin")
-    azimuth_1: float = _place(
-        "rad", "direction of positive thrust of unit 1, clockwise from the bow"
-    )
-    thrust_min_1: float = _least(1)
-    thrust_max_1: float = _most(1)
-    thrust_rate_1: float = _rate(1)
-    x_2: float = _place("m", "unit 2 forward of the origin")
-    y_2: float = _place("m", "unit 2 to starboard of the origin")
-    azimuth_2: float = _place(
-        "rad", "direction of positive thrust of unit 2, clockwise from the bow"
-    )
-    thrust_min_2: float = _least(2)
-    thrust_max_2: float = _most(2)
-    thrust_rate_2: float = _rate(2)
-    x_3: float = _place("m", "unit 3 forward of the origin")
-    y_3: float = _place("m", "unit 3 to starboard of the origin")
-    azimuth_3: float = _place(
-        "rad", "direction of positive thrust of unit 3, clockwise from the bow"
-    )
-    thrust_min_3: float = _least(3)
-    thrust_max_3: float = _most(3)
-    thrust_rate_3: float = _rate(3)
-    x_4: float = _place("m", "unit 4 forward of the origin")
-    y_4: float = _place("m", "unit 4 to starboard of the origin")
-    azimuth_4: float = _place(
-        "rad", "direction of positive thrust of unit 4, clockwise from the bow"
-    )
-    thrust_min_4: float = _least(4)
-    thrust_max_4: float = _most(4)
-    thrust_rate_4: float = _rate(4)
-    x_5: float = _place("m", "unit 5 forward of the origin")
-    y_5: float = _place("m", "unit 5 to starboard of the origin")
-    azimuth_5: float = _place(
-        "rad", "direction of positive thrust of unit 5, clockwise from the bow"
-    )
-    thrust_min_5: float = _least(5)
-    thrust_max_5: float = _most(5)
-    thrust_rate_5: float = _rate(5)
-    x_6: float = _place("m", "unit 6 forward of the origin")
-    y_6: float = _place("m", "unit 6 to starboard of the origin")
-    azimuth_6: float = _place(
-        "rad", "direction of positive thrust of unit 6, clockwise from the bow"
-    )
-    thrust_min_6: float = _least(6)
-    thrust_max_6: float = _most(6)
-    thrust_rate_6: float = _rate(6)
     yaw_lever: float = required(
         "m", "a missed yaw moment weighs as a missed force at this distance", minimum=0.1
     )
 
-    def of_units(self, name: str) -> list[float]:
-        """A parameter of all units, in their order."""
-        return [getattr(self, f"{name}_{number}") for number in range(1, UNITS + 1)]
+    @property
+    def start_azimuths(self) -> tuple[float, ...]:
+        """Directions at the start. [rad]"""
+        return tuple(self.of_units("azimuth"))
 
 
 class Layout(NamedTuple):
@@ -146,10 +93,9 @@ def design(parameters: FixedAngleParameters) -> Layout:
     Weighted generalised inverse: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley,
     2021.
     """
-    # Load of one newton of each unit: (cos a, sin a, x sin a - y cos a).
+    # Load of one newton of each unit.
     p = parameters
-    places = zip(p.of_units("x"), p.of_units("y"), p.of_units("azimuth"), strict=True)
-    effect = tuple((cos(a), sin(a), x * sin(a) - y * cos(a)) for x, y, a in places)
+    effect = tuple(map(unit_effect, p.of_units("x"), p.of_units("y"), p.of_units("azimuth")))
     # The price of thrust is the square of its share of the unit's largest thrust.
     least = p.of_units("thrust_min")
     most = p.of_units("thrust_max")
@@ -185,10 +131,7 @@ def at_rest(tau: Load, *, parameters: FixedAngleParameters) -> Allocated:
     ----------
     Definition.
     """
-    zero = 0.0 * tau[0]
-    return Allocated(
-        (zero,) * UNITS, tuple(parameters.of_units("azimuth")), zero, zero, zero, zero > 0.0
-    )
+    return no_thrust(tau, parameters.start_azimuths)
 
 
 def step(
@@ -227,7 +170,14 @@ def step(
     As `design`; that thrust beyond a limit is asked of the free units is assumed.
     """
     # Thrusts within their limits, then the load that they miss.
-    wanted = _within_limits(tau, available, design)
+    wanted = within_limits(
+        tau,
+        available,
+        list(zip(design.least, design.most, strict=True)),
+        design.effect,
+        lambda left, free: _solve(left, free, design.inverses),
+        1e-9,
+    )
     X, Y, N = missed(tau, wanted, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
@@ -238,31 +188,6 @@ def step(
         for old, new, on, rate in limits
     )
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
-
-
-def _within_limits(tau, available, design):
-    """Thrusts for a load, without rate limits."""
-    # Units beyond a limit are held there, and the free ones take over the rest.
-    free = [where(on, 1.0, 0.0) for on in available]
-    held = [0.0 * tau[0]] * UNITS
-    thrusts = held
-    for _ in range(UNITS):
-        # Solve for the free units, with the load that the held ones leave.
-        found = _solve(missed(tau, held, design.effect), free, design.inverses)
-        given = [
-            clip(f, low, high)
-            for f, low, high in zip(found, design.least, design.most, strict=True)
-        ]
-        thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        # Stop when no unit is beyond its limit, in any element.
-        over = [abs(f - g) > 1e-9 for f, g in zip(found, given, strict=True)]
-        anywhere = functools.reduce(operator.or_, over)
-        if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
-            break
-        # Hold the units beyond a limit, and go on with the others.
-        held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
-        free = [where(o, 0.0, f) for o, f in zip(over, free, strict=True)]
-    return thrusts
 
 
 def _solve(tau, free, inverses):

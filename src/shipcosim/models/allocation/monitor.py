@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, hypot, maximum, pi, where
+from shipcosim.models.core.motion import Triple, Vector
 from shipcosim.models.core.parameters import quantity
 
 _DEG = pi / 180.0
@@ -126,8 +127,8 @@ def at_rest(like: Arithmetic = 0.0) -> MonitorState:
 
 
 def deviation(
-    thrusts: tuple[Arithmetic, Arithmetic],
-    azimuths: tuple[Arithmetic, Arithmetic] = (0.0, 0.0),
+    thrusts: Vector,
+    azimuths: Vector = (0.0, 0.0),
     *,
     thrust_tolerance: float,
     azimuth_tolerance: float,
@@ -164,10 +165,10 @@ def deviation(
 
 def step(
     state: MonitorState,
-    deviations: tuple[Arithmetic, Arithmetic, Arithmetic],
+    deviations: Triple,
     available: tuple,
-    errors: tuple[Arithmetic, Arithmetic],
-    bias: tuple[Arithmetic, Arithmetic],
+    errors: Vector,
+    bias: Vector,
     h: float,
     *,
     parameters: MonitorParameters,

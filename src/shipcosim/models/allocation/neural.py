@@ -30,6 +30,7 @@ from shipcosim.models.core.maths import (
     sqrt,
     where,
 )
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.propulsion.interaction import kept_share
 
 SMOOTHING = 20.0
@@ -222,7 +223,9 @@ def propose(
     # The network adds to the turning towards the best direction.
     outputs = network(features(state, tau, available, pull, units=units), weights)
     turns = library_of(pull).tanh(_EAGERNESS * pull + _SWAY * outputs[..., :n])
-    azimuths = _turned(state.azimuths, turns * units.turn * h * (available > 0.0), units)
+    # Units turn within their intervals; fixed units and missing ones keep their directions.
+    reached = state.azimuths + turns * units.turn * h * (available > 0.0)
+    azimuths = where(units.turn > 0.0, clip(reached, units.first, units.last), state.azimuths)
     # Solve again at the new angles, with the network's prices.
     effect = effects(old, azimuths, units=plain)
     prices = library_of(pull).exp(outputs[..., n:])
@@ -331,7 +334,7 @@ def completed(
     prices: Arithmetic,
     *,
     units: Units,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Thrusts within limits that meet a request at the least power, and what a newton of each load is worth.
 
     Parameters
@@ -443,11 +446,6 @@ def _used(thrusts, units):
         units.least < 0.0, -units.least, units.most
     )  # the safety layer may reverse a unit that turns
     return abs(thrusts) / (where(thrusts < 0.0, astern, units.most) + 1e-9)
-
-
-def _turned(azimuths, turns, units):
-    """Directions after turning, within their intervals; fixed units keep theirs."""
-    return where(units.turn > 0.0, clip(azimuths + turns, units.first, units.last), azimuths)
 
 
 def _scaled(tau, lever):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from shipcosim.models.allocation import neural
-from shipcosim.models.allocation.box_qp import _three_equations
+from shipcosim.models.allocation.box_qp import multipliers_of
 from shipcosim.models.allocation.neural import Units
 
 _DEGREES = 180.0 / pi
@@ -310,26 +310,15 @@ def _completed(thrusts, asked, effects, bounds, steep, of):
         slopes.append(2.0 * curve * f / of.largest)
         free.append(1.0 / curve if high > low else 0.0)
     worth = 0.0, 0.0, 0.0
+    # A soft request keeps the equations solvable where units cannot meet it.
+    soft = (neural._SOFT,) * 3
     # Each round: three equations for the free units, then one Newton step.
     for _ in range(neural._ROUNDS):
-        X0, Y0, N0 = asked
-        a = d = f = neural._SOFT
-        b = c = e = 0.0
-        # Right side and matrix of B E B^T lambda = request - B f + B E slope.
-        for (X, Y, N), at, ease, slope in zip(effects, found, free, slopes, strict=True):
-            less = ease * slope - at
-            X0 = X0 + X * less
-            Y0 = Y0 + Y * less
-            N0 = N0 + N * less
-            p = ease * X
-            q = ease * Y
-            a = a + p * X
-            b = b + p * Y
-            c = c + p * N
-            d = d + q * Y
-            e = e + q * N
-            f = f + ease * N * N
-        worth = p, q, r = _three_equations(a, b, c, d, e, f, X0, Y0, N0)
+        rows = [
+            (X, Y, N, at - ease * slope, ease)
+            for (X, Y, N), at, ease, slope in zip(effects, found, free, slopes, strict=True)
+        ]
+        worth = p, q, r = multipliers_of(asked, soft, rows)
         inside = True
         # Newton step of each unit; one that leaves its bounds stays at its bound.
         for k, (X, Y, N) in enumerate(effects):

@@ -4,7 +4,7 @@ The network's commands keep limits and rates. The program finds the nearest comm
 meet the request best, as `sqp.nearest_step`; commands that already meet it stay as they are.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -155,6 +155,7 @@ def step(
     *,
     design: NeuralLaw,
     shares: tuple | None = None,
+    parameters: Any = None,
 ) -> Remembered:
     """Commands for a requested load, `h` after the last ones.
 
@@ -172,6 +173,8 @@ def step(
         Made by `designed`.
     shares : tuple of floats or (...) arrays, optional
         Shares of their limits of thrust that power leaves to the units. [1]
+    parameters : any
+        Of the FMU, as every law gets them; the design has what is needed of them. [as their fields]
 
     Returns
     -------

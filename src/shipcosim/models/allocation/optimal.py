@@ -1,14 +1,16 @@
-"""Optimal thrust allocation of two azimuths and a tunnel thruster: least power within all limits.
+"""Optimal thrust allocation: least power within all limits, for named and for numbered units.
 
-The law is that of `sqp`; here are the units by name. An azimuth has two cones of allowed angles,
-ahead and astern, and keeps to one of them: one unit ahead and one astern can give any small load
-without a reversal. The parameters `port_azimuth` and `starboard_azimuth` belong to laws with fixed
-angles; they are not used here.
+The law is that of `sqp`; here are the units. An azimuth has two cones of allowed angles, ahead and
+astern, and keeps to one of them: one unit ahead and one astern can give any small load without a
+reversal. A unit that turns runs with its least thrust or more, and reverses only where another unit
+is missing. Any other unit has a fixed direction and reverses. The parameters `port_azimuth` and
+`starboard_azimuth` belong to laws with fixed angles; they are not used here.
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 
+from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
 from shipcosim.models.allocation.sqp import (
     AllocatedThruster,
     OptimalProblem,
@@ -19,7 +21,7 @@ from shipcosim.models.allocation.sqp import (
 )
 from shipcosim.models.allocation.units import NamedUnits
 from shipcosim.models.core.motion import Load
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import numbered_units, quantity
 
 _DEGREE = pi / 180.0
 _SECTORS = "forbidden sectors of 80 to 100 deg to both sides, Skulstad 2021, paper V"
@@ -72,50 +74,143 @@ class OptimalParameters(NamedUnits):
         minimum=0.0,
     )
 
+    @property
+    def by_unit(self) -> dict[str, tuple]:
+        """As of `NamedUnits`, and what belongs to turning."""
+        least = self.azimuth_thrust_least
+        rate = self.azimuth_rate_max
+        return super().by_unit | {
+            "thrust_least": (least, least, -self.tunnel_thrust_max),
+            "azimuth_rate": (rate, rate, 0.0),
+        }
 
-def design(parameters: OptimalParameters) -> OptimalProblem:
+    @property
+    def start_azimuths(self) -> tuple:
+        """Directions at the start. [rad]"""
+        return self.port_azimuth_start, self.starboard_azimuth_start, 0.5 * pi
+
+    @property
+    def turning(self) -> tuple:
+        """Units that turn."""
+        return True, True, False
+
+    @property
+    def sectors(self) -> tuple:
+        """Intervals of angles of the units; the tunnel points to starboard. [rad]"""
+        port = self.port_azimuth_first, self.port_azimuth_last
+        starboard = self.starboard_azimuth_first, self.starboard_azimuth_last
+        return port, starboard, (0.5 * pi, 0.5 * pi)
+
+    @property
+    def prices(self) -> tuple:
+        """Power over thrust^1.5, relative to an azimuth. [1]"""
+        return 1.0, 1.0, self.tunnel_price
+
+    @property
+    def lever_degraded(self) -> float:
+        """A missed yaw moment weighs as a missed force at this distance where a unit is missing. [m]"""
+        return self.yaw_lever_degraded
+
+
+def _fields(number):
+    """Turning and price of a unit."""
+    none = "none"
+    turns = f"quickest turning of unit {number}; 0: its direction is fixed"
+    first = f"unit {number} turns clockwise from here; no limit where it is `azimuth_last`"
+    last = f"and to here; above azimuth_first_{number}"
+    least = f"least thrust of unit {number} where it turns"
+    power = f"power of unit {number} at its largest thrust, over that thrust; only the ratios of the units count"
+    assumed = "full power goes with full thrust, assumed"
+    return {
+        "azimuth_rate": quantity(0.0, "rad/s", turns, none, minimum=0.0),
+        "azimuth_first": quantity(0.0, "rad", first, none),
+        "azimuth_last": quantity(0.0, "rad", last, none),
+        "thrust_least": quantity(0.0, "N", least, none, minimum=0.0),
+        "specific_power": quantity(1.0, "W/N", power, assumed, minimum=1e-9),
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
+    """Places, limits, turning and prices of the units."""
+
+    turning_time: float = quantity(
+        10.0,
+        "s",
+        "time constant of turning to the cheapest direction",
+        "tried with two azimuths and a tunnel",
+        minimum=0.0,
+    )
+
+    @property
+    def turning(self) -> tuple:
+        """Units that turn."""
+        return tuple(rate > 0.0 for rate in self.of_units("azimuth_rate"))
+
+    @property
+    def sectors(self) -> tuple:
+        """Intervals of angles of the units; an empty one is no limit. [rad]"""
+        intervals = zip(self.of_units("azimuth_first"), self.of_units("azimuth_last"), strict=True)
+        return tuple((first, last) if last > first else (-inf, inf) for first, last in intervals)
+
+    @property
+    def prices(self) -> tuple:
+        """Power over thrust^1.5, from the power at the largest thrust. [W/N^1.5]"""
+        units = map(self.of_units, ("specific_power", "thrust_min", "thrust_max"))
+        return tuple(
+            power * max(high, -low, 1.0) ** -0.5 for power, low, high in zip(*units, strict=True)
+        )
+
+    @property
+    def lever_degraded(self) -> float:
+        """The lever is the same where a unit is missing. [m]"""
+        return self.yaw_lever
+
+
+def design(parameters: OptimalParameters | OptimalUnitsParameters) -> OptimalProblem:
     """What the law needs of the parameters.
 
     Parameters
     ----------
-    parameters : OptimalParameters
+    parameters : OptimalParameters or OptimalUnitsParameters
         The units.
 
     Returns
     -------
     OptimalProblem
-        Port, starboard and tunnel.
+        Port, starboard and tunnel; or unit 1 to 6.
 
     References
     ----------
     Definition.
     """
-    # Limits that both azimuths share; each has an interval of angles of its own.
     p = parameters
-    force = p.azimuth_thrust_least, p.azimuth_thrust_max, p.azimuth_thrust_min, p.thrust_rate_max
-    port = p.port_azimuth_first, p.port_azimuth_last, p.azimuth_rate_max, 1.0
-    starboard = p.starboard_azimuth_first, p.starboard_azimuth_last, p.azimuth_rate_max, 1.0
-    # The tunnel points to starboard, cannot turn, and reverses.
-    most = p.tunnel_thrust_max
-    across = 0.5 * pi
-    tunnel = -most, most, -most, p.thrust_rate_max, across, across, 0.0, p.tunnel_price
-    units = (
-        AllocatedThruster(p.port_x, p.port_y, *force, *port),
-        AllocatedThruster(p.starboard_x, p.starboard_y, *force, *starboard),
-        AllocatedThruster(p.tunnel_x, 0.0, *tunnel),
-    )
-    # The tunnel's price is relative to an azimuth, whose price is 1.
-    return designed(units, p.turning_time, p.yaw_lever, p.yaw_lever_degraded)
+    names = ("x", "y", "azimuth", "thrust_min", "thrust_max", "thrust_rate")
+    columns = map(p.of_units, (*names, "azimuth_rate", "thrust_least"))
+    rows = zip(*columns, p.turning, p.sectors, p.prices, strict=True)
+    units = tuple(_unit(*row) for row in rows)
+    return designed(units, p.turning_time, p.yaw_lever, p.lever_degraded)
 
 
-def at_rest(tau: Load, *, parameters: OptimalParameters) -> Turned:
+def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, least, turns, sector, price):
+    """A unit as `sqp` needs it."""
+    # A unit that turns keeps its least thrust; any other has one direction, and reverses.
+    if turns:
+        first, last = sector
+        return AllocatedThruster(
+            x, y, min(least, high), high, low, thrust_rate, first, last, azimuth_rate, price
+        )
+    return AllocatedThruster(x, y, low, high, low, thrust_rate, azimuth, azimuth, 0.0, price)
+
+
+def at_rest(tau: Load, *, parameters: OptimalParameters | OptimalUnitsParameters) -> Turned:
     """State at the start: no thrust.
 
     Parameters
     ----------
     tau : tuple of three floats or (...) arrays or tensors
         Any load: it gives shape and type only. [N, N, N.m]
-    parameters : OptimalParameters
+    parameters : OptimalParameters or OptimalUnitsParameters
         Units and their angles at the start.
 
     Returns
@@ -127,47 +222,7 @@ def at_rest(tau: Load, *, parameters: OptimalParameters) -> Turned:
     ----------
     Definition.
     """
-    return resting(
-        tau, (parameters.port_azimuth_start, parameters.starboard_azimuth_start, 0.5 * pi)
-    )
+    return resting(tau, parameters.start_azimuths)
 
 
-def step(
-    state: Turned,
-    tau: Load,
-    available: tuple,
-    h: float,
-    *,
-    parameters: OptimalParameters,
-    design: OptimalProblem,
-    shares: tuple = (1.0, 1.0, 1.0),
-) -> Turned:
-    """Commands for a requested load, `h` after the last ones.
-
-    Parameters
-    ----------
-    state : Turned
-        State at the last commands.
-    tau : tuple of three floats or (...) arrays or tensors
-        Requested load, body frame. [N, N, N.m]
-    available : tuple of three bools or (...) arrays or tensors of bool
-        Whether port, starboard and tunnel can be used; one that cannot gives 0 at once and keeps its angle. [1]
-    h : float
-        Time since the last commands, for the limits of the rates. [s]
-    parameters : OptimalParameters
-        Units and limits.
-    design : OptimalProblem
-        Made of the same parameters by `design`.
-    shares : tuple of three floats or (...) arrays or tensors
-        Shares of their limits of thrust that power leaves to port, starboard and tunnel. [1]
-
-    Returns
-    -------
-    Turned
-        Commands and the load they give.
-
-    References
-    ----------
-    As `sqp.power_step`.
-    """
-    return power_step(state, tau, available, h, design=design, shares=shares)
+step = power_step

@@ -123,7 +123,7 @@ def at_rest(tau: Load, *, parameters: PaperVParameters) -> PaperVState:
         The state.
     """
     # The start angles also stand in the commands, so that nothing jumps before the first sample.
-    azimuths = (parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * np.pi)
+    azimuths = parameters.of_units("azimuth")
     commands = (0.0, 0.0, azimuths[0], 0.0, azimuths[1])
     # Infinite time since the last sample: the network is evaluated at once.
     memory = tuple(Memory(np.zeros(width), np.zeros(width)) for width in WIDTHS)
@@ -178,7 +178,7 @@ def step(
     wanted = (port, starboard, tunnel)
     azimuths = (port_azimuth, starboard_azimuth, 0.5 * np.pi)
     # Power and availability limit the thrusts; the network does not know of it.
-    limits = zip(wanted, available, shares, _limits(parameters), strict=True)
+    limits = zip(wanted, available, shares, parameters.limits, strict=True)
     thrusts = tuple(
         clip(f, share * low, share * high) if on else 0.0 for f, on, share, (low, high) in limits
     )
@@ -218,9 +218,3 @@ def given(commands: tuple[tuple, tuple], *, parameters: NamedUnits) -> Load:
         + p.tunnel_x * tunnel
     )
     return X1 + X2, Y1 + Y2 + tunnel, N
-
-
-def _limits(p):
-    """Least and most thrust of port, starboard and tunnel. [N]"""
-    azimuth = (p.azimuth_thrust_min, p.azimuth_thrust_max)
-    return azimuth, azimuth, (-p.tunnel_thrust_max, p.tunnel_thrust_max)

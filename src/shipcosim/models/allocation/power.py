@@ -8,7 +8,8 @@ thrust in the allocation, which then asks the other units, as at any limit of th
 
 from dataclasses import dataclass
 
-from shipcosim.models.core.maths import Arithmetic, minimum, sqrt, where
+from shipcosim.models.core.maths import minimum, sqrt, where
+from shipcosim.models.core.motion import Triple, Vector
 from shipcosim.models.core.parameters import quantity, required
 
 _ALMOST_NONE = 1e-12  # keeps derivatives of roots finite
@@ -47,11 +48,11 @@ class PowerParameters:
 
 
 def granted_power(
-    used: tuple[Arithmetic, Arithmetic, Arithmetic],
-    available: tuple[Arithmetic, Arithmetic],
+    used: Triple,
+    available: Vector,
     *,
     parameters: PowerParameters,
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+) -> Triple:
     """Power that each unit may take.
 
     Parameters
@@ -91,9 +92,7 @@ def granted_power(
     return a, b, c
 
 
-def thrust_shares(
-    granted: tuple[Arithmetic, Arithmetic, Arithmetic], *, parameters: PowerParameters
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def thrust_shares(granted: Triple, *, parameters: PowerParameters) -> Triple:
     """Share of its limits of thrust that each unit can give with a granted power, 1 where power is no limit.
 
     Parameters

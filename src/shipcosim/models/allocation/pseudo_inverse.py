@@ -4,13 +4,23 @@ An allocator is two functions: `design` computes once what it needs of its param
 into commands.
 """
 
+import functools
+import operator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.models.allocation.units import Allocated, NamedUnits, load, missed
-from shipcosim.models.core.maths import clip, cos, pi, sin, where
+from shipcosim.models.allocation.units import (
+    Allocated,
+    NamedUnits,
+    load,
+    missed,
+    no_thrust,
+    unit_effect,
+)
+from shipcosim.models.core.maths import Arithmetic, clip, where
 from shipcosim.models.core.memoize import kept
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
@@ -32,7 +42,7 @@ class ThrusterInverses(NamedTuple):
     effect : tuple of three tuples
         Effect of port, starboard and tunnel on X, Y, N, as `effect`. [1, 1, m]
     inverses : tuple of sixteen tuples
-        Nine elements of the inverse for each set of free units: set k holds unit i where bit i of k is set; bit 3 is
+        For each set of free units a row of three for each unit: set k holds unit i where bit i of k is set; bit 3 is
         set where a unit is missing. [1, 1, 1/m]
     """
 
@@ -59,16 +69,9 @@ def effect(parameters: AllocationParameters) -> tuple[tuple, tuple, tuple]:
     full yaw arm (nominal model, DP).
     """
     p = parameters
-    units = []
-    for x, y, angle in (
-        (p.port_x, p.port_y, p.port_azimuth),
-        (p.starboard_x, p.starboard_y, p.starboard_azimuth),
-    ):
-        # Force (cos a, sin a) at (x, y), and its moment x sin a - y cos a.
-        c = cos(angle)
-        s = sin(angle)
-        units.append((c, s, x * s - y * c))
-    return (*units, (0.0, 1.0, p.tunnel_x))
+    port = unit_effect(p.port_x, p.port_y, p.port_azimuth)
+    starboard = unit_effect(p.starboard_x, p.starboard_y, p.starboard_azimuth)
+    return port, starboard, (0.0, 1.0, p.tunnel_x)
 
 
 @kept(8)
@@ -95,18 +98,113 @@ def design(parameters: AllocationParameters) -> ThrusterInverses:
     Weighted generalised inverse: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley,
     2021.
     """
-    # Configuration matrix, and prices as W^-1/2.
     p = parameters
-    b = effect(p)
-    matrix = np.stack(np.broadcast_arrays(*(_vector(*unit) for unit in b)), -1)
+    units = effect(p)
     price = _vector(p.azimuth_weight, p.azimuth_weight, p.tunnel_weight) ** -0.5
-    # An inverse for every set of free units, with both yaw levers.
-    inverses = [
-        _inverse(matrix, price, lever, [(k >> unit) & 1 for unit in range(3)])
-        for lever in (p.yaw_lever, p.yaw_lever_degraded)
-        for k in range(8)
-    ]
-    return ThrusterInverses(b, tuple(inverses))
+    levers = (p.yaw_lever, p.yaw_lever_degraded)
+    return ThrusterInverses(units, inverses_of(units, price, levers, (0, 1, 2)))
+
+
+def inverses_of(effect: tuple, price: np.ndarray, levers: tuple, unit_of: tuple) -> tuple:
+    """Generalised inverses for all sets of free units, with the yaw lever of a whole ship and of one that misses a unit.
+
+    Parameters
+    ----------
+    effect : tuple of n tuples of three
+        Load of one newton of each force component. [1, 1, m]
+    price : (..., n) array
+        Of the components, as W^-1/2. [1]
+    levers : tuple of two
+        A missed yaw moment weighs as a missed force at this distance. [m]
+    unit_of : tuple of n int
+        Unit of each component. [1]
+
+    Returns
+    -------
+    tuple of sixteen tuples
+        As of `ThrusterInverses`. [1, 1, 1/m]
+
+    References
+    ----------
+    As `design`.
+    """
+    matrix = np.stack(np.broadcast_arrays(*(_vector(*column) for column in effect)), -1)
+    found = []
+    for lever in levers:
+        scale = _vector(1.0, 1.0, 1.0 / lever)
+        for k in range(8):
+            # W^-1/2 (S B W^-1/2)^+ S, with S for the yaw lever and only the free units' columns.
+            free = np.array([(k >> unit) & 1 for unit in unit_of])
+            weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
+            inverse = np.linalg.pinv(weighted, rcond=1e-6)
+            inverse = price[..., :, None] * inverse * scale[..., None, :]
+            found.append(
+                tuple(
+                    tuple(_float(inverse[..., row, axis]) for axis in range(3))
+                    for row in range(len(unit_of))
+                )
+            )
+    return tuple(found)
+
+
+def missing_units(available: tuple) -> Arithmetic:
+    """Number of the first inverse of `inverses_of` for a ship that has all units, or misses one.
+
+    Parameters
+    ----------
+    available : tuple of three bools or (...) arrays or tensors of bool
+        Whether port, starboard and tunnel can be used. [1]
+
+    Returns
+    -------
+    float or (...) array or tensor
+        0, or 8 where a unit is missing. [1]
+
+    References
+    ----------
+    Definition.
+    """
+    port, starboard, tunnel = (where(usable, 1.0, 0.0) for usable in available)
+    return 8.0 * (1.0 - port * starboard * tunnel)
+
+
+def solved(tau: Load, free: list, missing: Arithmetic, inverses: tuple) -> list:
+    """Force components of the free units for a load, 0 for the others.
+
+    Parameters
+    ----------
+    tau : tuple of three
+        Load. [N, N, N.m]
+    free : list of three floats or (...) arrays or tensors
+        1 for a free unit, 0 for any other. [1]
+    missing : like free
+        8 where a unit is missing, else 0: the number of the first inverse for that. [1]
+    inverses : tuple of sixteen tuples
+        As of `inverses_of`. [1, 1, 1/m]
+
+    Returns
+    -------
+    list of n, like tau
+        Force components. [N]
+
+    References
+    ----------
+    As `design`.
+    """
+    X, Y, N = tau
+    # Number of the set of free units; for one number its inverse is known.
+    chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
+    if isinstance(chosen, float):
+        return [a * X + b * Y + c * N for a, b, c in inverses[int(chosen)]]
+    # Many numbers: elements may have different sets, so try all sixteen.
+    found = [0.0 * X] * len(inverses[0])
+    for number, rows in enumerate(inverses):
+        here = chosen == number
+        found = [
+            where(here, a * X + b * Y + c * N, old)
+            for (a, b, c), old in zip(rows, found, strict=True)
+        ]
+    return found
 
 
 def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
@@ -128,10 +226,7 @@ def at_rest(tau: Load, *, parameters: AllocationParameters) -> Allocated:
     ----------
     Definition.
     """
-    zero = 0.0 * tau[0]
-    # Angles of port, starboard and tunnel. [rad]
-    azimuths = parameters.port_azimuth, parameters.starboard_azimuth, 0.5 * pi
-    return Allocated((zero,) * 3, azimuths, zero, zero, zero, zero > 0.0)
+    return no_thrust(tau, parameters.of_units("azimuth"))
 
 
 def step(
@@ -175,8 +270,18 @@ def step(
     Weighted generalised inverse as `design`; that thrust beyond a limit is allocated to the free units is assumed.
     """
     # Thrusts within their limits, then the load that they miss.
-    limits = _limits(shares, parameters)
-    wanted = _within_limits(tau, available, limits, design=design)
+    limits = [
+        (share * low, share * high)
+        for share, (low, high) in zip(shares, parameters.limits, strict=True)
+    ]
+    missing = missing_units(available)
+    wanted = within_limits(
+        tau,
+        available,
+        limits,
+        design.effect,
+        lambda left, free: solved(left, free, missing, design.inverses),
+    )
     X, Y, N = missed(tau, wanted, design.effect)
     # More than 1 N, or its moment at the yaw lever, counts as missed.
     squared = X * X + Y * Y + (N / parameters.yaw_lever) ** 2
@@ -190,41 +295,52 @@ def step(
     return Allocated(thrusts, state.azimuths, *load(thrusts, design.effect), squared > 1.0)
 
 
-def _limits(shares, parameters):
-    """Least and largest thrust of port, starboard and tunnel. [N]"""
-    p = parameters
-    (port, starboard, tunnel) = shares
-    low = p.azimuth_thrust_min
-    high = p.azimuth_thrust_max
-    most = p.tunnel_thrust_max
-    return (
-        (port * low, port * high),
-        (starboard * low, starboard * high),
-        (tunnel * -most, tunnel * most),
-    )
+def within_limits(
+    tau: Load,
+    available: tuple,
+    limits: list,
+    effect: tuple,
+    solve: Callable[[Load, list], list],
+    tolerance: float = 0.0,
+) -> list:
+    """Thrusts for a load, without rate limits; free units take over what another cannot give.
 
+    Parameters
+    ----------
+    tau : tuple of three
+        Load. [N, N, N.m]
+    available : tuple of n bools or (...) arrays or tensors of bool
+        Whether the units can be used. [1]
+    limits : list of n tuples of two
+        Least and largest thrust. [N]
+    effect : tuple of n tuples of three
+        Load of one newton of each unit. [1, 1, m]
+    solve : callable
+        From a load and a 1 for each free unit to their thrusts. [N]
+    tolerance : float
+        Beyond a limit by more than this a unit is held there. [N]
 
-def _within_limits(tau, available, limits, *, design):
-    """Thrusts for a load, without rate limits; free units take over what another cannot give."""
-    # Free units; number 8 on selects the inverses for a ship with a missing unit.
+    Returns
+    -------
+    list of n, like tau
+        Thrusts. [N]
+
+    References
+    ----------
+    Assumed.
+    """
     free = [where(usable, 1.0, 0.0) for usable in available]
-    missing = 8.0 * (1.0 - free[0] * free[1] * free[2])
-    held = [0.0, 0.0, 0.0]
-    # At most three rounds: each holds the units that are beyond a limit.
-    for _ in range(3):
+    thrusts = held = [0.0] * len(limits)
+    # Each round holds the units that are beyond a limit.
+    for _ in limits:
         # Solve for the free units, with the load that the held ones leave.
-        a, b, c = _solve(missed(tau, held, design.effect), free, missing, design.inverses)
-        given = clip(a, *limits[0]), clip(b, *limits[1]), clip(c, *limits[2])
+        found = solve(missed(tau, held, effect), free)
+        given = [clip(f, *limit) for f, limit in zip(found, limits, strict=True)]
         thrusts = [f + g for f, g in zip(held, given, strict=True)]
-        over = a != given[0], b != given[1], c != given[2]
-        # True if a condition holds for any element.
-        condition = over[0] | over[1] | over[2]
-        anywhere = (
-            condition
-            if isinstance(condition, bool)
-            else bool(condition.any() if hasattr(condition, "any") else condition)
-        )
-        if not anywhere:
+        # Stop when no unit is beyond its limit, in any element.
+        over = [abs(f - g) > tolerance for f, g in zip(found, given, strict=True)]
+        anywhere = functools.reduce(operator.or_, over)
+        if not (anywhere.any() if hasattr(anywhere, "any") else anywhere):
             break
         # Hold the units beyond a limit, and ask the others for the rest.
         held = [where(o, g, f) for o, g, f in zip(over, given, held, strict=True)]
@@ -232,39 +348,9 @@ def _within_limits(tau, available, limits, *, design):
     return thrusts
 
 
-def _solve(tau, free, missing, inverses):
-    """Thrusts of the free units for a load, 0 for the others."""
-    # Number of the set of free units; its inverse times the load.
-    chosen = free[0] + 2.0 * free[1] + 4.0 * free[2] + missing
-    a, b, c, d, e, f, g, h, i = _choose(chosen, inverses)
-    X, Y, N = tau
-    return a * X + b * Y + c * N, d * X + e * Y + f * N, g * X + h * Y + i * N
-
-
-def _inverse(matrix, price, lever, free):
-    """Nine elements of the generalised inverse of the free units' effect, row by row."""
-    # W^-1/2 (S B W^-1/2)^+ S, with S for the yaw lever and only the free units' columns.
-    scale = _vector(1.0, 1.0, 1.0 / lever)
-    weighted = scale[..., :, None] * matrix * (price * free)[..., None, :]
-    inverse = price[..., :, None] * np.linalg.pinv(weighted, rcond=1e-6) * scale[..., None, :]
-    return tuple(_float(inverse[..., unit, axis]) for unit in range(3) for axis in range(3))
-
-
-def _vector(*values):
+def _vector(*values: Arithmetic) -> np.ndarray:
     """(..., n) array of scalars or arrays of one shape."""
     return np.stack(np.broadcast_arrays(*values), -1)
-
-
-def _choose(index, rows):
-    """Row of an index that may differ from element to element."""
-    # One number: pick its row.
-    if isinstance(index, float):
-        return rows[int(index)]
-    # Many numbers: each element takes the row of its own index.
-    chosen = rows[0]
-    for number, row in enumerate(rows[1:], 1):
-        chosen = [where(index == number, new, old) for new, old in zip(row, chosen, strict=True)]
-    return chosen
 
 
 def _float(value):

@@ -15,7 +15,7 @@ has an effect at once. It may reverse only where another unit is missing: the re
 not push the other way in time.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from shipcosim.models.allocation.box_qp import Command, solve
 from shipcosim.models.allocation.units import no_thrust
@@ -29,7 +29,7 @@ from shipcosim.models.core.maths import (
     sqrt,
     where,
 )
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Triple
 
 _GENTLE = 0.02  # share of a unit's largest thrust below which its price is taken as quadratic
 _STIR = 0.004  # share of a unit's largest thrust that turning reckons with at least, so that a unit at rest turns
@@ -172,6 +172,7 @@ def power_step(
     *,
     design: OptimalProblem,
     shares: tuple | None = None,
+    parameters: Any = None,
 ) -> Turned:
     """Commands that meet a requested load at the least power, `h` after the last ones.
 
@@ -190,6 +191,8 @@ def power_step(
     shares : tuple of floats or (...) arrays or tensors, optional
         Shares of their limits of thrust that power leaves to the units; what exceeds them is taken back at once,
         without limit of the rate. [1]
+    parameters : any
+        Of the FMU, as every law gets them; the design has what is needed of them. [as their fields]
 
     Returns
     -------
@@ -336,8 +339,8 @@ class _Around(NamedTuple):
     unit: AllocatedThruster
     thrust: Arithmetic
     azimuth: Arithmetic
-    effect: tuple[Arithmetic, Arithmetic, Arithmetic]
-    turning: tuple[Arithmetic, Arithmetic, Arithmetic]
+    effect: Triple
+    turning: Triple
     low: Arithmetic
     high: Arithmetic
     left: Arithmetic
@@ -449,9 +452,7 @@ def _nearest(at, thrusts, azimuths):
     )
 
 
-def _effect(
-    unit: AllocatedThruster, s: Arithmetic, c: Arithmetic
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def _effect(unit: AllocatedThruster, s: Arithmetic, c: Arithmetic) -> Triple:
     """Load of one newton at an angle of given sine and cosine."""
     return c, s, unit.x * s - unit.y * c
 

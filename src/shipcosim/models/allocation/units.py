@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from shipcosim.models.core.maths import Arithmetic, maximum, sqrt, where
+from shipcosim.models.core.maths import Arithmetic, cos, maximum, pi, sin, sqrt, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import required
 
@@ -34,6 +34,29 @@ class NamedUnits:
     yaw_lever_degraded: float = required(
         "m", "the same where a unit is missing: position before heading", minimum=0.1
     )
+
+    @property
+    def limits(self) -> tuple:
+        """Least and most thrust of port, starboard and tunnel. [N]"""
+        azimuth = self.azimuth_thrust_min, self.azimuth_thrust_max
+        return azimuth, azimuth, (-self.tunnel_thrust_max, self.tunnel_thrust_max)
+
+    @property
+    def by_unit(self) -> dict[str, tuple]:
+        """Quantities of port, starboard and tunnel by the names that units with numbers have."""
+        least, most = zip(*self.limits, strict=True)
+        return {
+            "x": (self.port_x, self.starboard_x, self.tunnel_x),
+            "y": (self.port_y, self.starboard_y, 0.0),
+            "azimuth": (self.port_azimuth, self.starboard_azimuth, 0.5 * pi),
+            "thrust_min": least,
+            "thrust_max": most,
+            "thrust_rate": (self.thrust_rate_max,) * 3,
+        }
+
+    def of_units(self, name: str) -> tuple:
+        """A quantity of port, starboard and tunnel."""
+        return self.by_unit[name]
 
 
 class Allocated(NamedTuple):
@@ -142,6 +165,36 @@ def thruster_power(shares: tuple, full: tuple) -> Arithmetic:
         most * (share * sqrt(maximum(share, 1e-12)))
         for share, most in zip(shares, full, strict=True)
     )
+
+
+def unit_effect(x: Arithmetic, y: Arithmetic, azimuth: Arithmetic) -> Load:
+    """Column of the thruster configuration matrix: load of one newton of a unit.
+
+    Parameters
+    ----------
+    x, y : float or (...) array or tensor
+        Place, forward and to starboard of the origin. [m]
+    azimuth : like x
+        Direction of positive thrust, clockwise from the bow. [rad]
+
+    Returns
+    -------
+    tuple of three, like azimuth
+        cos α, sin α, x sin α - y cos α. [1, 1, m]
+
+    References
+    ----------
+    Skulstad, Data-based modelling of ships for motion prediction and control allocation, NTNU, 2021, eq. 2.4, with the
+    full yaw arm.
+
+    Examples
+    --------
+    >>> unit_effect(10.0, 2.0, 0.0)
+    (1.0, 0.0, -2.0)
+    """
+    c = cos(azimuth)
+    s = sin(azimuth)
+    return c, s, x * s - y * c
 
 
 def load(thrusts: Sequence, effect: tuple) -> Load:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from shipcosim.angles import wrap
+from shipcosim.models.control.position_voting import believed_again
 from shipcosim.models.core.maths import Arithmetic, exp, minimum, where
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.ship.sensor_messages import Heading
@@ -164,56 +165,53 @@ def step(
     prediction; while it is silent its state stays.
     """
     p = parameters
-    (first, second) = headings
-    (one, two) = state.headings
     keep = exp(-dt / p.compass_memory)
     gain = 1.0 - exp(-dt / p.compass_filter)
-    off_one = wrap(first.psi - predicted)
-    off_two = wrap(second.psi - predicted)
-    moved_one = wrap(first.psi - one.psi)
-    moved_two = wrap(second.psi - two.psi)
+    off = [wrap(new.psi - predicted) for new in headings]
+    moved = [wrap(new.psi - old.psi) for new, old in zip(headings, state.headings, strict=True)]
     # Compass turn minus gyro turn, with forgetting; a new one starts at its deviation.
-    memory = (
-        where(one.valid > 0.5, keep * state.memory[0] + moved_one - dt * r, off_one),
-        where(two.valid > 0.5, keep * state.memory[1] + moved_two - dt * r, off_two),
+    first, second = [
+        where(old.valid > 0.5, keep * before + turn - dt * r, fresh)
+        for old, before, turn, fresh in zip(state.headings, state.memory, moved, off, strict=True)
+    ]
+    memory = first, second
+    # Frozen: unchanged while other sensors change.
+    first, second = [
+        where(turn == 0.0, time + dt, 0.0 * dt)
+        for turn, time in zip(moved, state.unchanged, strict=True)
+    ]
+    limit = p.compass_freeze_time
+    rests = zip(headings, (first, second), (second, first), strict=True)
+    usable = tuple(
+        [
+            where((time >= limit) & (minimum(quiet, other) < limit), 0.0, new.valid)
+            for new, time, other in rests
+        ]
     )
-    unchanged = (
-        where(moved_one == 0.0, state.unchanged[0] + dt, 0.0 * dt),
-        where(moved_two == 0.0, state.unchanged[1] + dt, 0.0 * dt),
-    )
-    usable = (
-        _usable(first, unchanged[0], minimum(quiet, unchanged[1]), p.compass_freeze_time),
-        _usable(second, unchanged[1], minimum(quiet, unchanged[0]), p.compass_freeze_time),
-    )
-    difference = wrap(first.psi - second.psi - state.apart)
+    difference = wrap(headings[0].psi - headings[1].psi - state.apart)
     apart = usable[0] * usable[1] * (state.apart + gain * difference)
     passed = _passed(state, usable, memory, abs(apart) > p.compass_apart_max, p)
+    # How long each has agreed with the other, if that is used, else with the prediction.
     limit = p.compass_gyro_max + p.gyro_drift * state.age
     between = abs(apart) - p.compass_apart_max
-    agreed = (
-        _agreed(state.agreed[0] + dt, usable[0], passed[1], between, abs(off_one) - limit),
-        _agreed(state.agreed[1] + dt, usable[1], passed[0], between, abs(off_two) - limit),
+    times = zip(state.agreed, usable, (passed[1], passed[0]), off, strict=True)
+    agreed = tuple(
+        [
+            where(
+                where(other > 0.5, between, abs(error) - limit) <= 0.0,
+                use * (time + dt),
+                0.0 * (time + dt),
+            )
+            for time, use, other, error in times
+        ]
     )
-    believed = (
-        where(
-            (agreed[0] >= p.compass_return_time),
-            1.0,
-            where(first.valid > 0.5, passed[0], state.believed[0]),
-        ),
-        where(
-            (agreed[1] >= p.compass_return_time),
-            1.0,
-            where(second.valid > 0.5, passed[1], state.believed[1]),
-        ),
+    believed = believed_again(
+        headings, state.believed, passed, agreed, return_time=p.compass_return_time
     )
+    unchanged = first, second
     psi = _mean(headings, passed, predicted)
     age = where(passed[0] + passed[1] > 0.5, 0.0 * dt, state.age + dt)
     return CompassVote(headings, unchanged, memory, apart, believed, agreed, passed, psi, age)
-
-
-def _usable(heading, unchanged, others, limit):
-    """1 for a valid compass that is not frozen (unchanged while other sensors change)."""
-    return where((unchanged >= limit) & (others < limit), 0.0, heading.valid)
 
 
 def _passed(state, usable, memory, disagree, p):
@@ -229,11 +227,6 @@ def _passed(state, usable, memory, disagree, p):
         where((one > p.compass_gyro_max) | (apart & (one >= two)), 0.0, first),
         where((two > p.compass_gyro_max) | (apart & (two > one)), 0.0, second),
     )
-
-
-def _agreed(time, usable, other, between, alone):
-    """How long a compass has agreed with the other, if that is used, else with the prediction."""
-    return where(where(other > 0.5, between, alone) <= 0.0, usable * time, 0.0 * time)
 
 
 def _mean(headings, weights, otherwise):

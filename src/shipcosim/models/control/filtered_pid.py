@@ -11,6 +11,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic, exp
+from shipcosim.models.core.motion import Triple
 from shipcosim.models.core.parameters import required
 
 
@@ -82,7 +83,7 @@ def at_rest(x: Arithmetic, y: Arithmetic, psi: Arithmetic) -> FilteredPidState:
     return FilteredPidState(x, y, psi, *(zero,) * 9)
 
 
-def errors(state: FilteredPidState, desired: Desired) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def errors(state: FilteredPidState, desired: Desired) -> Triple:
     """Desired less filtered position and heading in body axes.
 
     Parameters
@@ -107,7 +108,7 @@ def errors(state: FilteredPidState, desired: Desired) -> tuple[Arithmetic, Arith
 
 def step(
     state: FilteredPidState,
-    measured: tuple[Arithmetic, Arithmetic, Arithmetic],
+    measured: Triple,
     desired: Desired,
     h: float,
     *,

@@ -12,7 +12,7 @@ from shipcosim.models.control.observer import DpShip, StateEstimate
 from shipcosim.models.control.reference import ReferenceState
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, maximum
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Vector
 from shipcosim.models.core.parameters import required
 
 
@@ -205,9 +205,7 @@ def step(
     return ControlState(*wind, *_smoothed(state, wanted, h, parameters=parameters))
 
 
-def errors(
-    estimate: StateEstimate, desired: Desired | ReferenceState
-) -> tuple[Arithmetic, Arithmetic]:
+def errors(estimate: StateEstimate, desired: Desired | ReferenceState) -> Vector:
     """Distance from the desired to the estimated position, and estimated less desired heading.
 
     Parameters

@@ -225,7 +225,9 @@ def step(
         unchanged,
         memory,
         apart,
-        _believed(state, fixes, candidates, agreed, p),
+        believed_again(
+            fixes, state.believed, candidates, agreed, return_time=p.position_return_time
+        ),
         agreed,
         used,
         Fix(mean.x + north, mean.y + east, mean.u, mean.v, near),
@@ -394,14 +396,31 @@ def _agreed(state, usable, used, disagree, too_far, dt):
     return tuple(found)
 
 
-def _believed(state, fixes, candidates, agreed, p):
-    """Belief in each reference: it passed the tests, or has agreed for long enough."""
-    found = []
-    # A silent reference keeps its state until it speaks again.
-    for fix, was, passed, time in zip(fixes, state.believed, candidates, agreed, strict=True):
-        found.append(
-            maximum(
-                where(fix.valid > 0.5, passed, was), where(time >= p.position_return_time, 1.0, 0.0)
-            )
-        )
-    return tuple(found)
+def believed_again(
+    messages: tuple, before: tuple, passed: tuple, agreed: tuple, *, return_time: float
+) -> tuple:
+    """Belief in each sensor: it passed the tests, or has agreed for long enough.
+
+    Parameters
+    ----------
+    messages : tuple of Fix or Heading
+        A silent sensor keeps its state until it speaks again. [as their fields]
+    before, passed : tuple of floats or (...) arrays
+        1 of a sensor that was believed, and that passed the tests now. [1]
+    agreed : tuple, as many
+        How long each has agreed with what is used. [s]
+    return_time : float
+        After which a rejected sensor is believed again. [s]
+
+    Returns
+    -------
+    tuple, as many
+        1 or 0. [1]
+    """
+    sensors = zip(messages, before, passed, agreed, strict=True)
+    return tuple(
+        [
+            where(time >= return_time, 1.0, where(new.valid > 0.5, now, was))
+            for new, was, now, time in sensors
+        ]
+    )

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
+from shipcosim.models.core.motion import Triple
 from shipcosim.models.core.parameters import quantity, required
 
 
@@ -120,7 +121,7 @@ def resumed(motion: Sequence[Arithmetic], *, parameters: ReferenceParameters) ->
 
 def step(
     state: ReferenceState,
-    setpoint: tuple[Arithmetic, Arithmetic, Arithmetic],
+    setpoint: Triple,
     h: float,
     *,
     parameters: ReferenceParameters,
@@ -175,7 +176,7 @@ def step(
 
 def critically_damped(
     h: float, e: Arithmetic, v: Arithmetic, a: Arithmetic, *, frequency: Arithmetic
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+) -> Triple:
     """Exact solution of (d/dt + w)³ e = 0 after time `h`.
 
     Parameters

@@ -9,6 +9,7 @@ from math import ceil
 
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic
+from shipcosim.models.core.motion import Vector
 
 _EXACT = 1e-9  # share of a sub-step by which a step may exceed a whole number of them by rounding
 
@@ -122,7 +123,7 @@ def rk4(
 
 def rk4_pair(
     rates: Callable, x: Arithmetic, y: Arithmetic, h: float, start: tuple, middle: tuple, end: tuple
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """`rk4` of two variables, written out.
 
     Parameters

@@ -6,12 +6,10 @@ Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wile
 """
 
 from shipcosim.models.core.maths import Arithmetic, sincos
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Triple, Vector
 
 
-def to_ned(
-    psi: Arithmetic, forward: Arithmetic, starboard: Arithmetic
-) -> tuple[Arithmetic, Arithmetic]:
+def to_ned(psi: Arithmetic, forward: Arithmetic, starboard: Arithmetic) -> Vector:
     """Components in north and east of a vector given in body axes, R(ψ) of the horizontal plane.
 
     Parameters
@@ -30,7 +28,7 @@ def to_ned(
     return c * forward - s * starboard, s * forward + c * starboard
 
 
-def to_body(psi: Arithmetic, north: Arithmetic, east: Arithmetic) -> tuple[Arithmetic, Arithmetic]:
+def to_body(psi: Arithmetic, north: Arithmetic, east: Arithmetic) -> Vector:
     """Components in body axes of a vector given in north and east, R(ψ)ᵀ of the horizontal plane.
 
     Parameters
@@ -56,9 +54,7 @@ def to_body(psi: Arithmetic, north: Arithmetic, east: Arithmetic) -> tuple[Arith
     return c * north + s * east, c * east - s * north
 
 
-def eta_dot(
-    psi: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def eta_dot(psi: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic) -> Triple:
     """Rate of position and heading, η̇ = R(ψ) ν.
 
     Parameters
@@ -87,7 +83,7 @@ def eta_dot(
 
 def velocity_at(
     x: Arithmetic, y: Arithmetic, u: Arithmetic, v: Arithmetic, r: Arithmetic
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Velocity of a point fixed to the ship.
 
     Parameters

@@ -26,3 +26,7 @@ class Motion(NamedTuple):
 
 Load = tuple[Arithmetic, Arithmetic, Arithmetic]
 """Load τ = (X, Y, N) on a ship in body axes: force forward, to starboard, and yaw moment. [N, N, N.m]"""
+Vector = tuple[Arithmetic, Arithmetic]
+"""Two numbers: north and east, or forward and to starboard. [any unit]"""
+Triple = tuple[Arithmetic, Arithmetic, Arithmetic]
+"""Three numbers: of surge, sway and yaw, or of three units. [any unit]"""

@@ -6,7 +6,7 @@ Hochreiter, Schmidhuber, Long short-term memory, Neural Computation 9, 1997; wit
 Cummins, Learning to forget, Neural Computation 12, 2000.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -107,6 +107,47 @@ def network_of(arrays: Mapping[str, np.ndarray], name: str) -> Network:
         Layer(arrays[f"{name}.{one}.weights"], arrays[f"{name}.{one}.bias"]) for one in names
     )
     return Network(tuple(lstm), last)
+
+
+def members_of(arrays: Mapping[str, np.ndarray]) -> tuple[Network, ...]:
+    """The members of an ensemble from its arrays.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+        ``member1.lstm.1.weights`` and so on, as of `network_of`. [1]
+
+    Returns
+    -------
+    tuple of Network
+        [1]
+    """
+    count = sum(name.startswith("member") and name.endswith("dense.bias") for name in arrays)
+    return tuple(network_of(arrays, f"member{number}") for number in range(1, count + 1))
+
+
+def evaluate_members(
+    members: Sequence[Network], x: np.ndarray, memory: Sequence[tuple[Memory, ...]]
+) -> tuple[list[np.ndarray], tuple[tuple[Memory, ...], ...]]:
+    """Outputs of all members for one sample.
+
+    Parameters
+    ----------
+    members : sequence of Network
+        The networks.
+    x : (..., inputs) array
+        Inputs. [1]
+    memory : sequence of tuples of Memory
+        Of the sample before; empty before the first one. [1]
+
+    Returns
+    -------
+    list of (..., outputs) arrays, and tuple
+        Outputs by member; memory after the sample. [1; 1]
+    """
+    memory = memory or [empty_memory(member, x.shape[:-1]) for member in members]
+    pairs = [evaluate(net, x, kept) for net, kept in zip(members, memory, strict=True)]
+    return [pair[0] for pair in pairs], tuple(pair[1] for pair in pairs)
 
 
 def empty_memory(network: Network, shape: tuple[int, ...] = ()) -> tuple[Memory, ...]:

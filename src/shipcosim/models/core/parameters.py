@@ -5,7 +5,8 @@ References
 Definition.
 """
 
-from dataclasses import field
+from collections.abc import Callable
+from dataclasses import field, make_dataclass
 from typing import Any
 
 LEFT_OUT = 1e30
@@ -99,6 +100,51 @@ def required_table(columns: tuple[str, ...], description: str) -> Any:
         The field, whose metadata are what is given here. [as columns say]
     """
     return field(metadata=_about("1", description, str, columns=tuple(columns)))
+
+
+UNITS = 6
+"""Most thrusters of a ship whose thrusters have numbers. [1]"""
+
+
+def numbered_units(fields_of: Callable[[int], dict[str, Any]]) -> Any:
+    """Base class for parameters of the units 1 to `UNITS`: ``x_1``, ``y_1``, ``x_2`` and so on.
+
+    Parameters
+    ----------
+    fields_of : callable
+        From the number of a unit to its fields by name, without the number; each made by `quantity`.
+
+    Returns
+    -------
+    type
+        A frozen dataclass with the fields of unit 1, then those of unit 2, and so on. [as the fields]
+    """
+    fields = [
+        (f"{name}_{number}", float, declared)
+        for number in range(1, UNITS + 1)
+        for name, declared in fields_of(number).items()
+    ]
+    return make_dataclass(
+        "NumberedUnits", fields, namespace={"of_units": of_units}, frozen=True, kw_only=True
+    )
+
+
+def of_units(parameters: Any, name: str) -> list[float]:
+    """A parameter of all units, in their order.
+
+    Parameters
+    ----------
+    parameters : any
+        With a base class made by `numbered_units`. [as its fields]
+    name : str
+        Of the parameter, without the number.
+
+    Returns
+    -------
+    list of float
+        One a unit. [as the parameter]
+    """
+    return [getattr(parameters, f"{name}_{number}") for number in range(1, UNITS + 1)]
 
 
 def _about(unit: str, description: str, kind: type, **more: Any) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, atan2, clip, hypot, where
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity
 
 _STILL = 1e-9  # m/s, below which a current has no direction
@@ -40,7 +41,7 @@ def varying_current(
     *,
     time_start: float,
     time_end: float,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Current between two times: speed and direction are each linear in time, the direction turns the shorter way.
 
     Before the start and after the end it stays as it is there. Where one of the two currents has no speed, its

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from shipcosim.models.core.maths import Arithmetic, cos, exp, hypot, maximum, sin, sqrt
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity
 
 _SET = "set by the scenario"
@@ -70,7 +71,7 @@ class HarbourParameters:
 
 def local_wind(
     x: Arithmetic, y: Arithmetic, north: Arithmetic, east: Arithmetic, *, harbour: HarbourParameters
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Wind at a place: land shelters from the wind that blows off it, more so near the berth.
 
     Parameters
@@ -109,7 +110,7 @@ def local_wind(
 
 def local_current(
     x: Arithmetic, y: Arithmetic, north: Arithmetic, east: Arithmetic, *, harbour: HarbourParameters
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Current at a place: the tide, weaker and along the channel near the berth, and the river.
 
     Parameters

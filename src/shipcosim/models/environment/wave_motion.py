@@ -12,59 +12,6 @@ from shipcosim.models.environment.waves import Waves, phase_angle, waves_like
 _ALMOST_ZERO = 1e-6
 
 
-def first_order_motion(
-    t: Arithmetic,
-    x: Arithmetic,
-    y: Arithmetic,
-    psi: Arithmetic,
-    waves: Waves,
-    *,
-    length: Arithmetic,
-    breadth: Arithmetic,
-    draught: Arithmetic,
-    u: Arithmetic = 0.0,
-    v: Arithmetic = 0.0,
-) -> Motion:
-    """First-order wave motion: water's motion averaged over waterplane and half the draught.
-
-    With q = k L cos(beta)/2, p = k B sin(beta)/2, A = a exp(-k T/2) sin(q)/q sin(p)/p the ship is displaced along
-    the direction of the waves by sum A sin(theta), and turned by
-
-        psi_wave = -sum a exp(-k T/2) sin(beta) (6/L) (sin q - q cos q)/q^2 cos(theta)
-
-    which is the slope of the straight line that fits the sideways displacement of the water along the length best
-    (least squares). Rates use the frequency of encounter; the yaw rate of the ship is neglected in them.
-
-    Parameters
-    ----------
-    t : float or (m,) array
-        Time. [s]
-    x, y, psi : float or (m,) array or tensor
-        Position and heading of the low-frequency ship. [m, m, rad]
-    waves : Waves
-        The sea. [m, rad/s, rad/m, rad]
-    length, breadth, draught : float or (m,) array
-        Waterline length L and breadth B, draught T. [m]
-    u, v : like x
-        Velocity of the low-frequency ship over ground in body axes. [m/s]
-
-    Returns
-    -------
-    Motion, like x
-        x_wave, y_wave (north, east), psi_wave, and their rates in body axes u_wave, v_wave, r_wave.
-        [m, m, rad, m/s, m/s, rad/s]
-
-    References
-    ----------
-    Assumed, grade D: no motion transfer functions are at hand (nominal model, waves).
-    """
-    if waves.calm:
-        return Motion(*(x - x,) * 6)
-    waves = waves_like(waves, x, y, psi)
-    s, c = sincos(phase_angle(t, x, y, waves))
-    return _motion(c, s, psi, u, v, waves, length, breadth, draught)
-
-
 def wave_response(
     t: Arithmetic,
     x: Arithmetic,
@@ -79,7 +26,16 @@ def wave_response(
     breadth: Arithmetic,
     draught: Arithmetic,
 ) -> tuple[Load, Motion]:
-    """Drift load and first-order motion together, from the same phase angles.
+    """Drift load and first-order wave motion together, from the same phase angles.
+
+    The motion is the water's, averaged over waterplane and half the draught. With q = k L cos(beta)/2,
+    p = k B sin(beta)/2, A = a exp(-k T/2) sin(q)/q sin(p)/p the ship is displaced along the direction of the waves by
+    sum A sin(theta), and turned by
+
+        psi_wave = -sum a exp(-k T/2) sin(beta) (6/L) (sin q - q cos q)/q^2 cos(theta)
+
+    which is the slope of the straight line that fits the sideways displacement of the water along the length best
+    (least squares). Rates use the frequency of encounter; the yaw rate of the ship is neglected in them.
 
     Parameters
     ----------
@@ -101,11 +57,12 @@ def wave_response(
     load : tuple of three, like x
         Drift load as `wave_loads.drift` gives it. [N, N, N.m]
     motion : Motion, like x
-        As `first_order_motion` gives it. [m, m, rad, m/s, m/s, rad/s]
+        x_wave, y_wave (north, east), psi_wave, and their rates in body axes u_wave, v_wave, r_wave.
+        [m, m, rad, m/s, m/s, rad/s]
 
     References
     ----------
-    As `wave_loads.drift` and `first_order_motion`.
+    Load: as `wave_loads.drift`. Motion: assumed, grade D: no motion transfer functions are at hand (nominal model, waves).
     """
     if waves.calm:
         zero = x - x
@@ -118,7 +75,7 @@ def wave_response(
 
 
 def _motion(c, s, psi, u, v, waves, length, breadth, draught):
-    """`first_order_motion` from the cosine c and sine s of the phase angles."""
+    """First-order motion from the cosine c and sine s of the phase angles."""
     # Sine and cosine of the relative wave direction β, kept off zero for the divisions below.
     across, ahead = sincos(waves.direction - psi)
     some_across = _not_zero(across)

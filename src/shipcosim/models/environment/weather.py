@@ -7,6 +7,7 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, clip, cos, sin
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.environment.gusts import gust
 
@@ -127,7 +128,7 @@ def step(
 
 def air_velocity(
     t: Arithmetic, state: EnvironmentState, *, gust_scale: Arithmetic, seed: int | np.ndarray
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Velocity of the air at 10 m over ground, gusts included: where it goes to.
 
     Parameters
@@ -165,7 +166,7 @@ def air_velocity(
     return -speed * cos(state.wind_from), -speed * sin(state.wind_from)
 
 
-def water_velocity(state: EnvironmentState) -> tuple[Arithmetic, Arithmetic]:
+def water_velocity(state: EnvironmentState) -> Vector:
     """Velocity of the water over ground: where it goes to.
 
     Parameters

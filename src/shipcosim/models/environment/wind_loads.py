@@ -7,7 +7,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.interpolation import interp_columns
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic, atan2, hypot, pi, where
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Vector
 from shipcosim.models.core.parameters import acts, quantity, required_table
 from shipcosim.models.core.tables import columns
 
@@ -44,7 +44,7 @@ class WindParameters:
 
 def apparent_wind(
     psi: Arithmetic, u: Arithmetic, v: Arithmetic, wind_north: Arithmetic, wind_east: Arithmetic
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Wind relative to the moving ship.
 
     Parameters

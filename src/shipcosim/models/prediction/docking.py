@@ -18,8 +18,8 @@ import numpy as np
 from shipcosim.angles import wrap
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.maths import Arithmetic, cos, hypot, sin, where
-from shipcosim.models.core.motion import Load, Motion
-from shipcosim.models.core.networks import Memory, Network, empty_memory, evaluate, network_of
+from shipcosim.models.core.motion import Load, Motion, Triple, Vector
+from shipcosim.models.core.networks import Memory, Network, evaluate_members, members_of
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.prediction import helm
 from shipcosim.models.prediction.drift_off import trust
@@ -91,9 +91,7 @@ def trained_of(arrays: Mapping[str, np.ndarray]) -> Trained:
     Trained
         [as in arrays]
     """
-    members = sum(name.startswith("member") and name.endswith("dense.bias") for name in arrays)
-    networks = tuple(network_of(arrays, f"member{number}") for number in range(1, members + 1))
-    return Trained(networks, *(arrays[name] for name in Trained._fields[1:]))
+    return Trained(members_of(arrays), *(arrays[name] for name in Trained._fields[1:]))
 
 
 def begin(aboard: Aboard, age: float) -> Own:
@@ -209,7 +207,7 @@ def features(aboard: Aboard, own: Own, ahead: Motion, hull: HullParameters) -> n
     return np.stack(np.broadcast_arrays(*found), axis=-1)
 
 
-def quay(ship: Motion) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+def quay(ship: Motion) -> Triple:
     """Direction and distance of the quay from the ship; large distances are compressed.
 
     Parameters
@@ -230,24 +228,6 @@ def quay(ship: Motion) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
     return forward * share, starboard * share, size
 
 
-def empty(trained: Trained, shape: tuple[int, ...] = ()) -> tuple[tuple[Memory, ...], ...]:
-    """Memory of the members before the first sample.
-
-    Parameters
-    ----------
-    trained : Trained
-        The ensemble.
-    shape : tuple of int
-        Shape of the features before their last axis. [1]
-
-    Returns
-    -------
-    tuple of tuples of Memory
-        [1]
-    """
-    return tuple(empty_memory(network, shape) for network in trained.networks)
-
-
 def outputs(
     inputs: np.ndarray, memory: Sequence[tuple[Memory, ...]], trained: Trained
 ) -> tuple[np.ndarray, tuple]:
@@ -258,7 +238,7 @@ def outputs(
     inputs : (..., n) array
         Standardised features. [1]
     memory : sequence of tuples of Memory
-        Of the sample before. [1]
+        Of the sample before; empty before the first one. [1]
     trained : Trained
         The ensemble.
 
@@ -267,10 +247,8 @@ def outputs(
     (members, ..., 3 k) array and tuple
         Outputs with their scale, memory after the sample. [m, m, rad; 1]
     """
-    pairs = [
-        evaluate(net, inputs, kept) for net, kept in zip(trained.networks, memory, strict=True)
-    ]
-    return trained.scale * np.stack([pair[0] for pair in pairs]), tuple(pair[1] for pair in pairs)
+    given, memory = evaluate_members(trained.networks, inputs, memory)
+    return trained.scale * np.stack(given), memory
 
 
 def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
@@ -291,6 +269,18 @@ def standardised(found: np.ndarray, trained: Trained) -> np.ndarray:
     return np.clip((found - trained.mean) / trained.std, -CUT, CUT)
 
 
+def basis() -> np.ndarray:
+    """Polynomials in time by which outputs correct the path.
+
+    Returns
+    -------
+    (k, `LONGEST`) array
+        Powers of the share of 30 s, one a second. [1]
+    """
+    share = np.arange(1, LONGEST + 1) / LONGEST
+    return np.stack([share**power for power in POWERS])
+
+
 def corrections(given: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Corrections for each second from the outputs.
 
@@ -306,9 +296,8 @@ def corrections(given: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     # Each correction is a polynomial in t / 30 s: smooth over time, with few outputs.
     k = len(POWERS)
-    share = np.arange(1, LONGEST + 1) / LONGEST
-    basis = np.stack([share**power for power in POWERS])
-    return given[..., :k] @ basis, given[..., k : 2 * k] @ basis, given[..., 2 * k :] @ basis
+    over = basis()
+    return given[..., :k] @ over, given[..., k : 2 * k] @ over, given[..., 2 * k :] @ over
 
 
 def spread(given: np.ndarray) -> np.ndarray:
@@ -409,9 +398,7 @@ def blended(kinetic: Sequence[Motion], learned: Sequence[tuple], share: Arithmet
     return found
 
 
-def regions(
-    widths: np.ndarray, errors: tuple[Arithmetic, Arithmetic]
-) -> tuple[list[Arithmetic], list[Arithmetic]]:
+def regions(widths: np.ndarray, errors: Vector) -> tuple[list[Arithmetic], list[Arithmetic]]:
     """Regions about predictions, widened by the predictor's own record as in `regions.widening`.
 
     Parameters

@@ -93,9 +93,6 @@ class PaperIii(Kinetic):
 
     ensemble: Ensemble
 
-    def begin(self, aboard: Aboard, model: Model) -> State:
-        return super().begin(aboard, model)._replace(memory=paper_iii.empty(self.ensemble))
-
     def predict(self, state: State, model: Model) -> tuple[list[tuple], float, State]:
         found = paper_iii.inputs(state.aboard)
         expected, memory = paper_iii.errors(found, state.memory, self.ensemble)
@@ -122,7 +119,7 @@ class Ours(Kinetic):
 
     def begin(self, aboard: Aboard, model: Model) -> State:
         own = docking.begin(aboard, model.helm.position_age)
-        return super().begin(aboard, model)._replace(own=own, memory=docking.empty(self.trained))
+        return super().begin(aboard, model)._replace(own=own)
 
     def follow(self, state: State, aboard: Aboard, model: Model) -> State:
         laws = {"hull": model.hull, "wind": model.wind, "helm_": model.helm}

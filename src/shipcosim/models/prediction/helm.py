@@ -15,9 +15,10 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import midpoint_motion
 from shipcosim.models.core.kinematics import load_at, to_body, to_ned, velocity_at
 from shipcosim.models.core.maths import Arithmetic, clip, cos, hypot, sin
-from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
+from shipcosim.models.prediction.predictor_inputs import air_velocity
 from shipcosim.models.propulsion.propeller import (
     PropellerParameters,
     bollard_speed,
@@ -115,26 +116,31 @@ class Aboard(NamedTuple):
     ship: Motion
     wind_speed: Arithmetic
     wind_from: Arithmetic
-    thrust_cmd: tuple[Arithmetic, Arithmetic, Arithmetic]
-    azimuth_cmd: tuple[Arithmetic, Arithmetic]
-    rpm: tuple[Arithmetic, Arithmetic, Arithmetic]
-    azimuth: tuple[Arithmetic, Arithmetic]
+    thrust_cmd: Triple
+    azimuth_cmd: Vector
+    rpm: Triple
+    azimuth: Vector
 
 
 KNOWN = (
-    *(
-        "x_meas",
-        "y_meas",
-        "psi_meas",
-        "u_meas",
-        "v_meas",
-        "r_meas",
-        "wind_speed_meas",
-        "wind_from_meas",
-    ),
-    *("port_thrust_cmd", "port_azimuth_cmd", "port_rpm", "port_azimuth"),
-    *("starboard_thrust_cmd", "starboard_azimuth_cmd", "starboard_rpm", "starboard_azimuth"),
-    *("tunnel_thrust_cmd", "tunnel_rpm"),
+    "x_meas",
+    "y_meas",
+    "psi_meas",
+    "u_meas",
+    "v_meas",
+    "r_meas",
+    "wind_speed_meas",
+    "wind_from_meas",
+    "port_thrust_cmd",
+    "port_azimuth_cmd",
+    "port_rpm",
+    "port_azimuth",
+    "starboard_thrust_cmd",
+    "starboard_azimuth_cmd",
+    "starboard_rpm",
+    "starboard_azimuth",
+    "tunnel_thrust_cmd",
+    "tunnel_rpm",
 )
 """Inputs of a predictor of dockings, by name."""
 
@@ -233,7 +239,7 @@ def smoothed(latest: Start, ship: Motion) -> Motion:
 
 
 def thruster_loads(
-    aboard: Aboard, water: tuple[Arithmetic, Arithmetic], *, helm: HelmParameters
+    aboard: Aboard, water: Vector, *, helm: HelmParameters
 ) -> Callable[[float], Callable[[Arithmetic, Arithmetic, Arithmetic], Load]]:
     """Load of the thrusters over time and the ship's velocity through the water, while their commands stay put.
 
@@ -317,7 +323,7 @@ def _towards(now, told, most):
 
 def predict(
     aboard: Aboard,
-    current: tuple[Arithmetic, Arithmetic] = (0.0, 0.0),
+    current: Vector = (0.0, 0.0),
     left: Load = (0.0, 0.0, 0.0),
     *,
     hull: HullParameters,
@@ -351,7 +357,7 @@ def predict(
     """
     ship = aboard.ship
     # The air's velocity over ground is held, not the apparent wind, which changes with her motion.
-    air = _air(aboard)
+    air = air_velocity(aboard)
     x, y, psi, _, _, r = ship
     # Hull loads depend on the velocity through the water, so it is integrated.
     u_r, v_r = through_water(psi, ship.u, ship.v, *current)
@@ -378,13 +384,3 @@ def _rates(thrusters, heading, current, air, left, hull, wind):
         return accelerations(u_r, v_r, r, *tau, hull=hull)
 
     return rates
-
-
-def _air(aboard):
-    """Velocity of the air over ground, north and east, as in `air_velocity`."""
-    # Air velocity = ship velocity - apparent wind (given by where it comes from).
-    ship = aboard.ship
-    speed = aboard.wind_speed
-    return to_ned(
-        ship.psi, ship.u - speed * cos(aboard.wind_from), ship.v - speed * sin(aboard.wind_from)
-    )

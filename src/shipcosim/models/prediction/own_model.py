@@ -9,16 +9,30 @@ from typing import NamedTuple
 
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.maths import Arithmetic, clip, exp, hypot, sqrt, where
-from shipcosim.models.core.motion import Load
+from shipcosim.models.core.motion import Load, Vector
 from shipcosim.models.environment.wind_loads import WindParameters, apparent_wind, wind_loads
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
 
 COEFFICIENTS = (
-    *("surge_square", "surge_linear", "sway_square", "sway_linear"),
-    *("yaw_by_sway_square", "yaw_by_sway_linear", "yaw_by_surge_sway", "yaw_square", "yaw_linear"),
-    *("wind_X", "wind_Y", "wind_N", "wind_lever"),
-    *("thrust_stern_X", "thrust_stern_Y", "thrust_bow", "wash_X", "wash_Y"),
+    "surge_square",
+    "surge_linear",
+    "sway_square",
+    "sway_linear",
+    "yaw_by_sway_square",
+    "yaw_by_sway_linear",
+    "yaw_by_surge_sway",
+    "yaw_square",
+    "yaw_linear",
+    "wind_X",
+    "wind_Y",
+    "wind_N",
+    "wind_lever",
+    "thrust_stern_X",
+    "thrust_stern_Y",
+    "thrust_bow",
+    "wash_X",
+    "wash_Y",
 )
 """Coefficients of the residual load, in their order in the state."""
 MEASURED = ("x", "y", "psi", "u", "v", "r")
@@ -240,7 +254,7 @@ def residual_load(
 
 def moved(
     states: Sequence[Arithmetic],
-    air: tuple[Arithmetic, Arithmetic],
+    air: Vector,
     thrust: Thrust,
     h: float,
     *,

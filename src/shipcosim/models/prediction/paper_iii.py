@@ -14,29 +14,25 @@ import numpy as np
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import atan2, hypot, pi
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.core.networks import Memory, Network, empty_memory, evaluate, network_of
+from shipcosim.models.core.networks import Memory, Network, evaluate_members, members_of
 from shipcosim.models.prediction.helm import LONGEST, Aboard
 
 INPUTS = (
-    *(
-        "north",
-        "east",
-        "heading",
-        "surge speed",
-        "sway speed",
-        "heading rate",
-        "wind direction",
-        "wind speed",
-    ),
-    *(
-        "course",
-        "total speed",
-        "port rpm",
-        "port angle",
-        "starboard rpm",
-        "starboard angle",
-        "tunnel rpm",
-    ),
+    "north",
+    "east",
+    "heading",
+    "surge speed",
+    "sway speed",
+    "heading rate",
+    "wind direction",
+    "wind speed",
+    "course",
+    "total speed",
+    "port rpm",
+    "port angle",
+    "starboard rpm",
+    "starboard angle",
+    "tunnel rpm",
 )
 """Table III without roll, pitch and heave and their rates, which a ship of three degrees of freedom has not."""
 
@@ -74,9 +70,7 @@ def ensemble_of(arrays: Mapping[str, np.ndarray]) -> Ensemble:
     Ensemble
         [as in arrays]
     """
-    members = sum(name.startswith("member") and name.endswith("dense.bias") for name in arrays)
-    networks = tuple(network_of(arrays, f"member{number}") for number in range(1, members + 1))
-    return Ensemble(networks, *(arrays[name] for name in Ensemble._fields[1:]))
+    return Ensemble(members_of(arrays), *(arrays[name] for name in Ensemble._fields[1:]))
 
 
 def inputs(aboard: Aboard) -> np.ndarray:
@@ -111,24 +105,6 @@ def inputs(aboard: Aboard) -> np.ndarray:
     return np.stack(np.broadcast_arrays(*found), axis=-1)
 
 
-def empty(ensemble: Ensemble, shape: tuple[int, ...] = ()) -> tuple[tuple[Memory, ...], ...]:
-    """Memory of the members before the first sample.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        The networks.
-    shape : tuple of int
-        Shape of the inputs before their last axis. [1]
-
-    Returns
-    -------
-    tuple of tuples of Memory
-        [1]
-    """
-    return tuple(empty_memory(network, shape) for network in ensemble.networks)
-
-
 def errors(
     found: np.ndarray, memory: Sequence[tuple[Memory, ...]], ensemble: Ensemble
 ) -> tuple[np.ndarray, tuple[tuple[Memory, ...], ...]]:
@@ -139,7 +115,7 @@ def errors(
     found : (..., 15) array
         As `inputs`. [their units]
     memory : sequence of tuples of Memory
-        Of the sample before. [1]
+        Of the sample before; empty before the first one. [1]
     ensemble : Ensemble
         The networks.
 
@@ -150,9 +126,9 @@ def errors(
     """
     x = (found - ensemble.mean) / ensemble.std
     # Standardise, evaluate all members, average, and scale back.
-    pairs = [evaluate(net, x, kept) for net, kept in zip(ensemble.networks, memory, strict=True)]
-    mean = sum(pair[0] for pair in pairs) / len(pairs)
-    return ensemble.target_mean + ensemble.target_std * mean, tuple(pair[1] for pair in pairs)
+    given, memory = evaluate_members(ensemble.networks, x, memory)
+    mean = sum(given) / len(given)
+    return ensemble.target_mean + ensemble.target_std * mean, memory
 
 
 def corrected(motions: Sequence[Motion], expected: np.ndarray) -> list[tuple]:

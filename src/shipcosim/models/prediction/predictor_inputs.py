@@ -4,12 +4,12 @@ A predictor is a state and two functions: `step` takes the state and a `Known` t
 motion to come from both. Dead reckoning has its state in `surroundings`, and `predict` in `dead_reckoning`.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from shipcosim.models.control.pid import Desired
 from shipcosim.models.core.kinematics import to_ned
 from shipcosim.models.core.maths import Arithmetic, cos, sin
-from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 
 
 class Known(NamedTuple):
@@ -44,17 +44,17 @@ class Known(NamedTuple):
     wind_from: Arithmetic
     wind_believed: Arithmetic = 1.0
     desired: Desired | None = None
-    goal: tuple[Arithmetic, Arithmetic, Arithmetic] | None = None
+    goal: Triple | None = None
     wave_frequency: Arithmetic | None = None
 
 
-def air_velocity(known: Known) -> tuple[Arithmetic, Arithmetic]:
+def air_velocity(known: Any) -> Vector:
     """Velocity of the air over ground: the measured apparent wind, and the ship's own velocity.
 
     Parameters
     ----------
-    known : Known
-        Floats, (...) arrays or tensors.
+    known : Known or helm.Aboard
+        Ship and apparent wind; floats, (...) arrays or tensors. [as its fields]
 
     Returns
     -------

@@ -9,13 +9,11 @@ Normalised conformal prediction: Papadopoulos, Gammerman and Vovk, Normalized no
 conformal prediction, AIA 2008; the measure of difficulty is chosen here.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shipcosim.angles import wrap
-from shipcosim.models.core.interpolation import interp
 from shipcosim.models.core.maths import Arithmetic, exp, hypot, sqrt, where
-from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Motion, Vector
 from shipcosim.models.core.parameters import quantity
 
 FORESIGHT = 10.0
@@ -95,13 +93,13 @@ class RegionParameters:
 
 
 def own_errors(
-    errors: tuple[Arithmetic, Arithmetic],
+    errors: Vector,
     ship: Motion,
     foreseen: Motion,
     h: float,
     *,
     regions: RegionParameters,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Mean errors of the predictor's own record, a sample later.
 
     Parameters
@@ -129,9 +127,7 @@ def own_errors(
     return errors[0] + share * (position - errors[0]), errors[1] + share * (heading - errors[1])
 
 
-def widening(
-    errors: tuple[Arithmetic, Arithmetic], lost_for: Arithmetic, *, regions: RegionParameters
-) -> tuple[Arithmetic, Arithmetic]:
+def widening(errors: Vector, lost_for: Arithmetic, *, regions: RegionParameters) -> Vector:
     """Factors on the calibrated widths: larger by the own errors, smaller in a long drift, 0 while thrusters act.
 
     Parameters
@@ -159,21 +155,3 @@ def widening(
         # No region while thrusters act; a smaller one after the first seconds of a drift.
         found.append(grown * where(lost_for < 0.0, 0.0, where(lost_for < JUST_LOST, 1.0, later)))
     return found[0], found[1]
-
-
-def at_horizon(horizon: Arithmetic, widths: Sequence[float]) -> Arithmetic:
-    """Half-width at any horizon: straight lines from 0 through the calibrated ones.
-
-    Parameters
-    ----------
-    horizon : float or (...) array or tensor
-        How far ahead, up to 60 s. [s]
-    widths : three floats
-        Half-widths at 10, 30 and 60 s. [any unit]
-
-    Returns
-    -------
-    like horizon
-        Half-width. [the unit of widths]
-    """
-    return interp(horizon, (0.0, *HORIZONS), (0.0, *widths))

@@ -22,16 +22,15 @@ from shipcosim.models.prediction.outage import Measured
 HISTORY = 10
 """Samples that a network sees, one a second. [1] Paper II, III-B."""
 FEATURES = (
-    *(
-        "heading",
-        "wind angle",
-        "wind speed",
-        "bow power",
-        "bow action",
-        "stern power",
-        "stern action",
-    ),
-    *("main power", "main action"),
+    "heading",
+    "wind angle",
+    "wind speed",
+    "bow power",
+    "bow action",
+    "stern power",
+    "stern action",
+    "main power",
+    "main action",
 )
 """Inputs that paper II considers, Table III, but for the commands, of which it keeps none."""
 UNITS = (0, 2, 4)

@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 
 from shipcosim.models.core.integrate import rk4_pair, substeps
 from shipcosim.models.core.maths import Arithmetic, clip, maximum, minimum, pi, times, where
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.propulsion.failures import Failures
 
 _LONGEST_SUBSTEP = 0.05  # s; the fastest mode, shaft with drive at full thrust, is about 10 1/s
@@ -177,7 +178,7 @@ def _set_point(thruster, thrust_cmd, failures, drive):
     return wanted, where(failures.full_thrust, _AT_ONCE, failures.rate_share * drive.thrust_rate)
 
 
-def powers(thruster: Thruster, drive: Any) -> tuple[Arithmetic, Arithmetic]:
+def powers(thruster: Thruster, drive: Any) -> Vector:
     """Power that a thruster draws from the grid, and what its brake resistor turns into heat.
 
     Their difference is the power of the motor on the shaft, 2π n Q.

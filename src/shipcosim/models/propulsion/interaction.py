@@ -17,56 +17,30 @@ import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.maths import Arithmetic, atan2, hypot, minimum, pi, where
-from shipcosim.models.core.parameters import quantity
+from shipcosim.models.core.parameters import UNITS, numbered_units, quantity
 
-UNITS = 6
 _DEGREES = 180.0 / pi
 _STILL = 1e-6  # m/s, added to a slipstream that another is compared with
 
 
-def _place(number, towards):
-    return quantity(0.0, "m", f"unit {number} {towards} of the origin", "no such unit")
-
-
-def _diameter(number):
-    return quantity(
-        0.0,
-        "m",
-        f"propeller diameter of unit {number}; 0: there is none",
-        "no such unit",
-        minimum=0.0,
-    )
+def _fields(number):
+    """Place and size of a unit."""
+    none = "no such unit"
+    size = f"propeller diameter of unit {number}; 0: there is none"
+    return {
+        "x": quantity(0.0, "m", f"unit {number} forward of the origin", none),
+        "y": quantity(0.0, "m", f"unit {number} to starboard of the origin", none),
+        "diameter": quantity(0.0, "m", size, none, minimum=0.0),
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
-class InteractionParameters:
+class InteractionParameters(numbered_units(_fields)):
     """Positions and sizes of the units that can affect one another."""
 
-    x_1: float = _place(1, "forward")
-    y_1: float = _place(1, "to starboard")
-    diameter_1: float = _diameter(1)
-    x_2: float = _place(2, "forward")
-    y_2: float = _place(2, "to starboard")
-    diameter_2: float = _diameter(2)
-    x_3: float = _place(3, "forward")
-    y_3: float = _place(3, "to starboard")
-    diameter_3: float = _diameter(3)
-    x_4: float = _place(4, "forward")
-    y_4: float = _place(4, "to starboard")
-    diameter_4: float = _diameter(4)
-    x_5: float = _place(5, "forward")
-    y_5: float = _place(5, "to starboard")
-    diameter_5: float = _diameter(5)
-    x_6: float = _place(6, "forward")
-    y_6: float = _place(6, "to starboard")
-    diameter_6: float = _diameter(6)
     loss_scale: float = quantity(
         1.0, "1", "factor on all losses; 0: no interaction", "as published", minimum=0.0
     )
-
-    def of_units(self, name: str) -> list[float]:
-        """A parameter of all units, in their order."""
-        return [getattr(self, f"{name}_{number}") for number in range(1, UNITS + 1)]
 
 
 class Pair(NamedTuple):

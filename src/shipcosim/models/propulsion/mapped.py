@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 from shipcosim.models.core.interpolation import interp
 from shipcosim.models.core.kinematics import load_at, velocity_at
@@ -195,7 +196,7 @@ def mapped_step(
 
 
 def mapped_loads(
-    thrust: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, thruster: MapParameters
+    thrust: Arithmetic, u_r: Arithmetic, v_r: Arithmetic, r: Arithmetic, *, thruster: Any
 ) -> Loads:
     """Load on the ship, T max(0, 1 - speed_loss u_a sign(T)) with the speed u_a of the water along the thruster.
 
@@ -205,8 +206,8 @@ def mapped_loads(
         At no speed. [N]
     u_r, v_r, r : like thrust
         Velocity of the ship through the water, yaw rate. [m/s, m/s, rad/s]
-    thruster : MapParameters
-        The thruster.
+    thruster : MapParameters or fixed.FixedParameters
+        Place, direction and losses. [as its fields]
 
     Returns
     -------
@@ -215,7 +216,7 @@ def mapped_loads(
 
     References
     ----------
-    As `fixed.fixed_loads`: a straight line, assumed.
+    A straight line, assumed.
 
     Examples
     --------

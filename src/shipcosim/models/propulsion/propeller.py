@@ -25,6 +25,7 @@ import numpy as np
 
 from shipcosim.models.core.interpolation import EvenTable, even_table, interp_even
 from shipcosim.models.core.maths import Arithmetic, atan2, pi, sqrt, where
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.core.tables import columns, parse
 
@@ -156,9 +157,7 @@ class PropellerParameters:
         return thrust * KT_ahead, astern, torque * KQ_ahead, torque * KQ_astern
 
 
-def propeller_loads(
-    u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParameters
-) -> tuple[Arithmetic, Arithmetic]:
+def propeller_loads(u_a: Arithmetic, n: Arithmetic, *, propeller: PropellerParameters) -> Vector:
     """Thrust and torque in all four quadrants.
 
     Parameters

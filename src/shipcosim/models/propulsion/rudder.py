@@ -13,6 +13,7 @@ Yasukawa and Yoshimura, Introduction of MMG standard method for ship maneuvering
 from dataclasses import dataclass
 
 from shipcosim.models.core.maths import Arithmetic, atan2, cos, exp, maximum, pi, sin, sqrt, where
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity, required
 from shipcosim.models.propulsion.thruster import LOSS, Loads
 
@@ -91,7 +92,7 @@ def propeller_in_wake(
     r: Arithmetic,
     *,
     unit: PropellerRudderParameters,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Thrust of a propeller behind a hull, and the speed of the water that reaches it.
 
     With the drift angle at the propeller β_P = atan2(-(v + x_P r), abs(u)),

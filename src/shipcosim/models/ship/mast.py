@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from shipcosim.models.core.maths import Arithmetic, atan2, cos, hypot, sin
+from shipcosim.models.core.motion import Vector
 from shipcosim.models.core.parameters import quantity, required
 
 REFERENCE_HEIGHT = 10.0
@@ -44,7 +45,7 @@ def wind_at_mast(
     r: Arithmetic,
     *,
     mast: MastParameters,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Apparent wind components at the anemometer, for an apparent wind at 10 m above the origin.
 
     Parameters
@@ -90,7 +91,7 @@ def wind_from_mast(
     r: Arithmetic,
     *,
     mast: MastParameters,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Apparent wind at 10 m above the origin, for an apparent wind at the anemometer.
 
     The inverse of `wind_at_mast`.

@@ -12,7 +12,7 @@ from shipcosim.angles import wrap
 from shipcosim.models.core.integrate import rk4_motion, substeps
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.maths import Arithmetic, times
-from shipcosim.models.core.motion import Load, Motion
+from shipcosim.models.core.motion import Load, Motion, Triple, Vector
 from shipcosim.models.core.parameters import required_table
 from shipcosim.models.ship.hull import HullParameters, hull_loads
 
@@ -136,7 +136,7 @@ def accelerations(
     tau_N: Arithmetic,
     *,
     hull: HullParameters,
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
+) -> Triple:
     """Rates of the velocity relative to the water, ν̇_r.
 
     Parameters
@@ -178,7 +178,7 @@ def through_water(
     v: Arithmetic,
     current_north: Arithmetic,
     current_east: Arithmetic,
-) -> tuple[Arithmetic, Arithmetic]:
+) -> Vector:
     """Velocity of the ship relative to the water.
 
     Parameters
@@ -204,37 +204,6 @@ def through_water(
     """
     u_c, v_c = to_body(psi, current_north, current_east)
     return u - u_c, v - v_c
-
-
-def nu_dot(
-    vessel: Motion,
-    tau_X: Arithmetic,
-    tau_Y: Arithmetic,
-    tau_N: Arithmetic,
-    current_north: Arithmetic,
-    current_east: Arithmetic,
-    *,
-    hull: HullParameters,
-) -> tuple[Arithmetic, Arithmetic, Arithmetic]:
-    """Rates of the velocity over ground, ν̇ = ν̇_r + ν̇_c with ν̇_c = (r v_c, -r u_c, 0) of a constant current.
-
-    Parameters
-    ----------
-    vessel : Motion
-        State.
-    tau_X, tau_Y, tau_N : like the state
-        External loads in body axes. [N, N, N.m]
-    current_north, current_east : like the state
-        Velocity of the water. [m/s]
-    hull : HullParameters
-        The hull.
-
-    Returns
-    -------
-    tuple of three, like the state
-        Rates of u, v, r in body axes. [m/s2, m/s2, rad/s2]
-    """
-    return at_present(vessel, tau_X, tau_Y, tau_N, current_north, current_east, hull=hull)[1]
 
 
 def at_present(
@@ -265,7 +234,7 @@ def at_present(
     relative : tuple of two, like the state
         Velocity relative to the water, u_r and v_r. [m/s]
     rates : tuple of three, like the state
-        As `nu_dot`. [m/s2, m/s2, rad/s2]
+        Of u, v, r over ground, ν̇ = ν̇_r + ν̇_c with ν̇_c = (r v_c, -r u_c, 0) of a constant current. [m/s2, m/s2, rad/s2]
     loads : tuple of three, like the state
         Loads of the water on the hull, as `hull.hull_loads`. [N, N, N.m]
     """

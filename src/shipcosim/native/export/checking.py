@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import math
 import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -166,8 +165,7 @@ def _near(cls, example, random) -> dict[str, Any]:
             and not v.is_left_out(value)
             and abs(value) < 1e12
         ):
-            low = -math.inf if v.minimum is None else v.minimum
-            high = math.inf if v.maximum is None else v.maximum
+            low, high = v.bounds
             value = float(min(max(value * (1.0 + SPREAD * random.standard_normal()), low), high))
         found[v.name] = value
     return found
@@ -186,8 +184,7 @@ def _draw(cls, inputs, random, share):
             continue
         value = inputs[v.name]
         if v.type == "Real":
-            low = -math.inf if v.minimum is None else v.minimum
-            high = math.inf if v.maximum is None else v.maximum
+            low, high = v.bounds
             # An input of 1e12 and more means unlimited; its random value gets the size of real
             # power, 1e5.
             size = SIZES.get(v.unit, 0.5) if abs(v.start) < 1e12 else 1e5

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Sequence
 from importlib.resources import files
@@ -175,10 +174,14 @@ class ModelWriter(Writer):
     def _finish(self, result, depth):
         if isinstance(result, list):
             for place, number in result:
-                self._put(depth, f"m[{self._place(place)}] = {operand(number)};")
+                self._put(depth, f"{self._result(place)} = {operand(number)};")
             self._put(depth, "return DONE;")
         else:
             self._put(depth, self._fail(result))
+
+    def _result(self, place):
+        """Where the function writes a result."""
+        return f"m[{self._place(place)}]"
 
     def _fail(self, error):
         return f"{{ {say(self._words(error), self.recording)}return GIVEN_UP; }}"
@@ -208,23 +211,8 @@ class ModelWriter(Writer):
             return f"p{primitive.number}[{place}]"
         return super()._expression(symbol)
 
-    def _call(self, operands, depth):
-        number, *arguments = operands
-        first = self.arguments[number]
-        # The cached result holds while the arguments are equal. NaN is never equal.
-        same = (
-            " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
-        )
-        self._put(depth, f"if ({same}) {{")
-        for i, a in enumerate(arguments):
-            self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
-        self._put(
-            depth + 1, f"if ({self._names[number]}(k + {first}, k + {self.results[number]}, o)) {{"
-        )
-        # A failed call must not leave arguments that look valid: NaN forces another call.
-        self._put(depth + 2, f"{f'k[{first}] = NAN; ' if arguments else ''}return GIVEN_UP;")
-        self._put(depth + 1, "}")
-        self._put(depth, "}")
+    def _calling(self, number, where, again):
+        return [f"if ({self._names[number]}({where}, o)) {{", f"    {again}return GIVEN_UP;", "}"]
 
 
 class _Procedure(ModelWriter):
@@ -243,13 +231,8 @@ class _Procedure(ModelWriter):
         name = self._others[plain] = f"kept_{len(self._others)}"
         return name, text.replace(f"int {self.name}(", f"int {name}(", 1)
 
-    def _finish(self, result, depth):
-        if isinstance(result, list):
-            for place, number in result:
-                self._put(depth, f"k[{place}] = {operand(number)};")
-            self._put(depth, "return DONE;")
-        else:
-            self._put(depth, self._fail(result))
+    def _result(self, place):
+        return f"k[{place}]"
 
 
 def _plain(text: str) -> str:
@@ -285,15 +268,13 @@ def say(text: str, recording: Recording) -> str:
 def _variable(variable) -> str:
     # A missing bound is infinite, so that the runtime needs no special case.
     text = variable.type == "String"
-    low = -math.inf if variable.minimum is None else variable.minimum
-    high = math.inf if variable.maximum is None else variable.maximum
     parts = [
         _text(variable.name),
         TYPES[variable.type],
         variable.causality.upper(),
         str(int(variable.tunable)),
         str(int(variable.required)),
-        *(literal(number) for number in (low, high, 0.0 if text else variable.start)),
+        *(literal(number) for number in (*variable.bounds, 0.0 if text else variable.start)),
         _text(variable.unit),
         _text(variable.start) if text else '""',
     ]

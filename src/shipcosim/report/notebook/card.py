@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Page, Table
 
-__all__ = ["Block", "Card", "card_html"]
-
 COLOURS = {
     "passed": "#007a5a",
     "consistent": "#007a5a",

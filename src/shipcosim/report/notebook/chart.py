@@ -21,8 +21,6 @@ from shipcosim.report.notebook.sheet import (
 from shipcosim.report.run.track import SLENDERNESS, SYMBOL, hull_outline, outline_rows, placed
 from shipcosim.report.theme import palette
 
-__all__ = ["Circle", "Path", "chart_svg"]
-
 _LEFT = 64.0  # px
 _RIGHT = 14.0
 _BELOW = 40.0

@@ -22,8 +22,6 @@ from shipcosim.report.notebook.sheet import (
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import is_constant, thinned
 
-__all__ = ["Curve", "Panel", "panels_of", "panels_svg"]
-
 MOST_CURVES = 8
 MOST_PANELS = 12
 _LEFT = 64.0  # px

@@ -13,8 +13,6 @@ from shipcosim.report.study.words import is_failed
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.views import Table
 
-__all__ = ["sweep_card"]
-
 MOST_ROWS = 12
 _WIDE = 400.0  # px
 _TALL = 300.0

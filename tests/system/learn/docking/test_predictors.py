@@ -159,7 +159,7 @@ def test_torch_and_numpy_give_the_same_distance(replayed):
     loss = distance_ensemble.distance(
         distance_ensemble.tensor(given.mean(axis=0)),
         distance_ensemble.tensor(distance_ensemble.targets(replayed)),
-        distance_ensemble.basis(),
+        distance_ensemble.tensor(docking.basis()),
     )
     assert float(loss) == pytest.approx(expected, rel=1e-4)
 

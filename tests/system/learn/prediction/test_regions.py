@@ -5,8 +5,9 @@ import pytest
 
 pytest.importorskip("torch")
 
-from shipcosim.learn.prediction.regions import Scores, calibrated, coverage, scores
+from shipcosim.learn.prediction.regions import Scores, calibrated, scores
 from shipcosim.learn.prediction.worlds import KNOWN, Record
+from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
 
 
 def drawn(rng: np.random.Generator, spread: float = 1.0) -> Scores:
@@ -22,17 +23,25 @@ def drawn(rng: np.random.Generator, spread: float = 1.0) -> Scores:
     )
 
 
+def inside(found: list[Scores], widths: dict[str, float], kind: str, late: bool) -> list[float]:
+    """Share of the cases inside calibrated regions, by horizon."""
+    share = widths[f"later_{kind}_share"] if late else 1.0
+    scored = np.concatenate([getattr(s, kind)[(s.lost_for >= JUST_LOST) == late] for s in found])
+    limits = [share * widths[f"{kind}_half_width_{horizon:.0f}"] for horizon in HORIZONS]
+    return list(np.mean(scored <= limits, axis=0))
+
+
 def test_calibrated_regions_have_nine_cases_in_ten_of_other_worlds_of_the_same_kind():
     rng = np.random.default_rng(1)
     widths = calibrated([drawn(rng) for _ in range(60)])
     assert widths["later_position_share"] == pytest.approx(0.6, rel=0.05)
     for late in (False, True):
-        found = coverage([drawn(rng) for _ in range(60)], widths, late=late)
-        assert all(0.88 <= share <= 0.95 for kind in found.values() for share, _ in kind)
-    wild = coverage([drawn(rng, spread=2.0) for _ in range(60)], widths, late=False)
-    assert all(
-        share < 0.5 for share, _ in wild["position"]
-    )  # errors beyond those of the calibration do show
+        found = [drawn(rng) for _ in range(60)]
+        for kind in ("position", "heading"):
+            assert all(0.88 <= share <= 0.95 for share in inside(found, widths, kind, late))
+    # Errors beyond those of the calibration do show.
+    wild = [drawn(rng, spread=2.0) for _ in range(60)]
+    assert all(share < 0.5 for share in inside(wild, widths, "position", late=False))
 
 
 def test_predictions_count_from_the_loss_of_thrust_and_widen_where_she_was_foreseen_elsewhere():

@@ -11,13 +11,12 @@ from ships import parameters
 
 from shipcosim.models.allocation import (
     neural,
+    neural_allocator,
     neural_floats,
     neural_law,
-    neural_named,
-    neural_units,
 )
 from shipcosim.models.allocation.neural import Commands
-from shipcosim.models.allocation.neural_named import NeuralParameters
+from shipcosim.models.allocation.neural_allocator import NeuralParameters
 
 GUNNERUS = parameters(NeuralParameters, component="allocator")
 H = 0.1
@@ -37,7 +36,7 @@ def random_weights(units, random, size=3.0):
 
 def named(diameter=0.0, seed=1):
     model = NeuralParameters(**{**vars(GUNNERUS), "azimuth_diameter": diameter})
-    return model, neural_named.design(model, random_weights(3, np.random.default_rng(seed)))
+    return model, neural_allocator.design(model, random_weights(3, np.random.default_rng(seed)))
 
 
 def requests(kind, runs, random):
@@ -63,13 +62,13 @@ def count_violations(kind, diameter, runs, steps):
     """Each run has a new request and new missing units in every other step, with power short in between."""
     random = np.random.default_rng(7)
     model, design = named(diameter)
-    u, state = design.units, neural_named.at_rest(tuple(np.zeros((3, runs))), parameters=model)
+    u, state = design.units, neural_allocator.at_rest(tuple(np.zeros((3, runs))), parameters=model)
     for _ in range(steps):
         tau, on = tuple(requests(kind, runs, random)), random.random((3, runs)) > 0.2
         shares = tuple(np.where(random.random((3, runs)) < 0.2, 0.5, 1.0))
         before, state = (
             state,
-            neural_named.step(
+            neural_allocator.step(
                 state, tau, tuple(on), H, parameters=model, design=design, shares=shares
             ),
         )
@@ -100,15 +99,15 @@ def count_violations(kind, diameter, runs, steps):
 def test_floats_give_what_arrays_give():
     model, design = named(1.9)
     random = np.random.default_rng(3)
-    many = neural_named.at_rest(tuple(np.zeros((3, 4))), parameters=model)
-    ones = [neural_named.at_rest((0.0, 0.0, 0.0), parameters=model) for _ in range(4)]
+    many = neural_allocator.at_rest(tuple(np.zeros((3, 4))), parameters=model)
+    ones = [neural_allocator.at_rest((0.0, 0.0, 0.0), parameters=model) for _ in range(4)]
     for _ in range(20):
         tau = requests("anywhere", 4, random)
-        many = neural_named.step(
+        many = neural_allocator.step(
             many, tuple(tau), (True, True, True), H, parameters=model, design=design
         )
         for k, one in enumerate(ones):
-            ones[k] = neural_named.step(
+            ones[k] = neural_allocator.step(
                 one,
                 tuple(tau[:, k].tolist()),
                 (True, True, True),
@@ -149,9 +148,9 @@ def test_proposals_in_floats_are_those_in_vectors(diameter):
 def test_attainable_request_is_met_even_by_an_untrained_network():
     """The program behind it does so."""
     model, design = named()
-    state = neural_named.at_rest((0.0, 0.0, 0.0), parameters=model)
+    state = neural_allocator.at_rest((0.0, 0.0, 0.0), parameters=model)
     for _ in range(1200):
-        state = neural_named.step(
+        state = neural_allocator.step(
             state, (3e3, 4e3, 2e4), (True, True, True), H, parameters=model, design=design
         )
     assert state[2:5] == pytest.approx((3e3, 4e3, 2e4), abs=20.0)
@@ -160,9 +159,9 @@ def test_attainable_request_is_met_even_by_an_untrained_network():
 def test_lost_thrust_is_made_up_for():
     """What slipstreams leave of the commands is the load that the law says it gives."""
     model, design = named(1.9)
-    state = neural_named.at_rest((0.0, 0.0, 0.0), parameters=model)
+    state = neural_allocator.at_rest((0.0, 0.0, 0.0), parameters=model)
     for _ in range(600):
-        state = neural_named.step(
+        state = neural_allocator.step(
             state, (0.0, 9e3, -4e4), (True, True, True), H, parameters=model, design=design
         )
     thrusts, azimuths = np.array(state.thrusts), np.array(state.azimuths)
@@ -174,7 +173,7 @@ def test_lost_thrust_is_made_up_for():
 def test_power_is_that_of_the_interface():
     from shipcosim.models.allocation.units import thruster_power, used_shares
 
-    units = neural_named.units_of(GUNNERUS, (194e3, 194e3, 200e3))
+    units = neural_allocator.units_of(GUNNERUS, (194e3, 194e3, 200e3))[0]
     thrusts = (2e4, 5e3, -7e3)
     used = used_shares(thrusts, units.least, units.most)
     expected = thruster_power(tuple(used), (194e3, 194e3, 200e3))
@@ -182,7 +181,7 @@ def test_power_is_that_of_the_interface():
 
 
 def test_completed_thrusts_meet_what_can_be_met():
-    units = neural_named.units_of(GUNNERUS)
+    units = neural_allocator.units_of(GUNNERUS)[0]
     angles = np.array([radians(-40.0), radians(130.0), pi / 2])
     effect = neural.effects(np.zeros(3), angles, units=units)
     tau = effect @ np.array([4e3, 3e3, -2e3]) * [1.0, 1.0, units.lever]
@@ -198,7 +197,7 @@ def test_completed_thrusts_meet_what_can_be_met():
 
 def test_network_of_another_ship_is_refused():
     with pytest.raises(ValueError, match="trained for 4 units, the ship has 3"):
-        neural_named.design(GUNNERUS, random_weights(4, np.random.default_rng(1)))
+        neural_allocator.design(GUNNERUS, random_weights(4, np.random.default_rng(1)))
 
 
 def test_units_without_thrust_are_left_out():
@@ -210,12 +209,12 @@ def test_units_without_thrust_are_left_out():
         "thrust_least": 500.0,
     }
     values = {f"{name}_{k}": value for k in (2, 5) for name, value in each.items()}
-    model = neural_units.NeuralUnitsParameters(**values, x_2=10.0, x_5=-10.0, yaw_lever=10.0)
-    design = neural_units.design(model, random_weights(2, np.random.default_rng(1)))
+    model = neural_allocator.NeuralUnitsParameters(**values, x_2=10.0, x_5=-10.0, yaw_lever=10.0)
+    design = neural_allocator.design(model, random_weights(2, np.random.default_rng(1)))
     assert design.numbers == (1, 4)
-    state = neural_units.at_rest((0.0, 0.0, 0.0), parameters=model)
+    state = neural_allocator.at_rest((0.0, 0.0, 0.0), parameters=model)
     for _ in range(100):
-        state = neural_units.step(
+        state = neural_allocator.step(
             state, (5e3, 0.0, 0.0), (True,) * 6, H, parameters=model, design=design
         )
     assert [k for k, f in enumerate(state.thrusts) if f != 0.0] == [1, 4]

@@ -12,7 +12,7 @@ import pytest
 from ships import parameters
 from static_optimum import static_optimum
 
-from shipcosim.models.allocation import optimal, optimal_units, sqp
+from shipcosim.models.allocation import optimal, sqp
 
 PARAMETERS = parameters(optimal.OptimalParameters)
 DESIGN = optimal.design(PARAMETERS)
@@ -311,7 +311,7 @@ def test_nearest_takes_admissible_proposals_and_brings_others_within_the_limits(
 
 def test_numbered_units_give_what_named_ones_give():
     p = PARAMETERS
-    numbered = optimal_units.OptimalUnitsParameters(
+    numbered = optimal.OptimalUnitsParameters(
         **{
             "x_1": p.port_x,
             "y_1": p.port_y,
@@ -350,11 +350,11 @@ def test_numbered_units_give_what_named_ones_give():
         },
         specific_power_3=4.77 * (21.6 / 60.0) ** 0.5,
     )
-    design = optimal_units.design(numbered)
-    one, other = start(), optimal_units.at_rest((0.0, 0.0, 0.0), parameters=numbered)
+    design = optimal.design(numbered)
+    one, other = start(), optimal.at_rest((0.0, 0.0, 0.0), parameters=numbered)
     for _ in range(100):
         one = step(one, (2e3, 7e3, 5e4))
-        other = optimal_units.step(
+        other = optimal.step(
             other, (2e3, 7e3, 5e4), (True,) * 6, H, parameters=numbered, design=design
         )
     assert (
@@ -365,7 +365,7 @@ def test_numbered_units_give_what_named_ones_give():
 
 
 def test_unit_without_an_interval_turns_all_round():
-    free = optimal_units.OptimalUnitsParameters(
+    free = optimal.OptimalUnitsParameters(
         **{
             "x_1": -10.0,
             "thrust_max_1": 1e4,
@@ -374,11 +374,11 @@ def test_unit_without_an_interval_turns_all_round():
             "yaw_lever": 10.0,
         }
     )
-    design = optimal_units.design(free)
+    design = optimal.design(free)
     assert design.units[0].first == -inf
-    state = optimal_units.at_rest((0.0, 0.0, 0.0), parameters=free)
+    state = optimal.at_rest((0.0, 0.0, 0.0), parameters=free)
     for _ in range(600):
-        state = optimal_units.step(
+        state = optimal.step(
             state, (-3e3, 100.0, -1e3), (True,) * 6, 0.1, parameters=free, design=design
         )
     assert state.tau_X == pytest.approx(-3e3, abs=30.0)

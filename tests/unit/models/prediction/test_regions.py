@@ -5,7 +5,7 @@ from math import exp, pi
 import pytest
 
 from shipcosim.models.core.motion import Motion
-from shipcosim.models.prediction.regions import RegionParameters, at_horizon, own_errors, widening
+from shipcosim.models.prediction.regions import RegionParameters, own_errors, widening
 
 REGIONS = RegionParameters(later_position_share=0.6, later_heading_share=0.5)
 
@@ -31,13 +31,3 @@ def test_no_region_while_thrusters_act_and_smaller_ones_in_a_long_drift():
 def test_large_own_errors_widen_in_proportion():
     once, twice = (widening((size, 0.0), 5.0, regions=REGIONS)[0] for size in (30.0, 60.0))
     assert twice == pytest.approx(2.0 * once, rel=1e-3)
-
-
-def test_half_width_at_any_horizon_passes_through_the_calibrated_ones():
-    assert [at_horizon(h, (0.5, 2.0, 8.0)) for h in (0.0, 10.0, 30.0, 45.0, 60.0)] == [
-        0.0,
-        0.5,
-        2.0,
-        5.0,
-        8.0,
-    ]

@@ -38,8 +38,6 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.numerics import Bands
 
-__all__ = ["wrong_clock"]
-
 _AT_ONCE = (
     8  # columns that are whitened together, over the rows in which any of them is not nothing
 )

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.finding import Finding
 
-__all__ = ["examine"]
-
 
 def examine(log: xarray.Dataset) -> list[Finding]:
     """Faults of the data, of kind ``"data"``, most certain first; none in a log that is right.

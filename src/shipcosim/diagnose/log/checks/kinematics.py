@@ -20,18 +20,6 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.numerics import gaussian_filter, solve_tridiagonal, spline_integral
 
-__all__ = [
-    "RATIOS",
-    "Filter",
-    "Motion",
-    "filter_for",
-    "filters",
-    "heading_motion",
-    "is_clear",
-    "position_motion",
-    "whiteness",
-]
-
 RATIOS = (
     0.0005,
     0.002,

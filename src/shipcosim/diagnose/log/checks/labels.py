@@ -43,8 +43,6 @@ from shipcosim.diagnose.log.thresholds import (
     SHORTEST_LABEL,
 )
 
-__all__ = ["best_segment", "in_segment", "mislabelled"]
-
 
 @dataclass(frozen=True)
 class _LabelHypothesis:

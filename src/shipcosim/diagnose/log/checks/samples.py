@@ -26,8 +26,6 @@ from shipcosim.diagnose.log.thresholds import (
     SHORTEST_GAP,
 )
 
-__all__ = ["gaps", "lifeless", "outliers", "runs", "wraps"]
-
 LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
 NO_ROWS = "there are no rows"

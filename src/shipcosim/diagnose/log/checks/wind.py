@@ -23,8 +23,6 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.numerics import gaussian_filter
 
-__all__ = ["leaps", "mislabelled_wind"]
-
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
 BOW = "from the bow"
 MIRRORED = "mirrored"

@@ -20,8 +20,6 @@ from shipcosim.diagnose.log.thresholds import (
     STEADINESS_LAG,
 )
 
-__all__ = ["jumping_wind"]
-
 ROLES = ("wind_speed", "wind_from", "heading", "surge", "sway")
 
 

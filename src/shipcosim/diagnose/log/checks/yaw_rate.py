@@ -13,8 +13,6 @@ from shipcosim.diagnose.log.checks.samples import quantum
 from shipcosim.diagnose.log.mislabels import HEADING_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import LIKELY_SIGNS, QUIET_CLIP, QUIET_GAIN, QUIETER
 
-__all__ = ["silent_rate"]
-
 RADIAN = HEADING_LABELS[1]
 
 

@@ -9,9 +9,6 @@ import numpy as np
 
 from shipcosim.dialects import NOTHING, WITH_UNIT
 
-__all__ = ["numbers_of", "with_unit", "without_fillers"]
-
-
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
 _FILLERS = (
     -99.0,

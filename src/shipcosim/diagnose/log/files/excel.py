@@ -8,9 +8,6 @@ from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
-__all__ = ["is_workbook", "text_of_sheet"]
-
-
 LARGEST_WORKBOOK = 1 << 30
 """Most bytes that a workbook may unpack to."""
 

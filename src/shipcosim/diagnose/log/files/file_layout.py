@@ -6,8 +6,6 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-__all__ = ["FileLayout"]
-
 
 class FileLayout(BaseModel):
     """The entry ``file`` of a channel file. What is not said is found out from the file."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["at_times"]
-
 _FAR = 3.0  # usual steps of a channel over which it is interpolated. Assumed.
 
 

@@ -11,8 +11,6 @@ from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["Layout", "layout_of"]
-
 
 @dataclass(frozen=True)
 class Layout:

@@ -11,8 +11,6 @@ from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
-__all__ = ["brought_together", "spread"]
-
 _NAMES = (
     "name",
     "topic",

@@ -17,8 +17,6 @@ from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.times import DAY, seconds_of, seconds_of_clock
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["columns_of_sentences", "holds_sentences"]
-
 _SENTENCE = re.compile(
     r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?.*"
 )

@@ -6,15 +6,6 @@ import re
 
 import numpy as np
 
-__all__ = [
-    "HEMISPHERES",
-    "MINUTES",
-    "degrees_of_minutes",
-    "degrees_of_texts",
-    "hemisphere_signs",
-    "is_minutes",
-]
-
 MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
 HEMISPHERES = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}

@@ -6,8 +6,6 @@ from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["refuse_foreign"]
-
 _SHEET = "Save it as .xlsx or .csv, or convert it: `libreoffice --headless --convert-to xlsx FILE`."
 _MATLAB = (
     "Write a table with a column for each channel: in MATLAB `writetable(struct2table(S), 'log.csv')`, in Python "

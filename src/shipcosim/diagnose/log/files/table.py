@@ -21,8 +21,6 @@ from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
 from shipcosim.errors import Problem, ShipcosimError, reading
 
-__all__ = ["LogColumns", "read_file"]
-
 _FEW = (
     0.01  # share of rows of another length that are left out; more make the file no table. Assumed.
 )

@@ -9,8 +9,6 @@ from pathlib import Path
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import unpacked_bytes
 
-__all__ = ["text_of"]
-
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
     (codecs.BOM_UTF16_LE, "utf-16"),

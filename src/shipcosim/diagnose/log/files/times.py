@@ -12,8 +12,6 @@ import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["EPOCHS", "epoch_unit", "seconds_of", "seconds_of_clock"]
-
 EPOCHS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 _SINCE = 3e8  # s after 1970 that a log can be from: 1979 to 2103
 _UNTIL = 4.2e9

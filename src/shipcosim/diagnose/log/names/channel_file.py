@@ -10,8 +10,6 @@ from pydantic import BaseModel
 
 from shipcosim.diagnose.log.names.proposal import Proposal
 
-__all__ = ["channel_file"]
-
 
 def channel_file(source: str, proposal: Proposal, remarks: Iterable[str] = ()) -> str:
     """Text of a channel file.

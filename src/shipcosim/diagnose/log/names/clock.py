@@ -15,8 +15,6 @@ from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import CLOCK_NUMBER
 from shipcosim.errors import ShipcosimError
 
-__all__ = ["time_of"]
-
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
 _UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "d": 86400.0}
 

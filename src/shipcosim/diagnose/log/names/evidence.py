@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["frame_of_angle", "unit_of_rate", "unit_of_speed"]
-
 _SPEEDS = {"m/s": 1.0, "kn": 1852.0 / 3600.0, "km/h": 1.0 / 3.6}
 _RATES = {"deg/s": 1.0, "rad/s": 180.0 / np.pi, "deg/min": 1.0 / 60.0}
 _FAR = 0.15  # by which a ratio may be off a unit's, as a logarithm: units of speed differ by 1.85

@@ -15,8 +15,6 @@ from shipcosim.diagnose.log.names.vocabulary import meaning_of, words_of
 from shipcosim.diagnose.log.roles import ROLES, role_of
 from shipcosim.units import relation, spelled_unit
 
-__all__ = ["EXACT", "GUESS", "SURE", "UNUSED", "Guess", "Thrusters", "guesses_of"]
-
 Thrusters = Mapping[str, tuple[str, ...]]
 """Thrusters of a system by name, with what drives each: ``"rpm"``, ``"azimuth"``, ``"thrust"``."""
 EXACT = 0

@@ -24,8 +24,6 @@ from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
 
-__all__ = ["Proposal", "propose"]
-
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
 _PAIRS = (
     *_POSITIONS,

@@ -10,8 +10,6 @@ import numpy as np
 
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
 
-__all__ = ["Drive", "drive_of", "thrusters_named"]
-
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
 

@@ -8,8 +8,6 @@ from functools import cache
 from shipcosim.diagnose.log.names.vocabulary import vocabulary
 from shipcosim.units import relation, spelled_unit
 
-__all__ = ["is_unit", "name_and_unit", "unit_after", "unit_for"]
-
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
 _OTHERS = re.compile(
     r"^(?P<name>.*?)\s*(?:\((?P<a>[^()]*)\)|\{(?P<b>[^{}]*)\}|<(?P<c>[^<>]*)>|[,/:;]\s+(?P<d>[^,/\s]\S*))\s*$"

@@ -17,16 +17,8 @@ from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
 from shipcosim.errors import ShipcosimError
 
-__all__ = ["settled"]
-
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
 _IN_KNOTS = ("speed_over_ground", "wind_speed", "true_wind_speed")
-_LEFT_OPEN = {
-    "yaw_rate": "deg/s",
-    "speed_over_ground": "kn",
-    "wind_speed": "kn",
-    "true_wind_speed": "kn",
-}
 
 
 def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None:

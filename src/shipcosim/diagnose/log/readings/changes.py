@@ -26,8 +26,6 @@ from shipcosim.diagnose.log.mislabels import (
     velocity_frame,
 )
 
-__all__ = ["CLOCK", "LogInterpretation", "LogMistake", "Slab", "changes"]
-
 
 @dataclass(frozen=True)
 class LogInterpretation:

@@ -30,9 +30,6 @@ from shipcosim.diagnose.log.thresholds import (
     UNSURE_NOISE,
 )
 
-__all__ = ["Relation", "RowsFit", "fit_rows", "fitted"]
-
-
 ROUGHNESS = (
     5.69  # variance of the fourth differences of a spline's integral of white noise of variance 1
 )

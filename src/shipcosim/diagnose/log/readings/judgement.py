@@ -32,8 +32,6 @@ from shipcosim.diagnose.log.thresholds import (
     USUAL_STEP,
 )
 
-__all__ = ["Evidence", "Judged", "judged", "off_angle", "reading_of"]
-
 GRID = np.linspace(-5.0, 5.0, 101)
 
 

@@ -28,8 +28,6 @@ from shipcosim.diagnose.log.thresholds import (
     UNLIKELY_READING,
 )
 
-__all__ = ["explained", "is_as_labelled", "misread"]
-
 NOTHING_ELSE = "nothing else is wrong"
 DEGREE = float(np.degrees(1.0))
 

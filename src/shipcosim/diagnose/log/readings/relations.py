@@ -20,8 +20,6 @@ from shipcosim.diagnose.log.thresholds import (
 )
 from shipcosim.diagnose.numerics import spline_integral
 
-__all__ = ["FORMS", "position_relations", "rate_relations"]
-
 FORMS = {
     ("as is", "body"): lambda w, e: w * e,
     ("mirrored", "body"): lambda w, e: np.conj(w) * e,
