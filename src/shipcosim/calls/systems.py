@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from shipcosim import library
@@ -34,6 +33,7 @@ from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, SystemStructure, osp_file, pack
 from shipcosim.ssp import read as read_structure
 from shipcosim.staging import check_targets
+from shipcosim.temporary import temporary_folder
 
 SYSTEM_OF_CAPABILITY = "gunnerus_dp"
 """Whose capability is computed where no system is given."""
@@ -238,7 +238,7 @@ def _as_read(
     if system.experiment.start_time:
         found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
         raise ShipcosimError(Problem(name, found, "Let it start at 0."))
-    with TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         if structure := osp_file(path):
             yield {"readers": readers(structure.resolve(), scenario)}
             return

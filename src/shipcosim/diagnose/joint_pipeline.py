@@ -16,7 +16,6 @@ with what the other logs say of them.
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
@@ -60,6 +59,7 @@ from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import with_thrust
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     import xarray
@@ -116,7 +116,7 @@ def diagnose_jointly(
     say = progress or (lambda *_: None)
     folder = None
     if out is None:
-        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+        folder = temporary_folder()
         out = folder.name
     given = given_system(system)
     if reference is not None:

@@ -30,7 +30,6 @@ From the verdict to the gain, `diagnose`:
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -59,6 +58,7 @@ from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import System, SystemStructure, read
+from shipcosim.temporary import temporary_folder
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
@@ -118,7 +118,7 @@ def diagnose(
     say = progress or (lambda *_: None)
     folder = None
     if out is None:
-        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+        folder = temporary_folder()
         out = folder.name
     given = given_system(system)
     if reference is not None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from shipcosim.series import write_file
 from shipcosim.staging import staged
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     import xarray
@@ -178,7 +179,7 @@ def parts_of(found: Any) -> dict[str, Any]:
 
 def page_of(title: str, write: Callable[[Path], object]) -> HtmlPage:
     """A page from a function that writes it to a path."""
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         path = Path(folder) / "page.html"
         write(path)
         return HtmlPage(title, path.read_text(encoding="utf-8"))

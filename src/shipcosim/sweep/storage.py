@@ -146,9 +146,7 @@ class Store:
 
     def runs(self) -> pandas.DataFrame:
         """The table of runs."""
-        import pandas
-
-        return pandas.read_parquet(self.folder / "runs.parquet")
+        return read_part(self.folder / "runs.parquet")
 
     def about(self) -> dict[str, Any]:
         """The content of study.json."""
@@ -358,3 +356,21 @@ def _of_summaries(plan: Plan) -> list[ColumnOf]:
             )
         )
     return found
+
+
+def read_part(path: Path) -> pandas.DataFrame:
+    """A table of a study's folder.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is damaged.
+    """
+    import pandas
+
+    try:
+        return pandas.read_parquet(path)
+    except Exception as error:  # Arrow has errors of many kinds
+        found = f"cannot be read: {' '.join(str(error).split())[:200]}."
+        remedy = "Delete the folder, or replace it with --force: its runs are made again."
+        raise ShipcosimError(Problem(str(path), found, remedy)) from error

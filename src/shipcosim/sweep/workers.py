@@ -6,7 +6,6 @@ import os
 import pickle
 import signal
 import sys
-import tempfile
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
@@ -16,10 +15,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from shipcosim.cosim.processes.child import end_with_parent
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.sweep.extras import imported
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
+from shipcosim.temporary import temporary_folder
 
 
 class Workers(ABC):
@@ -69,7 +70,7 @@ class Processes(Workers):
 
     def __init__(self, plan: Plan, engine: str, n: int | None = None):
         self.n = n or cores()
-        self._folder = tempfile.TemporaryDirectory(prefix="shipcosim-sweep-")
+        self._folder = temporary_folder()
         self._job = Path(self._folder.name) / "job.pickle"
         self._job.write_bytes(pickle.dumps(pack(plan, engine, with_fmus=False), protocol=5))
         self._executor = self._new()
@@ -173,7 +174,8 @@ def cores() -> int:
 
 
 def _begin() -> None:
-    """Prepare a worker: no Ctrl-C, and one thread for numerical libraries."""
+    """Prepare a worker: it ends with this process, no Ctrl-C, and one thread for numerical libraries."""
+    end_with_parent()
     # All cores have a process each; more threads would only compete.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     from threadpoolctl import threadpool_limits

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -28,6 +27,7 @@ from shipcosim.diagnose.validation.tracks import (
 )
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.extension.extended_system import ExtendedSystem
@@ -237,7 +237,7 @@ def _cosimulated(log, given, causes, progress) -> Tracks:
     record = log.problem.record
     model = log.problem.model
     systems = {"before": Replayed(given.given)}
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         if log.of_ship or log.own:
             about = {"span": model.span, "source": ", ".join(log.others)}
             made = extend(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -17,6 +16,7 @@ from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
+from shipcosim.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def _cosimulated(extended, causes, beyond_doubt, progress, comparison, most):
     """Errors of one comparison, by the given system and by the one extended by what the comparison was fitted with."""
     fitted = None
     findings = [*beyond_doubt, *findings_of(comparison.fit)]
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         if findings:
             about = {"span": comparison.fit.model.span}
             made = extend(extended.source, findings, folder, log_attributes=about, catalogue=causes)

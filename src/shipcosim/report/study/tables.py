@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.study.static import static_curves
 from shipcosim.report.theme.display import READ_AS
+from shipcosim.sweep.storage import read_part
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
@@ -78,7 +79,6 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     command : str
         What a user types to make this study.
     """
-    import pandas
 
     # Tracks, static capability, and runs that have a page.
     folder = swept.folder
@@ -93,7 +93,7 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
         about={**swept.about, "beside": beside, "remarks": remarks, "ship": _ship(swept)},
         runs=swept.runs,
         summary=swept.summary,
-        tracks=pandas.read_parquet(tracks) if tracks.is_file() else None,
+        tracks=read_part(tracks) if tracks.is_file() else None,
         tables=swept.tables,
         pages=sorted(int(match[1]) for match in found if match),
         command=command,

@@ -1,6 +1,5 @@
 """Open system structures for viewing and editing: from a file, or empty."""
 
-import tempfile
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
@@ -15,6 +14,7 @@ from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package, open_package
 from shipcosim.ssp.read.parameters import has_root
 from shipcosim.ssp.xml.document import Document, Findings, child, children
+from shipcosim.temporary import temporary_folder
 
 EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
   version="1.0" name="">
@@ -78,7 +78,7 @@ def new(name: str) -> SystemStructure:
     SystemStructure
     """
     # A package in a temporary folder, until it is written.
-    folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+    folder = temporary_folder()
     root = etree.fromstring(EMPTY.encode())
     for element in (root, *children(root, "ssd:System")):
         element.set("name", name)

@@ -176,6 +176,10 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
                 element.place, f"Two components have the full name '{name}'.", "Rename one of them."
             )
         seen[name] = element
+    for key, port in tree.ports.items():
+        if key.path == () and port.owner == "system" and key.name == "time":
+            found = "A connector of the system is called 'time', as the time of the results."
+            findings.error(port.place, found, "Rename it.")
 
 
 def remark_unconnected(

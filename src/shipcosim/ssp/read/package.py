@@ -12,6 +12,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.addresses import meant
 from shipcosim.ssp.xml.archive import read_entry, unpack
 from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, parsed, read_document
+from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
@@ -218,7 +219,7 @@ def open_package(
         return None
     if path.suffix.lower() == ".ssd":
         return Package(path.parent, str(Path(shown).parent), path.name, fmus)
-    unpacked = tempfile.TemporaryDirectory(prefix="shipcosim-")
+    unpacked = temporary_folder()
     try:
         unpack(path, unpacked.name, shown)
     except ShipcosimError as error:
