@@ -322,17 +322,14 @@ class ModelExchange(LibrarySlave):
         rates = np.zeros(max(self._n, 1))
         self.derivatives_into(rates)
         # The first try is a few roundings of the time long.
-        past = 4 * np.spacing(max(abs(start), farthest - start))
-        while True:
-            past = min(past, farthest - start)
+        past = 2 * np.spacing(max(abs(start), farthest - start))
+        while past < farthest - start:
+            past = min(2 * past, farthest - start)
             self._time = start + past
             states[:] = before + past * rates
             self._set_time_and_states(self._time, self._states)
             if self._events.has_changed():
                 return True
-            if past >= farthest - start:
-                break
-            past *= 2
         self._time = start
         states[:] = before
         self._set_time_and_states(start, self._states)
