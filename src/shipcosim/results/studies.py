@@ -45,7 +45,10 @@ class EngineComparison(Result, Comparison):
         rows = [
             {"unit": one.unit, "range": one.range}
             | {engine: difference.largest for engine, difference in one.engines.items()}
-            | {"of range": one.worst, "half the step": one.step.largest}
+            | {
+                "of range": one.worst,
+                "half the step": one.step.largest if one.step else "not tried",
+            }
             for one in self.signals
         ]
         return pandas.DataFrame(

@@ -32,7 +32,7 @@ def comparison_card(found: Comparison, name: str) -> Card:
                 f"{one.engines[engine].largest:.1e}" if engine in one.engines else "–"
                 for engine in others
             ),
-            f"{one.step.largest:.1e}",
+            f"{one.step.largest:.1e}" if one.step else "not tried",
         )
         for one in found.signals[:MOST_ROWS]
     )

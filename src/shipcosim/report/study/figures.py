@@ -61,9 +61,21 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         str(view.get("note") or note),
         how_gathered(frame, radius, groups),
         left_out(frame, series),
+        in_part(size),
     ]
     title = f"{size.name} by direction"
     return _figure(view, title, size.unit, traces, {"polar": _polar_axes(traces)}, notes, POLAR)
+
+
+def in_part(column: Column) -> str:
+    """Sentence on values of which the study tells a part; empty if there are none."""
+    open_ = sorted({text for text in column.ranges if not text.lstrip("-").isdigit()})
+    if not open_:
+        return ""
+    listed = ", ".join(open_[:4])
+    return (
+        f"Drawn is the last case that is held; not every case was run, so it stands for {listed}."
+    )
 
 
 def _around(

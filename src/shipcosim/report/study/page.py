@@ -294,6 +294,8 @@ def _summary(columns: Mapping[str, Column]) -> Table:
 
 def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> str:
     """A cell of the summary, with its interval if it has one."""
+    if column.ranges:
+        return column.text_at(row)
     # Value first, then both ends in brackets.
     cell = _cell(column, column.values[row])
     ends = [

@@ -73,12 +73,12 @@ def _of_summary(summary: Mapping[str, Column]) -> str:
     name = found.description or found.name.replace("_", " ")
     # One row, one value everywhere, or a range with the factors of its ends.
     if len(found.values) == 1:
-        return f"{_capital(name)}: {found.text(found.values[0])}."
+        return f"{_capital(name)}: {found.text_at(0)}."
     low = int(np.nanargmin(found.values))
     high = int(np.nanargmax(found.values))
     if found.values[low] == found.values[high]:
-        return f"{_capital(name)}: {found.text(found.values[low])} everywhere."
-    ends = [f"{found.text(found.values[row])} ({_where(summary, row)})" for row in (low, high)]
+        return f"{_capital(name)}: {found.text_at(low)} everywhere."
+    ends = [f"{found.text_at(row)} ({_where(summary, row)})" for row in (low, high)]
     return f"{_capital(name)}: from {ends[0]} to {ends[1]}."
 
 
@@ -137,6 +137,9 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
         return KeyFigure(
             percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
         )
+    if column.ranges:
+        ends = [column.text_at(int(end(column.values))) for end in (np.nanargmin, np.nanargmax)]
+        return KeyFigure(ends[0] if ends[0] == ends[1] else f"{ends[0]} … {ends[1]}", name)
     if column.role == SUMMARY:
         low = column.text(known.min())
         high = column.text(known.max())
