@@ -1,6 +1,7 @@
 """Errors and remarks in one form: where, what was found, what would be right."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 
@@ -150,3 +151,27 @@ def it_has(name: str, known: Iterable[str]) -> str:
     "It has: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
     return "It has" + suggestion(name, known).removeprefix("There is")
+
+
+@contextmanager
+def imported(where: str, found: str, extra: str = "sweep") -> Iterator[None]:
+    """For an import of a library that an extra of the package brings.
+
+    Parameters
+    ----------
+    where, found : str
+        As of the problem, where the library is missing.
+    extra : str
+        That brings it.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is missing, with what to install.
+    """
+    try:
+        yield
+    except ImportError:
+        raise ShipcosimError(
+            Problem(where, found, f"Install it: pip install 'shipcosim[{extra}]'.")
+        ) from None

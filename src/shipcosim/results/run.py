@@ -99,7 +99,7 @@ class Run(LikeTable, Result):
         ShipcosimError
             If there is no such signal.
         """
-        from shipcosim.report.notebook.curves import panels_of, panels_svg
+        from shipcosim.report.notebook.figures import panels_svg
         from shipcosim.report.run.roles import find_roles
         from shipcosim.report.theme.display import display_table
 
@@ -116,12 +116,8 @@ class Run(LikeTable, Result):
             found = f"{', '.join(names)}: no signal among these is a number over time."
             raise ShipcosimError(Problem(self.name, found, "Only those can be drawn."))
         title = f"{', '.join(signals) or 'signals'} of {self.name}"
-        return Picture(
-            title,
-            panels_svg(
-                panels_of(shown, drawn), title, sorted({e.time for e in self.scenario.events})
-            ),
-        )
+        events = sorted({event.time for event in self.scenario.events})
+        return Picture(title, panels_svg(shown, drawn, title, events))
 
     def track(self) -> Picture:
         """The way of the ship on a chart, north up, with where she was to be.

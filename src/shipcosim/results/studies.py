@@ -92,7 +92,7 @@ class Replay(SavedResult, LogReplay):
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import replay_card
 
-        return replay_card(self, self.name, self.track().svg)
+        return replay_card(self, self.name, lambda: self.track().svg)
 
     def write(self, stage: Path) -> None:
         """Write report.html, errors.csv and replay.nc into a folder that is there."""

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, imported, suggestion
 from shipcosim.scenario import units_of
-from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.study_model import Distribution, Study

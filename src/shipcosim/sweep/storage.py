@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim import __version__
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, imported
 from shipcosim.scenario.model import Value
 from shipcosim.series import write_file
 from shipcosim.staging import set_aside
-from shipcosim.sweep.extras import imported
 from shipcosim.sweep.plan import ColumnOf, Plan
 from shipcosim.sweep.work import Row
 

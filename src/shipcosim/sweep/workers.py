@@ -16,8 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.sweep.extras import imported
+from shipcosim.errors import Problem, ShipcosimError, imported
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
 

@@ -18,7 +18,7 @@ from shipcosim.report.diagnosis.words import (
 )
 from shipcosim.report.joint import words as joint
 from shipcosim.report.notebook.card import Block, Card
-from shipcosim.report.notebook.chart import Path, chart_svg
+from shipcosim.report.notebook.figures import Path, track_svg
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.views import Fact, Table
 
@@ -64,7 +64,7 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
             Block("What to do next", lines=tuple(steps)),
             Block("This log could not have shown", lines=silent, folded=True),
         ),
-        picture="" if found.tracks is None else tracks_svg(found.tracks, name),
+        draw=None if (tracks := found.tracks) is None else lambda: tracks_svg(tracks, name),
     )
 
 
@@ -116,4 +116,4 @@ def tracks_svg(tracks: Tracks, name: str) -> str:
         paths.append(
             Path(f"{label}, every {tracks.horizon:.0f} s anew", north, east, colour=colour)
         )
-    return chart_svg(paths, name)
+    return track_svg(paths, name)

@@ -48,7 +48,7 @@ def run_card(
             Block("Remarks", lines=tuple(found.remarks)),
             Block("Signals, by component", Table(_signals(table)), folded=True),
         ),
-        picture=run_track(table, verdicts, f"track of {name}") or "",
+        draw=lambda: run_track(table, verdicts, f"track of {name}") or "",
     )
 
 

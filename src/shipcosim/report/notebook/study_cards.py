@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from shipcosim.capability import Capability
 from shipcosim.cosim.compare import OURS, Comparison
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -84,8 +86,8 @@ def _agreement(found: Comparison, others: list[str]) -> Outcome:
     )
 
 
-def replay_card(found: LogReplay, name: str, picture: str) -> Card:
-    """Errors of the predictions and the track; `picture` is its SVG."""
+def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
+    """Errors of the predictions and the track, which `draw` gives as SVG."""
     faults = tuple(
         f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in found.faults
     )
@@ -99,7 +101,7 @@ def replay_card(found: LogReplay, name: str, picture: str) -> Card:
             Block("Errors, root mean square", error_rows(errors_of(found.tracks))),
             Block("Remarks", lines=(*faults, *found.remarks)),
         ),
-        picture=picture,
+        draw=draw,
     )
 
 
