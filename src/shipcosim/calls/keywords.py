@@ -10,8 +10,6 @@ from typing import Any, TypeVar, cast
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunKeywords
 
-__all__ = ["with_known_keywords"]
-
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 

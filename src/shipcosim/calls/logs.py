@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
     AnyLog = AnyPath | xarray.Dataset | Log | Run
 
-__all__ = ["calibrate", "diagnose", "read_log", "replay", "sea_trials"]
 
 WRITING = "writing the page"
 """What the progress function is told at the end, where results are written."""

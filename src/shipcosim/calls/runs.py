@@ -46,8 +46,6 @@ from shipcosim.staging import check_targets, set_file_aside
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["PreparedRun", "prepare_run", "prepare_simulation", "run", "simulate"]
-
 
 @dataclass(frozen=True)
 class PreparedRun:

@@ -18,8 +18,6 @@ from shipcosim.results.shown import parts_of
 from shipcosim.results.study import StudyResult
 from shipcosim.sweep import Plan, plan_of, read_study, run_study
 
-__all__ = ["PlannedStudy", "sweep"]
-
 
 class PlannedStudy:
     """A study that is read and laid out.

@@ -35,8 +35,6 @@ from shipcosim.ssp import System, SystemStructure, osp_file, pack
 from shipcosim.ssp import read as read_structure
 from shipcosim.staging import check_targets
 
-__all__ = ["capability", "check", "compare", "read"]
-
 SYSTEM_OF_CAPABILITY = "gunnerus_dp"
 """Whose capability is computed where no system is given."""
 

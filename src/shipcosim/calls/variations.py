@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["simulate_many"]
-
 
 @with_known_keywords
 def simulate_many(

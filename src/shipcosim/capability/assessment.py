@@ -12,8 +12,6 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ships import read_ship
 from shipcosim.ssp import osp_file, read, read_system
 
-__all__ = ["ship_folder", "vessel_of"]
-
 
 def vessel_of(
     system: str | os.PathLike[str],

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
     from shipcosim.ssp import System, SystemStructure
 
-__all__ = ["CalibratedLog", "CalibratedShip", "calibrate", "log_names", "problems_of", "steps_of"]
 
 READING = "are the logs right?"
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["CheckedLog", "ReadLog", "checked"]
-
 
 @dataclass(frozen=True)
 class ReadLog:

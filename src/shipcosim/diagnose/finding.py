@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 
-__all__ = ["Candidate", "Discrepancy", "Finding", "ParameterEstimate", "label_of"]
-
 
 def label_of(cause: str, component: str | None) -> str:
     """A cause with its place, in words: ``thrust_loss of port``."""

@@ -60,17 +60,6 @@ from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import System, SystemStructure, read
 
-__all__ = [
-    "STEPS",
-    "Progress",
-    "causes_in",
-    "diagnose",
-    "find_causes",
-    "problem_of",
-    "read_measurements",
-    "verdict_on",
-]
-
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
 

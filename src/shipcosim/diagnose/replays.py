@@ -18,8 +18,6 @@ from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
 from shipcosim.ssp import System
 
-__all__ = ["LogReplay", "replay_log"]
-
 _SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
 
 

@@ -23,11 +23,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.validation.tracks import Tracks
     from shipcosim.ssp import System
 
-__all__ = [
-    "SCHEMA",
-    "Diagnosis",
-    "LogSummary",
-]
 
 SCHEMA = "shipcosim-diagnosis/1"
 

@@ -18,8 +18,6 @@ from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.tracks import tracks_of
 
-__all__ = ["completed", "stated"]
-
 
 def stated(log: JudgedLog) -> Diagnosis:
     """What is said of a log: faults, causes since when they act, what it could not have shown, what to sail next."""

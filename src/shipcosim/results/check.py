@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["CheckedFiles"]
 
 VARIABLE_KEYS = ("name", "causality", "type", "unit", "start", "description")
 """What the texts of a variable are."""

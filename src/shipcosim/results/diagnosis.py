@@ -17,8 +17,6 @@ from shipcosim.series import write_json
 if TYPE_CHECKING:
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["DiagnosisOfLog", "DiagnosisOfLogs"]
-
 
 class _DiagnosisResult(SavedResult):
     """A diagnosis that can be written as the command writes it; the extended system is in `extension`."""

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.finding import Finding
 
-__all__ = ["Log"]
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Log(LikeTable):

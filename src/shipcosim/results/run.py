@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from shipcosim.scenario import Expectation, Scenario, Verdict
     from shipcosim.ssp import System
 
-__all__ = ["Run"]
 
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
 """Files of a run that did not get to its end; a complete one takes them away."""

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["HtmlPage", "LikeTable", "Picture", "Result", "SavedResult", "page_of", "parts_of"]
 
 HEIGHT = 820  # px, of a page within a notebook
 

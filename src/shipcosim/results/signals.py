@@ -7,8 +7,6 @@ from fnmatch import fnmatchcase
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 
-__all__ = ["chosen"]
-
 
 def chosen(names: Iterable[str], wanted: Sequence[str]) -> list[str]:
     """Names that are meant, each once, in the order in which they were asked for.

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.validation.tracks import Tracks
     from shipcosim.report.notebook.card import Card
 
-__all__ = ["Calibration", "CapabilityOfShip", "EngineComparison", "Replay", "SeaTrials"]
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class EngineComparison(Result, Comparison):

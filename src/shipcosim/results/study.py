@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from shipcosim.report.study import StudyTables
     from shipcosim.results.run import Run
 
-__all__ = ["StudyResult"]
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class StudyResult(Result, Swept):

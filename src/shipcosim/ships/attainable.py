@@ -15,8 +15,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["largest_multiple"]
-
 ASIDE = 1e-9
 """Cosine between a normal and a load below which the load lies along the facet."""
 

@@ -16,8 +16,6 @@ from shipcosim.ships.described import describe
 from shipcosim.ships.entries import Entry, table_entry
 from shipcosim.ships.file import ShipFile
 
-__all__ = ["Quantity", "Ship", "read_ship"]
-
 Kind = TypeVar("Kind")
 _SHIP_KEYS = {"description": str, "source": str, "based_on": list, "systems": list}
 _SECTIONS = set(ShipFile.model_fields) - set(_SHIP_KEYS)

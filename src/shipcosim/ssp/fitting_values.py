@@ -12,8 +12,6 @@ from shipcosim.ssp.xml.document import Findings, read_document
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import conversion, spelled_unit
 
-__all__ = ["fitting_values"]
-
 
 def fitting_values(
     path: str | PathLike[str], system: System

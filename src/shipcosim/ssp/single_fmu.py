@@ -17,8 +17,6 @@ from shipcosim.ssp.xml.document import Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
 
-__all__ = ["assemble_fmu", "settings_of_one", "single_fmu"]
-
 IN_TABLES = ("Real", "Integer", "Boolean", "Enumeration")
 """Kinds of inputs that a table can feed; the others keep their start value, which can be set."""
 

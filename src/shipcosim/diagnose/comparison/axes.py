@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
 
-__all__ = ["AXES", "Axis", "AxisFit", "axes_of", "rest_of"]
 
 AXES = ("surge", "sway", "yaw")
 _OF_HULL = 3  # columns of the water's load: the model's, and linear and quadratic damping

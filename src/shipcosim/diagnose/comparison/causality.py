@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.commanded import Commanded
     from shipcosim.diagnose.comparison.measured_force import Felt
 
-__all__ = ["blocks", "causal_support"]
-
 
 def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> np.ndarray:
     """Log-likelihood that each of several readings of the commands gains by predicting the velocities, over none.

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Load, Motion
 
-__all__ = ["Commanded", "commanded_by", "inertia", "late", "moving_mass"]
-
 
 @dataclass(frozen=True)
 class Commanded:

@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["ComparedLog", "LogComparison", "compared", "ratio_finding", "with_crude"]
-
 
 @dataclass(frozen=True)
 class LogComparison:

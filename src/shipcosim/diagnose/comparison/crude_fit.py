@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["crude_model"]
 
 _STEP = 1e-3  # of a logarithm, for derivatives
 _DAMPED = np.array([0.0, 0.3, 3.0, 30.0])  # shares of the diagonal that steps are damped by

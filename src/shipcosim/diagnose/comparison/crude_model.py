@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["CrudeModel", "CrudeNumber", "HeldOutErrors", "crude_numbers", "spoken_for"]
 
 _ONLY_RATIO = "Thrust and inertia cannot be told apart: only their ratio is known."
 _ONLY_DAMPING = "Damping and inertia cannot be told apart: only their ratio is known."

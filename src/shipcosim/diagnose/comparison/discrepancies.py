@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.labels import LabelError, Labels
     from shipcosim.diagnose.comparison.missing_loads import MissingLoad
 
-__all__ = ["discrepancies_of", "is_of_damping"]
 
 _DAMPING = "damping in"
 

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["errors_of", "errors_over_none", "horizons_of", "starts_of"]
 
 _LADDER = np.array([1.0, 2.0, 3.0, 6.0, 10.0])
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis, AxisFit
     from shipcosim.diagnose.comparison.commanded import Commanded
 
-__all__ = ["AxisGain", "CommonRatio", "common_ratio", "gains_of"]
-
 
 @dataclass(frozen=True)
 class AxisGain:

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LabelError", "LabelHypothesis", "ahead_of", "changes_of", "driven", "reading"]
-
 
 @dataclass(frozen=True)
 class LabelError:

@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Blocks", "blocks_of", "likelihood_of", "smoothed"]
 
 _ROUNDS = 5  # of coefficients and autocorrelation in turn
 _LOG_GAINS = np.linspace(np.log(0.05), np.log(8.0), 81)

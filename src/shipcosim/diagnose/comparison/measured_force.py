@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.models.core.motion import Motion
 
-__all__ = ["Felt", "felt_by"]
-
 
 @dataclass(frozen=True)
 class Felt:

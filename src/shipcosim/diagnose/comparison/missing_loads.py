@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.measured_force import Felt
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["FORCES", "MissingLoad", "missing_loads"]
 
 FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
 _SENSES = {

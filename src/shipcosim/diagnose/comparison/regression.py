@@ -9,8 +9,6 @@ import numpy as np
 from shipcosim.diagnose.comparison.thresholds import HUBER, ROBUST_ROUNDS, SOUND
 from shipcosim.diagnose.numerics import least_squares
 
-__all__ = ["Regression", "bounded", "regressed"]
-
 
 @dataclass(frozen=True)
 class Regression:

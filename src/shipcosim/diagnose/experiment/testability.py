@@ -24,8 +24,6 @@ from shipcosim.diagnose.ship.model import ShipModel
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.compared import LogComparison
 
-__all__ = ["hidden_by_form", "log_facts", "not_testable", "untestable_causes"]
-
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     """Causes of the catalogue, the clock, and labels of thrusters that a log could not have shown.

@@ -27,8 +27,6 @@ from shipcosim.diagnose.inference.thresholds import (
     MOST_CHANGE_POINT_BLOCKS,
 )
 
-__all__ = ["change_point_of", "with_change_point"]
-
 
 def with_change_point(explained: ExplainedLog) -> ExplainedLog:
     """The log from a change point on with its own causes, where that explains the whole better; else as it was.

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
-__all__ = ["learnt", "of_scale", "scores_by_scale", "with_learnt_form", "with_settled_form"]
-
 
 def with_learnt_form(found: Identification) -> Identification:
     """An identified log whose ship may differ from the model's form as far as the log says."""

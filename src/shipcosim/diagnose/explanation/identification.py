@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.finding import Finding
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
 
-__all__ = ["Identification", "identified"]
-
 
 @dataclass(frozen=True)
 class Identification(CheckedLog):

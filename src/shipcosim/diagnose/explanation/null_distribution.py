@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.linearisation import Regressor
 
-__all__ = ["healthy_products", "healthy_records", "null_gains", "on_track"]
-
 
 def null_gains(
     problem: IdentificationProblem,

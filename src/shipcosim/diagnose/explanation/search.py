@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.inference.screening import Gain
 
-__all__ = ["at_first_sight", "explain", "names", "with_causes", "without_causes"]
 
 STRAIN = (
     2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight

@@ -17,16 +17,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = [
-    "LAGS",
-    "CauseGain",
-    "Evidence",
-    "SetEvidence",
-    "SizeEstimate",
-    "evidence_of",
-    "load_form",
-    "whiteness",
-]
 
 MOVED = 2.0
 """Standard deviations, before and after the log, by which a number of the form has moved. [1]"""

@@ -27,7 +27,6 @@ from shipcosim.diagnose.ship.measured_motion import readings
 if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
-__all__ = ["FORCES", "errors_of_the_fit", "is_healthy", "unmodelled_gains"]
 
 FORCES = ("slow", "with the heading", "periodic")
 """Kinds of unmodelled errors that push the ship."""

@@ -32,17 +32,6 @@ from shipcosim.diagnose.inference.thresholds import (
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
 
-__all__ = [
-    "Judgement",
-    "admissible",
-    "gained",
-    "judge",
-    "judged",
-    "labels",
-    "usual_gain",
-    "with_crude_model",
-]
-
 _BY_PART = "from part to part"
 _AS_THEY_ARE = (
     _BY_PART,

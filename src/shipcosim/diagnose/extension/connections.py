@@ -11,8 +11,6 @@ from shipcosim.diagnose.ship.third_party_fmu import DRIVES, third_party_fmu_of
 from shipcosim.series import conversion
 from shipcosim.ssp import Connection, System, SystemStructure
 
-__all__ = ["connect_neighbours", "put_on_connections", "rewire"]
-
 
 def put_on_connections(
     draft: ExtensionDraft,

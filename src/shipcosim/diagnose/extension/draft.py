@@ -11,8 +11,6 @@ from shipcosim.series import conversion
 from shipcosim.ssp import SystemStructure, parameter
 from shipcosim.ssp.read.parameters import ParameterValue
 
-__all__ = ["AXES", "Estimated", "ExtensionDraft", "converted"]
-
 AXES = ("X", "Y", "N")
 
 

@@ -16,8 +16,6 @@ from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import SystemStructure, read, write_ssv
 
-__all__ = ["Extension", "extend"]
-
 _SHOWN = {"north": "x", "east": "y", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
 
 

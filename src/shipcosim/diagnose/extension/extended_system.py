@@ -17,8 +17,6 @@ from shipcosim.ssp import System, SystemStructure, read_system
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
 
-__all__ = ["NumberChange", "extended_by", "with_findings"]
-
 
 @dataclass(frozen=True)
 class NumberChange:

@@ -11,8 +11,6 @@ from shipcosim.diagnose.ship.environment import water_of
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship.instruments import InstrumentParameters
 
-__all__ = ["RAMP", "add_current", "add_force", "add_instruments"]
-
 RAMP = 30.0
 """Time over which something grows after its onset, assumed. [s]"""
 

@@ -21,15 +21,6 @@ from shipcosim.series import conversion
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = [
-    "Hypothesis",
-    "HypothesisParameter",
-    "hypotheses_of",
-    "read_catalogue",
-    "read_cause",
-    "read_faults",
-]
-
 
 @dataclass(frozen=True)
 class HypothesisParameter:

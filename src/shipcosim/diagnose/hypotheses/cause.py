@@ -8,16 +8,6 @@ from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, model_validator
 
-__all__ = [
-    "FACTS",
-    "Cause",
-    "CauseParameter",
-    "ExtensionRule",
-    "Fault",
-    "OnConnections",
-    "placeholders",
-]
-
 FACTS = ("astern_share", "speed", "surge", "surge_acceleration", "sway", "wind_speed", "yaw_rate")
 """What `why_not_testable` can say of a log: root mean squares of the motion, the mean wind, the share astern."""
 

@@ -13,8 +13,6 @@ from shipcosim.models.core.kinematics import to_body
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["most_white"]
-
 
 def most_white(record: Record) -> np.ndarray:
     """Largest white noise of each channel by how far position and velocity, heading and yaw rate, are apart.

@@ -14,10 +14,6 @@ import numpy as np
 if TYPE_CHECKING:
     pass
 
-__all__ = [
-    "evidence",
-]
-
 
 def evidence(
     products: np.ndarray, prior: np.ndarray, centre: np.ndarray | None = None

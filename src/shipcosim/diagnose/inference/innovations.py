@@ -19,16 +19,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = [
-    "WAVE_DAMPING",
-    "Innovations",
-    "Noise",
-    "inner_products",
-    "innovations",
-    "log_likelihoods",
-    "oscillation",
-    "smoothed",
-]
 
 WAVE_DAMPING = 0.1
 """Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""

@@ -21,18 +21,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Inputs, Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = [
-    "MOVED",
-    "SLOW_STD",
-    "SLOW_TIME",
-    "STATES",
-    "Linear",
-    "Regressor",
-    "advanced",
-    "linearise",
-    "rows_first",
-    "runge_kutta",
-]
 
 STATES = 18
 """x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3), what waves add

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["first_noise", "tuned", "waves_of"]
 
 _GROUPS = (
     ("white", (0, 1)),

@@ -16,15 +16,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.models.core.motion import Motion
 
-__all__ = [
-    "PART",
-    "InParts",
-    "beside",
-    "explained",
-    "in_parts",
-    "linearised_by_parts",
-    "with_columns",
-]
 
 PART = 4096
 """Most rows of a part: as many as a processor's cache holds series of. A log of an hour at 1 Hz is one part."""

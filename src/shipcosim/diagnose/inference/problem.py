@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["as_logged", "identification_problem", "unidentifiable"]
-
 
 def identification_problem(
     repaired: xarray.Dataset, ship: ShipModel, causes: dict[str, Cause], noise: Noise | None = None

@@ -11,7 +11,6 @@ from shipcosim.diagnose.inference.linearisation import Regressor
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 
-__all__ = ["DIRECTIONS", "screening_regressors"]
 
 DIRECTIONS = 12
 """Directions in which a vector is sought, evenly over the circle."""

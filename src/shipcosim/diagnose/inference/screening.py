@@ -17,11 +17,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
-__all__ = [
-    "Gain",
-    "gains",
-    "screened",
-]
 
 Gain = tuple[float, "Hypothesis", dict[str, float]]
 """Gain in log-evidence of a hypothesis, and first values of its parameters."""

@@ -12,8 +12,6 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
-__all__ = ["each"]
-
 MOST = 4
 """More would hold each other up: Python itself runs in one thread at a time."""
 _inside = threading.local()

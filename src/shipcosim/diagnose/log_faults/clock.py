@@ -42,7 +42,6 @@ from shipcosim.models.core.motion import Motion
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["clock_by_response", "is_testable", "with_rate"]
 
 ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
 

@@ -45,15 +45,6 @@ from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.wiring import put_right
 
-__all__ = [
-    "corrected",
-    "with_right_clock",
-    "with_right_connections",
-    "with_right_inputs",
-    "with_right_navigation",
-    "with_right_wind",
-]
-
 
 def corrected(found: Identification) -> Identification:
     """A log with navigation, clock and wind, and a system with connections, as the ship's response says."""

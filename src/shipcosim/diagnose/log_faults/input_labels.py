@@ -50,15 +50,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = [
-    "best_run",
-    "likelihood",
-    "suspected_inputs",
-    "where_best",
-    "with_label",
-    "with_refined_segment",
-]
-
 
 def suspected_inputs(
     log: xarray.Dataset, problem: IdentificationProblem

@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.finding import Finding
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
 
-__all__ = ["Relabelled", "relabelled"]
 
 LABELS = (HEADING_LABELS[0], *POSITION_LABELS)
 

@@ -2,8 +2,6 @@
 
 import math
 
-__all__ = ["log_survival", "survival"]
-
 _TINY = 1e-300
 
 

@@ -4,8 +4,6 @@ from typing import Literal
 
 import numpy as np
 
-__all__ = ["gaussian_filter", "moving_average"]
-
 Ends = Literal["reflected", "held"]
 _WIDTHS = 4.0  # standard deviations at which the Gaussian is cut off
 _PADDED: dict[Ends, Literal["symmetric", "edge"]] = {"reflected": "symmetric", "held": "edge"}

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-__all__ = ["least_squares"]
-
 _ROUNDS = 50  # a column, as a guard against rounding; a few are needed
 
 

@@ -4,8 +4,6 @@ import numpy as np
 
 from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
 
-__all__ = ["spline_integral"]
-
 
 def spline_integral(time: np.ndarray, series: np.ndarray) -> np.ndarray:
     """Integral of the cubic spline through a series, from the first row on.

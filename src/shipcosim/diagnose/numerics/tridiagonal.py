@@ -2,8 +2,6 @@
 
 import numpy as np
 
-__all__ = ["solve_tridiagonal"]
-
 
 def solve_tridiagonal(
     lower: np.ndarray, diagonal: np.ndarray, upper: np.ndarray, right: np.ndarray

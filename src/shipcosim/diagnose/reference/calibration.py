@@ -37,8 +37,6 @@ from shipcosim.diagnose.reference.thresholds import (
 )
 from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Calibration", "calibrated_to", "causes_beside", "numbers_of", "reference_of"]
-
 
 @dataclass(frozen=True)
 class Calibration:

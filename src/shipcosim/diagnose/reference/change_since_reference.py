@@ -11,8 +11,6 @@ from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.reference import Reference, with_reference
 from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["with_sizes_at_reference"]
-
 
 def with_sizes_at_reference(
     findings: Iterable[Finding], ship: ShipModel, reference: Reference, causes: Mapping[str, Cause]

@@ -21,17 +21,6 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.comparison.labels import Labels
 
-__all__ = [
-    "RatioOfLogs",
-    "Shared",
-    "common_discrepancies",
-    "common_faults",
-    "is_of_thrusters",
-    "leans_to",
-    "ratio_of_logs",
-    "together",
-    "with_right_labels",
-]
 
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _What = TypeVar("_What", Finding, Discrepancy)

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.inference.fitting import IdentificationProblem
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["LogErrors", "errors_by_log", "sizes_by_log", "sizes_without", "weather_of"]
-
 
 @dataclass(frozen=True)
 class LogErrors:

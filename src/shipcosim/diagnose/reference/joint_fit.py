@@ -28,8 +28,6 @@ from shipcosim.diagnose.reference.several_logs import Layout, SeveralLogs, laid_
 from shipcosim.diagnose.reference.thresholds import CLOSE
 from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["JointFit", "fitted_jointly", "screened_jointly", "screening_layout"]
-
 
 @dataclass(frozen=True, eq=False)
 class JointFit(Fit):

@@ -11,8 +11,6 @@ from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.validation.gain import share_explained
 
-__all__ = ["joint_baseline", "joint_gain"]
-
 
 def joint_baseline(errors: Mapping[str, LogErrors]) -> dict[str, list[float]] | None:
     """Errors of the system as it is: root mean square over the logs, each log alike.

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.reference.held_out import LogErrors
     from shipcosim.ssp import System
 
-__all__ = ["JointBasis", "JointDiagnosis"]
-
 
 @dataclass(frozen=True)
 class JointBasis:

@@ -29,8 +29,6 @@ from shipcosim.diagnose.reference.joint_fit import (
 )
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 
-__all__ = ["JointVerdict", "judged_jointly", "untestable_jointly"]
-
 
 @dataclass(frozen=True)
 class JointVerdict:

@@ -9,8 +9,6 @@ from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.reference.reference import KnownNumber, Reference, is_same
 from shipcosim.ssp import System, SystemStructure, parameter, read, write_ssv
 
-__all__ = ["FILE", "with_calibrated_numbers", "write_parameter_set"]
-
 FILE = "calibrated.ssv"
 """Name of the set in the folder that a calibration leaves."""
 

@@ -18,18 +18,6 @@ from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import write_file
 
-__all__ = [
-    "FILE",
-    "SCHEMA",
-    "KnownNumber",
-    "Reference",
-    "ReferenceLog",
-    "fingerprint",
-    "is_same",
-    "read_reference",
-    "with_reference",
-]
-
 SCHEMA = "shipcosim-reference/1"
 FILE = "reference.json"
 """Name of the file in the folder that a calibration leaves."""

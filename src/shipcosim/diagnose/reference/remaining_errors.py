@@ -16,8 +16,6 @@ from shipcosim.diagnose.validation.split import first_rows, trained
 from shipcosim.diagnose.validation.tracks import errors_of, fitting_horizon, tracks_by_models
 from shipcosim.errors import ShipcosimError
 
-__all__ = ["RemainingErrors", "remaining_errors"]
-
 
 @dataclass(frozen=True)
 class RemainingErrors:

@@ -17,8 +17,6 @@ from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["Layout", "SeveralLogs", "is_in_one_log", "is_of_day", "laid_out", "of_log", "values_in"]
-
 _SEPARATOR = "|"
 
 

@@ -7,8 +7,6 @@ import numpy as np
 from shipcosim.diagnose.numerics import moving_average
 from shipcosim.diagnose.sea_trials import thresholds
 
-__all__ = ["own_clock"]
-
 
 def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np.ndarray, float]:
     """Times of a log's rows by the way of its positions over its logged speed.

@@ -20,18 +20,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = [
-    "SetOfCauses",
-    "TrialEvidence",
-    "allowed_for",
-    "blocks",
-    "changes_of",
-    "known_numbers",
-    "predicted",
-    "ranked",
-    "slopes_of",
-    "trial_evidence",
-]
 
 _PART = 0.3  # of the typical size, by which a cause is moved for its first derivative
 

@@ -19,7 +19,6 @@ from shipcosim.diagnose.sea_trials import thresholds
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
 
-__all__ = ["ANGLES", "FEATURES", "SOUGHT", "covariance_of", "features_of", "is_logarithm"]
 
 _TIMES = tuple(f"t{heading:.0f}" for heading in thresholds.HEADINGS)
 _SPEEDS = tuple(f"speed at {heading:.0f}" for heading in thresholds.HEADINGS_OF_SPEED)

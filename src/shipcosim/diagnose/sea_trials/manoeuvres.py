@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["PlannedTrial", "as_trials", "catalogue"]
 
 _FULL = 1.0  # of the largest shaft speed of the trials
 _HALF = 0.6

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["sailed", "settled", "steered"]
-
 
 def sailed(
     trials: Sequence[SeaTrial],

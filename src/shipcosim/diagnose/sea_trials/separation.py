@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, TrialEvidence
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
 
-__all__ = ["MOST_SETS", "Separation", "TellingFeature", "designed", "differing", "separations"]
 
 _PART = 0.3  # of a standard deviation, by which known numbers are moved
 MOST_SETS = 4

@@ -47,18 +47,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
     from shipcosim.ssp import System
 
-__all__ = [
-    "STEPS",
-    "HeldOut",
-    "SeaTrialStudy",
-    "best_of",
-    "causes_of_trials",
-    "errors",
-    "motions_of",
-    "rivals_of",
-    "studied",
-    "study",
-]
 
 STEPS = {
     "which manoeuvres are in the log?": 1.0,

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["SeaTrial", "as_ordered", "sea_trials_of", "steering"]
-
 
 @dataclass(frozen=True)
 class SeaTrial:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Inputs
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["current_at", "loads", "motion_rates", "rate_difference", "with_steady_current"]
 
 Alike = tuple["ShipModel", dict[str, Load]]
 _MADE_OF = {

@@ -8,8 +8,6 @@ import numpy as np
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.parameters import quantity, required
 
-__all__ = ["Water", "piecewise_linear_basis", "share_of", "swell_of", "water_of"]
-
 _NEUTRAL = "neutral"
 _SWELLS = 8
 _DRIFT_ARM = -1.5  # m, of a research vessel by VERES

@@ -24,17 +24,6 @@ from shipcosim.models.ship.hull import HullParameters
 if TYPE_CHECKING:
     pass
 
-__all__ = [
-    "HullForm",
-    "ThrusterForm",
-    "WindForm",
-    "cross_flow_form",
-    "form_functions",
-    "form_of",
-    "form_sizes",
-    "thrust_kept",
-    "wind_factors",
-]
 
 _NEUTRAL = "neutral"
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(12)  # along the hull, over half its length

@@ -22,16 +22,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 
-__all__ = [
-    "CHANNELS",
-    "Inputs",
-    "Record",
-    "averaged",
-    "first_motion",
-    "rate_of",
-    "record_of",
-    "with_inputs_of",
-]
 
 _SHORTEST = 18.0  # s over the root of the length in m: 105 s for 33.9 m, 20 s for 1.2 m
 _FEWEST_ROWS = 60

@@ -8,13 +8,6 @@ from shipcosim.models.core.parameters import quantity
 if TYPE_CHECKING:
     pass
 
-__all__ = [
-    "LAGS",
-    "MOUNTING",
-    "NONLINEAR",
-    "Instruments",
-]
-
 
 @dataclass(frozen=True)
 class Instruments:

@@ -6,8 +6,6 @@ from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship import instruments
 
-__all__ = ["readings", "true_motion"]
-
 
 def readings(motion: Motion, model: ShipModel) -> Motion:
     """What the instruments show of a motion, without noise and lag, heading not wrapped.

@@ -21,7 +21,6 @@ from shipcosim.models.propulsion.tunnel import TunnelParameters
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.wiring import Wiring
 
-__all__ = ["ANY_CAUSE", "OWN_THRUSTERS", "ShipModel"]
 
 ANY_CAUSE = "any cause"
 OWN_THRUSTERS = (AzimuthParameters, TunnelParameters)

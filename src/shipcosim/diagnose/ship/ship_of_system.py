@@ -20,8 +20,6 @@ from shipcosim.models.ship.hull import HullParameters
 from shipcosim.ssp import System
 from shipcosim.ssp.flatten.system import Component
 
-__all__ = ["ship_model_of"]
-
 
 def ship_model_of(system: System) -> ShipModel:
     """The ship of a system with our vessel.fmu; FMUs that load her may be third-party ones.

@@ -14,7 +14,6 @@ from shipcosim.models.core.motion import Motion
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
 
-__all__ = ["Kernel", "froude_time", "is_measured", "unsmoothed"]
 
 _REACH = 2.5  # widths that a gap in the log reaches
 _ENOUGH = 0.2  # share of the rows that a channel must be measured in

@@ -9,7 +9,6 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["MOST_ROWS", "STRETCHES", "in_stretches", "rows_averaged", "stretches_of"]
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
 MOST_ROWS = 6_000

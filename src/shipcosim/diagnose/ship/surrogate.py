@@ -11,9 +11,6 @@ import numpy as np
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 
-__all__ = ["QuadraticThrust", "Surrogate", "ThirdPartyPart", "without_holes"]
-
-
 _MET = 4  # sets of times whose loads are kept: a few MB each
 
 

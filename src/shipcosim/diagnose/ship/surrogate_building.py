@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["surrogates_of", "with_surrogates"]
 
 _AXES = ("X", "Y", "N")
 _CHANGE = {

@@ -18,16 +18,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.surrogate import Surrogate
     from shipcosim.ssp import Component, Connection, System
 
-__all__ = [
-    "DRIVES",
-    "Link",
-    "ThirdPartyFmu",
-    "drives_of",
-    "number_of",
-    "part_of",
-    "problem_of",
-    "third_party_fmu_of",
-]
 
 DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
 """What a log says of a thruster, and in which unit it is handed on."""

@@ -19,16 +19,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
     from shipcosim.ssp import System
 
-__all__ = [
-    "DpThruster",
-    "dp_thruster_of",
-    "fixed_of",
-    "neighbours_of",
-    "neighbours_placed",
-    "thruster_loads",
-    "with_thrust",
-]
-
 
 class DpThruster(NamedTuple):
     """A thruster as a DP controller knows it.

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from shipcosim.models.core.motion import Motion
     from shipcosim.models.ship.hull import HullParameters
 
-__all__ = ["Scales", "fastest_rate", "response_times"]
 
 _SMALL = 1e-3  # m/s, and rad/s over half the length in m: differences for slopes
 

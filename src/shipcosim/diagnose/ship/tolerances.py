@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from shipcosim.ssp import System
 
-__all__ = ["tolerances_of"]
 
 _COEFFICIENT = 0.05  # of a hull's coefficient, as of the damping in surge (assumed)
 

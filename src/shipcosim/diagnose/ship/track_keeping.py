@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.ship.inputs import Record
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = ["DpController", "kept_on_track"]
 
 _FREQUENCY = 0.5  # rad/s times the root of length in m over gravity, of the controller: 0.09 rad/s for 33.9 m
 _DAMPING = 0.8

@@ -15,7 +15,6 @@ from shipcosim.series import conversion
 if TYPE_CHECKING:
     from shipcosim.ssp import System
 
-__all__ = ["Wiring", "put_right", "wiring_of"]
 
 _AXES = ("X", "Y", "N")
 _DRIVES = ("rpm", "azimuth")

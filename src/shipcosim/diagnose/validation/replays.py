@@ -18,8 +18,6 @@ from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
 
-__all__ = ["findings_of", "with_cosimulation"]
-
 
 @dataclass(frozen=True)
 class SimulatedLog:

@@ -11,8 +11,6 @@ import xarray
 from shipcosim.diagnose.validation.gain import CHANNELS, Comparison, gain, parts, rms
 from shipcosim.diagnose.validation.thresholds import FEWEST_INTERVAL_BLOCKS
 
-__all__ = ["ConditionErrors", "PredictionErrors", "condition_errors", "prediction_errors"]
-
 
 @dataclass(frozen=True)
 class ConditionErrors:

@@ -36,15 +36,6 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.explanation.verdict import JudgedLog
     from shipcosim.diagnose.ship.model import ShipModel
 
-__all__ = [
-    "Tracks",
-    "errors_of",
-    "fitting_horizon",
-    "misses_at_end",
-    "tracks_by_models",
-    "tracks_by_systems",
-    "tracks_of",
-]
 
 _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
 

@@ -7,8 +7,6 @@ from shipcosim.diagnose.reference.reference import KnownNumber
 from shipcosim.diagnose.reference.remaining_errors import RemainingErrors
 from shipcosim.report.theme.numbers import metres, plain
 
-__all__ = ["error_rows", "log_rows", "moved", "moved_rows", "sentence", "untold"]
-
 
 def sentence(ship: CalibratedShip) -> str:
     """What a calibration comes to, in a sentence or two."""

@@ -5,8 +5,6 @@ from collections.abc import Mapping
 from shipcosim.diagnose.finding import ParameterEstimate
 from shipcosim.report.diagnosis.estimates import plus_minus, vector
 
-__all__ = ["filled"]
-
 
 def filled(
     text: str, parameters: Mapping[str, ParameterEstimate], component: str | None = None

@@ -26,8 +26,6 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
 from shipcosim.series import write_file
 
-__all__ = ["key_figures", "render", "write_joint"]
-
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
 LOOKS = {

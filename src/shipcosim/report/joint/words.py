@@ -11,18 +11,6 @@ from shipcosim.report.diagnosis.words import listed, manoeuvre_step, size_rows, 
 from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import Outcome
 
-__all__ = [
-    "cause_rows",
-    "discrepancy_rows",
-    "error_rows",
-    "fault_rows",
-    "judged_on",
-    "log_rows",
-    "next_steps",
-    "outcome",
-    "predicted_better",
-]
-
 
 def outcome(found: JointDiagnosis) -> Outcome:
     """The common verdict as a word, and in one sentence or two."""

@@ -11,8 +11,6 @@ from shipcosim.report.notebook.figures import can_draw
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Page, Table
 
-__all__ = ["Block", "Card", "card_html"]
-
 COLOURS = {
     "passed": "#007a5a",
     "consistent": "#007a5a",

@@ -22,8 +22,6 @@ from shipcosim.report.notebook.figures import Path, track_svg
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.views import Fact, Table
 
-__all__ = ["diagnosis_card", "joint_card", "tracks_svg"]
-
 COLOURS = (palette.ORANGE, palette.BLUE, palette.GREEN)
 
 

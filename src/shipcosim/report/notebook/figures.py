@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["Circle", "Path", "can_draw", "distribution_svg", "panels_svg", "track_svg"]
 
 WIDTH = 760  # px
 DPI = 96  # px per inch, as browsers have it
@@ -30,7 +30,7 @@ MOST_CURVES = 8  # of a panel
 MOST_PANELS = 12
 PANEL_HEIGHT = 170  # px
 TRACK_HEIGHT = (320, 680)  # px, least and most
-TRACK_POINTS = 1500
+TRACK_POINTS = 1200
 INK = "#1f2933"
 SOFT = "#52606d"
 GRID = "#e4e7eb"
@@ -49,6 +49,7 @@ COLOURS = {
 STYLE = {
     "svg.fonttype": "none",  # texts stay texts, so that they can be searched
     "svg.hashsalt": "shipcosim",  # the same identifiers in each run
+    "path.simplify_threshold": 0.5,  # px that a point may lie off a line to be left out of it
     "text.parse_math": False,  # a name may hold a dollar sign
     "font.size": 8.25,  # pt: 11 px
     "axes.titlelocation": "left",
@@ -120,14 +121,17 @@ def figure_svg(name: str, width: float, height: float, draw: Callable[[Figure], 
     with imported(name, "Pictures are drawn by matplotlib, which is missing.", "notebook"):
         import matplotlib
         from matplotlib.figure import Figure
-    # The figure is no one of pyplot, which would keep it and choose a window for it.
+    # A figure without pyplot, which would keep it and choose a window for it.
     with matplotlib.rc_context(STYLE):
         figure = Figure((width / DPI, height / DPI), layout="constrained")
         draw(figure)
         text = StringIO()
         about = {"Title": name, "Date": None, "Creator": None}
         figure.savefig(text, format="svg", metadata=about)
-    return text.getvalue()
+    # A hundredth of a point is enough: the places of matplotlib have a millionth, and make notebooks large.
+    return re.sub(
+        r' d="[^"]*"', lambda path: re.sub(r"(\.\d\d)\d+", r"\1", path[0]), text.getvalue()
+    )
 
 
 def track_svg(
@@ -266,8 +270,8 @@ def _draw_panel(axes: Axes, shown: Dataset, unit: str, signals: Sequence[str]) -
     common = components.pop() if len(components) == 1 else ""
     title = common or (connectors.pop() if len(connectors) == 1 else "")
     axes.set_title(f"{title} [{unit}]".strip() if unit else title or "without unit")
-    # An extreme up and one down for each pixel: more cannot be seen.
-    drawn, _ = thinned(shown[list(signals)], 2 * WIDTH)
+    # An extreme up and one down for each two pixels: more cannot be seen.
+    drawn, _ = thinned(shown[list(signals)], WIDTH)
     for signal, colour in zip(signals, palette.CYCLE, strict=False):
         values = np.where(np.isfinite(drawn[signal].values), drawn[signal].values, np.nan)
         label = signal.removeprefix(f"{common}.")

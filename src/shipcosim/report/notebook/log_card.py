@@ -13,8 +13,6 @@ from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.views import Fact, Outcome, Table
 
-__all__ = ["log_card"]
-
 
 def log_card(
     name: str,

@@ -14,8 +14,6 @@ from shipcosim.report.theme.views import Fact, Table
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.ssp import System
 
-__all__ = ["run_card"]
-
 
 def run_card(
     table: Dataset, scenario: Scenario, system: System, verdicts: Sequence[Verdict]

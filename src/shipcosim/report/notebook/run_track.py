@@ -13,8 +13,6 @@ from shipcosim.report.run.track import ship_size
 from shipcosim.report.theme import palette
 from shipcosim.scenario import Verdict
 
-__all__ = ["run_track"]
-
 
 def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | None:
     """Track of a run as SVG; None without a ship in the table.

@@ -18,14 +18,6 @@ from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.sea_trials import words as sea_trials
 from shipcosim.report.theme.views import Fact, Outcome, Table
 
-__all__ = [
-    "calibration_card",
-    "capability_card",
-    "comparison_card",
-    "replay_card",
-    "sea_trials_card",
-]
-
 MOST_ROWS = 12
 
 

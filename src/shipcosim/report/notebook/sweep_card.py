@@ -12,8 +12,6 @@ from shipcosim.report.study.tables import QUANTITY, StudyTables, columns_of
 from shipcosim.report.study.words import is_failed
 from shipcosim.report.theme.views import Table
 
-__all__ = ["sweep_card"]
-
 MOST_ROWS = 12
 
 

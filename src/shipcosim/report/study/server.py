@@ -21,8 +21,6 @@ from urllib.parse import unquote, urlsplit
 
 from shipcosim.errors import Problem, ShipcosimError
 
-__all__ = ["ADDRESS", "HEADER", "StudyServer", "page_of_run", "study_server"]
-
 ADDRESS = "127.0.0.1"
 HEADER = "X-Shipcosim"
 SLOWEST = 30.0
