@@ -229,11 +229,15 @@ class Writer:
         self._put(depth, f"if ({same}) {{")
         for i, a in enumerate(arguments):
             self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
-        where = f"k + {first}, k + {self.results[number]}"
         # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
-        self._put(depth + 1, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
+        where = f"k + {first}, k + {self.results[number]}"
+        self._put_call(number, where, again, depth + 1)
         self._put(depth, "}")
+
+    def _put_call(self, number: int, where: str, again: str, depth: int):
+        """Write a call with its place for arguments and results; `again` follows where it fails."""
+        self._put(depth, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
 
     def _loop(self, loop: RecordedLoop, number, depth):
         # Carried values that nobody reads need no variable.

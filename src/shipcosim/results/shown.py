@@ -7,12 +7,12 @@ import os
 import tempfile
 import webbrowser
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.series import write_file
+from shipcosim.series import write_file, write_json
 from shipcosim.staging import staged
 
 if TYPE_CHECKING:
@@ -124,9 +124,18 @@ class Result(ABC):
 class SavedResult(Result):
     """A result whose files can be written, as its command writes them."""
 
+    json_name = ""
+    """File that gets `as_json`; none if empty."""
+
     @abstractmethod
+    def page(self) -> HtmlPage:
+        """Its page."""
+
     def write(self, stage: Path) -> None:
-        """Write the files of `save` into a folder that is there."""
+        """Write the files of `save` into a folder that is there: the page, and the JSON file where there is one."""
+        if self.json_name:
+            write_json(self.as_json(), stage / self.json_name)  # pyright: ignore[reportAttributeAccessIssue]
+        self.page().save(stage / "report.html")
 
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Write the files that the command of the same name leaves; returns the folder.
@@ -174,11 +183,3 @@ class LikeTable:
 def parts_of(found: Any) -> dict[str, Any]:
     """Fields of a record by name, to make a result of it."""
     return {one.name: getattr(found, one.name) for one in fields(found)}
-
-
-def page_of(title: str, write: Callable[[Path], object]) -> HtmlPage:
-    """A page from a function that writes it to a path."""
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
-        path = Path(folder) / "page.html"
-        write(path)
-        return HtmlPage(title, path.read_text(encoding="utf-8"))

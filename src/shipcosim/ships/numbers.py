@@ -8,7 +8,7 @@ from shipcosim.errors import Problem, suggestion
 from shipcosim.ships.entries import Entry, table_entry
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.given import PLAIN, Given, given_in_unit
-from shipcosim.ships.kinds import columns_of, units_of
+from shipcosim.ships.kinds import metadata_of
 
 ESTIMATED = "estimated: "
 """What the origin of a number begins with that a formula gave."""
@@ -47,7 +47,7 @@ class Numbers:
             return False
         # Origin: the number's own, else that of the file.
         origin = given.origin or self.source or PLAIN
-        unit = units_of(self.fmu)[name]
+        unit = metadata_of(self.fmu)[name]["unit"]
         more = given.tolerance or 0.0, origin, (), f"{self.where}: {name}", given.uncertainty
         self.entries[name] = Entry(given.value, unit, *more)
         return True
@@ -56,11 +56,12 @@ class Numbers:
         """Take an estimate where no value is given."""
         if name in self.entries:
             return
-        unit = units_of(self.fmu)[name]
-        columns = columns_of(self.fmu)[name]
+        about = metadata_of(self.fmu)[name]
         origin = f"{ESTIMATED}{estimate.source}"
         where = f"{self.where}: {name}"
-        self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
+        self.entries[name] = Entry(
+            estimate.value, about["unit"], estimate.tolerance, origin, about["columns"], where
+        )
 
     def estimates(self, found: dict[str, EstimatedNumber]) -> None:
         """Take all estimates for which no value is given."""
@@ -75,19 +76,21 @@ class Numbers:
 
     def coefficients(self, found: dict[str, Any]) -> None:
         """Take parameters that the file gives under the FMU's own names."""
-        units = units_of(self.fmu)
+        declared = metadata_of(self.fmu)
         for name, value in found.items():
-            if name not in units:
+            if name not in declared:
                 self.problems.append(
                     Problem(
-                        f"{self.where}.{name}", "There is no such number.", suggestion(name, units)
+                        f"{self.where}.{name}",
+                        "There is no such number.",
+                        suggestion(name, declared),
                     )
                 )
             elif isinstance(value, dict) and "table" in value:
                 self.table(name, str(value["table"]))
             else:
                 try:
-                    self.give(name, given_in_unit(value, units[name]))
+                    self.give(name, given_in_unit(value, declared[name]["unit"]))
                 except ValueError as error:
                     text = str(error)
                     sentence = text[:1].upper() + text[1:]

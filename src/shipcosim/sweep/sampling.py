@@ -13,7 +13,6 @@ import numpy as np
 from shipcosim.errors import Problem, ShipcosimError, imported, suggestion
 from shipcosim.scenario import units_of
 from shipcosim.sweep.levels import Levels, start_value
-from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.study_model import Distribution, Study
 from shipcosim.units import UnitError, number_in
 
@@ -139,9 +138,7 @@ def _lines(
     group = key.removesuffix(EVERY)
     if not one.tolerance or one.name or one.also:
         found = f"'{key}' stands for each parameter with a tolerance."
-        levels.problems.append(
-            problem_of(study, keys, found, "It takes tolerance = true, and neither name nor also.")
-        )
+        levels.complain(keys, found, "It takes tolerance = true, and neither name nor also.")
         return
     # All parameters with a tolerance, except those that have a line of their own.
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
@@ -149,7 +146,7 @@ def _lines(
     if not names:
         known = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
         found = f"No parameter set states a tolerance of {key}."
-        levels.problems.append(problem_of(study, keys, found, suggestion(key, known)))
+        levels.complain(keys, found, suggestion(key, known))
     of = study.sample.of if study.sample else {}
     own = {
         signal
@@ -175,11 +172,10 @@ def _quantiles(
         scale, shift = _conversion(one.unit, unit)
         of = _with_tolerance(system, signals[0]) if one.tolerance else _distribution(one)
     except UnitError as error:
-        levels.problems.append(problem_of(study, keys, error.found, error.remedy))
+        levels.complain(keys, error.found, error.remedy)
     except ShipcosimError as error:
-        levels.problems += [
-            problem_of(study, keys, problem.found, problem.remedy) for problem in error.problems
-        ]
+        for problem in error.problems:
+            levels.complain(keys, problem.found, problem.remedy)
     else:
         kind = (
             "Real"

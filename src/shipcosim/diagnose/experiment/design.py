@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -103,13 +103,13 @@ def design_experiment(
     able = np.flatnonzero(count == count.max())
     short = able[minutes[able] <= _ABOUT * minutes[able].min()]
     best = max(short, key=lambda i: least[i] / minutes[i])
-    names = [_differing(fits[a], fits[b]) for a, b in pairs]
+    names = [differing(fits[a], fits[b]) for a, b in pairs]
     separates = tuple(name for name, value in zip(names, told[best], strict=True) if value >= CLEAR)
     return ExperimentDesign(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
 
 
-def _differing(one: Fit, other: Fit) -> tuple[str, str]:
-    """What two sets of causes do not share."""
+def differing(one: Any, other: Any) -> tuple[str, str]:
+    """What two sets of causes, with their `hypotheses`, do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
     only_a, only_b = (
         " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))

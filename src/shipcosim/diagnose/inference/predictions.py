@@ -44,12 +44,6 @@ class Known:
         return Known(Motion(*(value[which] for value in self.motion)), self.force[which])
 
 
-def mass_matrix(model: ShipModel) -> np.ndarray:
-    """Mass and added mass of the ship, (3, 3) array in surge, sway and yaw."""
-    i11, i22, i26, i62, i66 = model.parts["hull"].inverse_mass
-    return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
-
-
 def replayable(record: Record, model: ShipModel, seen: Motion) -> tuple[Record, ShipModel]:
     """A log as replays need it: no channel late, and the wind over ground, as one ship model understands the log.
 
@@ -106,7 +100,7 @@ def earth_fixed(linear: Linear, motion: Motion, model: ShipModel) -> Linear:
     back = np.zeros((turn.size, 3, 3))
     back[:, 0, 0] = back[:, 1, 1] = np.cos(turn)
     back[:, 0, 1], back[:, 1, 0], back[:, 2, 2] = np.sin(turn), -np.sin(turn), 1.0
-    mass = mass_matrix(model)
+    mass = model.mass_matrix
     transition = linear.transition.copy()
     transition[:, _FORCE, _FORCE] = np.linalg.inv(mass) @ back @ mass
     return linear._replace(transition=transition)
@@ -185,7 +179,7 @@ def observed(
     found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
     force = np.stack(
-        [one[:, _FORCE] @ mass_matrix(model).T for one, model in zip(found, models, strict=True)]
+        [one[:, _FORCE] @ model.mass_matrix.T for one, model in zip(found, models, strict=True)]
     )
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
 

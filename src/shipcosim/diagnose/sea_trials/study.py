@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.experiment.design import ExperimentDesign, differing
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.reader import read_log
@@ -30,7 +30,6 @@ from shipcosim.diagnose.sea_trials.separation import (
     MOST_SETS,
     Separation,
     designed,
-    differing,
     separations,
 )
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of

@@ -208,22 +208,9 @@ class ModelWriter(Writer):
             return f"p{primitive.number}[{place}]"
         return super()._expression(symbol)
 
-    def _call(self, operands, depth):
-        number, *arguments = operands
-        first = self.arguments[number]
-        # The cached result holds while the arguments are equal. NaN is never equal.
-        same = (
-            " || ".join(f"k[{first + i}] != {operand(a)}" for i, a in enumerate(arguments)) or "0"
-        )
-        self._put(depth, f"if ({same}) {{")
-        for i, a in enumerate(arguments):
-            self._put(depth + 1, f"k[{first + i}] = {operand(a)};")
-        self._put(
-            depth + 1, f"if ({self._names[number]}(k + {first}, k + {self.results[number]}, o)) {{"
-        )
-        # A failed call must not leave arguments that look valid: NaN forces another call.
-        self._put(depth + 2, f"{f'k[{first}] = NAN; ' if arguments else ''}return GIVEN_UP;")
-        self._put(depth + 1, "}")
+    def _put_call(self, number, where, again, depth):
+        self._put(depth, f"if ({self._names[number]}({where}, o)) {{")
+        self._put(depth + 1, f"{again}return GIVEN_UP;")
         self._put(depth, "}")
 
 

@@ -1,6 +1,5 @@
 """The page of a calibration: what moved, the error before and after, and what the logs could not tell."""
 
-import os
 from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -15,9 +14,8 @@ from shipcosim.report.calibration.words import (
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars, rounded
 from shipcosim.report.theme.numbers import metres
-from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import Figure, KeyFigure, Link, Outcome, Page, Table, facts_of
 
 SECTIONS = {"moved": "Numbers", "errors": "Errors", "logs": "Logs", "untold": "Not told"}
 _ROW = 22  # px, of a number in the figure
@@ -50,21 +48,9 @@ class CalibrationPage(Page):
     untold: str
 
 
-def write_calibration(ship: CalibratedShip, path: str | os.PathLike[str]) -> None:
-    """Write the page of a calibration.
-
-    Parameters
-    ----------
-    ship : CalibratedShip
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(path, render("calibration/templates/calibration.html.jinja", _page(ship)).encode())
+def render(ship: CalibratedShip) -> str:
+    """The page of a calibration as HTML."""
+    return render_template("calibration/templates/calibration.html.jinja", _page(ship))
 
 
 def _page(ship: CalibratedShip) -> CalibrationPage:
@@ -77,7 +63,7 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
     facts["Tolerances"] = "as stated" if scale == 1.0 else f"{scale:g} times as stated"
     return CalibrationPage(
         title=f"Calibration of {reference.system}",
-        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        facts=facts_of(facts),
         outcome=Outcome(
             "unknown" if refused else "consistent",
             "refused" if refused else "calibrated",

@@ -11,7 +11,7 @@ from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, rounded
+from shipcosim.report.theme.figures import line, polar_axes, rounded
 from shipcosim.report.theme.views import Figure
 
 TALL = 400
@@ -133,23 +133,5 @@ def _curve(
 
 
 def _polar(title: str, traces: tuple[dict[str, Any], ...], note: str) -> Figure:
-    # Bow up, clockwise, as on a nautical chart.
-    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
-    polar = {
-        "bgcolor": "@card",
-        "angularaxis": {
-            "rotation": 90,
-            "direction": "clockwise",
-            "dtick": 30,
-            "ticksuffix": "°",
-            **look,
-        },
-        "radialaxis": {
-            "range": [0, 11],
-            "tickvals": [2, 4, 6, 8, 10],
-            "angle": 45,
-            "tickangle": 45,
-            **look,
-        },
-    }
-    return Figure(title, "", traces, {"polar": polar}, note, TALL)
+    axes = polar_axes(range=[0, 11], tickvals=[2, 4, 6, 8, 10])
+    return Figure(title, "", traces, {"polar": axes}, note, TALL)

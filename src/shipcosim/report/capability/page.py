@@ -1,6 +1,5 @@
 """The page of a static DP capability: its contents, and the function that writes it."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,9 +13,8 @@ from shipcosim.capability.thrust import BETA_MISC, ventilation
 from shipcosim.capability.vessel import Particular
 from shipcosim.report.capability.figures import capability_figures, limiting_condition, load_figures
 from shipcosim.report.theme.numbers import plain
-from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import Figure, KeyFigure, Link, Outcome, Page, Table, facts_of
 
 SECTIONS = {
     "plot": "Plot",
@@ -58,23 +56,9 @@ class CapabilityPage(Page):
     total: int
 
 
-def write_capability(capability: Capability, path: str | os.PathLike[str]) -> None:
-    """Write the page of a capability.
-
-    Parameters
-    ----------
-    capability : Capability
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(
-        path, render("capability/templates/capability.html.jinja", page_of(capability)).encode()
-    )
+def render(capability: Capability) -> str:
+    """The page of a capability as HTML."""
+    return render_template("capability/templates/capability.html.jinja", page_of(capability))
 
 
 def page_of(capability: Capability) -> CapabilityPage:
@@ -93,7 +77,7 @@ def page_of(capability: Capability) -> CapabilityPage:
     }
     return CapabilityPage(
         title=f"Static DP capability of {vessel.name}",
-        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        facts=facts_of(facts),
         outcome=_outcome(capability),
         links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
         data=tuple(figure.drawn for figure in figures),

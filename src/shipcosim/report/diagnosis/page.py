@@ -1,6 +1,5 @@
 """The page of a diagnosis: what it shows, and the functions that write it."""
 
-import os
 from dataclasses import dataclass
 
 from shipcosim.diagnose.result import Diagnosis, LogSummary
@@ -14,7 +13,6 @@ from shipcosim.report.diagnosis.track_figures import over_time_figures, track_fi
 from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
-from shipcosim.series import write_file
 from shipcosim.ssp import System
 
 
@@ -46,24 +44,6 @@ class DiagnosisPage(Page):
     extension: ExtensionSection
     gain: GainSection
     figures: tuple[Figure, ...]
-
-
-def write_diagnosis(diagnosis: Diagnosis, path: str | os.PathLike[str]) -> None:
-    """Write the page of a diagnosis.
-
-    Parameters
-    ----------
-    diagnosis : Diagnosis
-        Complete, as from `shipcosim.diagnose`.
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(path, render(diagnosis).encode())
 
 
 def render(diagnosis: Diagnosis) -> str:

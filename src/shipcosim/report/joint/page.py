@@ -1,6 +1,5 @@
 """The page of a diagnosis of several logs: what they say together, what that gains in each, and each by itself."""
 
-import os
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -24,7 +23,6 @@ from shipcosim.report.theme.figures import bars
 from shipcosim.report.theme.numbers import metres, percent
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
-from shipcosim.series import write_file
 
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
@@ -83,24 +81,6 @@ class JointPage(Page):
     figures: tuple[Figure, ...]
 
 
-def write_joint(found: JointDiagnosis, path: str | os.PathLike[str]) -> None:
-    """Write the page of a diagnosis of several logs.
-
-    Parameters
-    ----------
-    found : JointDiagnosis
-        Complete, as from `diagnose_jointly`.
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(path, render(found).encode())
-
-
 def render(found: JointDiagnosis) -> str:
     """The page as HTML."""
     return render_template("joint/templates/joint.html.jinja", _page(found))
@@ -126,7 +106,7 @@ def _page(found: JointDiagnosis) -> JointPage:
     )
     return JointPage(
         title=f"Diagnosis of {len(found.logs)} logs of one ship",
-        facts=tuple(Fact(name, text) for name, text in _facts(found)),
+        facts=_facts(found),
         outcome=outcome(found),
         links=tuple(
             Link(anchor, name, text)
@@ -168,7 +148,7 @@ _ERROR_HEAD = (
 )
 
 
-def _facts(found: JointDiagnosis) -> list[tuple[str, str]]:
+def _facts(found: JointDiagnosis) -> tuple[Fact, ...]:
     rows = 0
     minutes = 0.0
     for one in found.logs.values():
@@ -177,7 +157,7 @@ def _facts(found: JointDiagnosis) -> list[tuple[str, str]]:
             rows = rows + time.size
             minutes = minutes + float(time[-1] - time[0]) / 60.0
     length = f"{', '.join(found.logs)}; {minutes:.0f} min, {rows} rows in all"
-    return [("System", found.system.name if found.system else "–"), ("Logs", length)]
+    return Fact("System", found.system.name if found.system else "–"), Fact("Logs", length)
 
 
 def _found(found: JointDiagnosis) -> list[str]:

@@ -23,7 +23,7 @@ from shipcosim.report.study.static import NAMES, bases_of
 from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, rounded
+from shipcosim.report.theme.figures import line, polar_axes, rounded
 from shipcosim.report.theme.views import Figure
 
 TALL = 380  # px
@@ -63,7 +63,10 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         left_out(frame, series),
     ]
     title = f"{size.name} by direction"
-    return _figure(view, title, size.unit, traces, {"polar": _polar_axes(traces)}, notes, POLAR)
+    # A little more room than the largest radius.
+    most = max((r for trace in traces for r in trace["r"] if r is not None), default=1.0)
+    axes = polar_axes(range=[0, 1.08 * most if most > 0 else 1.0], nticks=6)
+    return _figure(view, title, size.unit, traces, {"polar": axes}, notes, POLAR)
 
 
 def _around(
@@ -143,29 +146,6 @@ def _beside(
                 }
             )
     return found
-
-
-def _polar_axes(traces: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
-    # A little more room than the largest radius.
-    most = max((r for trace in traces for r in trace["r"] if r is not None), default=1.0)
-    return {
-        "bgcolor": "@card",
-        "angularaxis": {
-            "rotation": 90,
-            "direction": "clockwise",
-            "dtick": 30,
-            "ticksuffix": "°",
-            **look,
-        },
-        "radialaxis": {
-            "range": [0, 1.08 * most if most > 0 else 1.0],
-            "angle": 45,
-            "tickangle": 45,
-            "nticks": 6,
-            **look,
-        },
-    }
 
 
 def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:

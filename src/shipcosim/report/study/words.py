@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.report.study.statistics import explained, wilson
+from shipcosim.report.study.statistics import explained
 from shipcosim.report.study.tables import (
     FACTOR,
     QUANTITY,
@@ -21,6 +21,7 @@ from shipcosim.report.study.tables import (
 )
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
+from shipcosim.sweep.summary import wilson
 
 MOST_FIGURES = 4
 MOST_ERRORS = 50
@@ -99,7 +100,7 @@ def _of_runs(runs: Mapping[str, Column]) -> str:
     known = found.values[np.isfinite(found.values)]
     name = _capital(found.description or found.name)
     if found.is_truth:
-        low, high = wilson(int(known.sum()), len(known))
+        _, low, high = wilson(int(known.sum()), len(known))
         return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
     low, middle, high = np.quantile(known, [0.0, 0.5, 0.9])
     most = found.text(known.max())
@@ -133,7 +134,7 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
     name = column.description or column.name.replace("_", " ")
     # A share, the range of a summary, or the value that nine of ten runs stay below.
     if column.is_truth:
-        low, high = wilson(int(known.sum()), len(known))
+        _, low, high = wilson(int(known.sum()), len(known))
         return KeyFigure(
             percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
         )

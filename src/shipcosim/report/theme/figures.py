@@ -109,6 +109,17 @@ def bars(
     }
 
 
+def polar_axes(**radial: Any) -> dict[str, Any]:
+    """Axes of a polar plot: bow up, clockwise, as on a nautical chart; `radial` says more of the radial axis."""
+    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
+    angular = {"rotation": 90, "direction": "clockwise", "dtick": 30, "ticksuffix": "°"}
+    return {
+        "bgcolor": "@card",
+        "angularaxis": angular | look,
+        "radialaxis": {"angle": 45, "tickangle": 45} | radial | look,
+    }
+
+
 def limit(x: float) -> dict[str, Any]:
     """A dotted upright line across the figure."""
     look = {"color": palette.VERMILLION, "dash": "dot", "width": 1.5}

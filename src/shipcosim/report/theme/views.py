@@ -12,6 +12,11 @@ class Fact(NamedTuple):
     text: str
 
 
+def facts_of(texts: Mapping[str, str]) -> tuple[Fact, ...]:
+    """Facts from texts by their names."""
+    return tuple(Fact(name, text) for name, text in texts.items())
+
+
 class KeyFigure(NamedTuple):
     """A key figure as text, and its meaning."""
 

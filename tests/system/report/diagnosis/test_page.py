@@ -15,7 +15,7 @@ from shipcosim.diagnose.explanation.summary import FormNumber, LoadForm
 from shipcosim.diagnose.finding import Candidate, Finding
 from shipcosim.diagnose.validation.gain import rms
 from shipcosim.diagnose.validation.summary import prediction_errors
-from shipcosim.report.diagnosis.page import render, write_diagnosis
+from shipcosim.report.diagnosis.page import render
 from shipcosim.report.diagnosis.prediction_errors import condition_table
 from shipcosim.report.diagnosis.testability import not_testable_rows
 from shipcosim.report.diagnosis.words import outcome
@@ -147,7 +147,7 @@ def test_data_of_the_page_is_strict_json(diagnosis, data_of):
 @pytest.fixture(scope="module")
 def file(diagnosis, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
-    write_diagnosis(diagnosis, path)
+    path.write_text(render(diagnosis), encoding="utf-8")
     return path
 
 
