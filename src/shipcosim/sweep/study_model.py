@@ -21,7 +21,6 @@ from shipcosim import library
 from shipcosim.scenario import Event, Expectation
 from shipcosim.scenario.model import Amount, ListOfNames, Part, Seconds, Value, as_list
 from shipcosim.sweep import weather
-from shipcosim.units import amount
 
 RESERVED = ("run", "error", "input", "sample")
 """Columns that every table of runs has."""
@@ -400,8 +399,3 @@ class Study(Part):
             if beside.is_file()
             else library.find("scenario", self.scenario, near=self.folder)
         )
-
-
-def is_name(value: float | str) -> bool:
-    """True if a value of `near` is a signal's name, not an amount."""
-    return isinstance(value, str) and amount(value) is None

@@ -167,12 +167,6 @@ def percentile(values: np.ndarray, percent: float) -> Interval:
     return float(np.percentile(values, percent) if np.isfinite(after) else after), *limits
 
 
-def seeds_needed(percent: float) -> int:
-    """Smallest number of runs whose maximum is an upper limit of a percentile."""
-    # P(all n below the percentile) = pⁿ ≤ 2.5 %.
-    return int(np.ceil(np.log((1.0 - CONFIDENCE) / 2.0) / np.log(percent / 100.0)))
-
-
 def _mean(values: np.ndarray) -> Interval:
     from scipy.stats import t
 

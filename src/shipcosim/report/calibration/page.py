@@ -15,22 +15,29 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars, rounded
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, KeyFigure, Link, Outcome, Page, Table, facts_of
+from shipcosim.report.theme.views import (
+    Figure,
+    FigurePage,
+    KeyFigure,
+    Link,
+    Outcome,
+    Table,
+    facts_of,
+)
 
 SECTIONS = {"moved": "Numbers", "errors": "Errors", "logs": "Logs", "untold": "Not told"}
 _ROW = 22  # px, of a number in the figure
 
 
 @dataclass(frozen=True)
-class CalibrationPage(Page):
+class CalibrationPage(FigurePage):
     """What the page of a calibration shows.
 
     Attributes
     ----------
     refusals, remarks : tuple of str
-    key_figures : tuple of KeyFigure
-    moved, errors, figures : tuple of Figure
-        What moved by how many tolerances; errors before and after; all of them in the order of `data`.
+    moved, errors : tuple of Figure
+        What moved by how many tolerances; errors before and after.
     numbers, error_table, logs : Table
     untold : str
         Numbers that the logs say next to nothing of.
@@ -38,10 +45,8 @@ class CalibrationPage(Page):
 
     refusals: tuple[str, ...]
     remarks: tuple[str, ...]
-    key_figures: tuple[KeyFigure, ...]
     moved: tuple[Figure, ...]
     errors: tuple[Figure, ...]
-    figures: tuple[Figure, ...]
     numbers: Table
     error_table: Table
     logs: Table
@@ -70,7 +75,6 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
             sentence(ship),
         ),
         links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
-        data=tuple(figure.drawn for figure in (*what, *errors)),
         refusals=ship.refusals,
         remarks=ship.remarks,
         key_figures=_key_figures(ship),

@@ -7,23 +7,20 @@ from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.report.diagnosis.track_figures import error_rows, over_time_figures, track_figure
 from shipcosim.report.theme.numbers import metres
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, Outcome, Page, Table, facts_of
+from shipcosim.report.theme.views import FigurePage, Outcome, Table, facts_of
 
 
 @dataclass(frozen=True)
-class ReplayPage(Page):
+class ReplayPage(FigurePage):
     """What the page of a replay shows.
 
     Attributes
     ----------
-    figures : tuple of Figure
-        The track, then channels over time.
     errors : Table
     remarks : tuple of str
         What was found in the log and handled.
     """
 
-    figures: tuple[Figure, ...]
     errors: Table
     remarks: tuple[str, ...]
 
@@ -41,8 +38,6 @@ def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
         title=f"Replay of {title}",
         facts=facts_of(facts),
         outcome=replay_outcome(replay),
-        links=(),
-        data=tuple(figure.drawn for figure in figures),
         figures=figures,
         errors=error_rows(errors_of(tracks)),
         remarks=(*faults, *replay.remarks),

@@ -22,7 +22,7 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars
 from shipcosim.report.theme.numbers import metres, percent
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
+from shipcosim.report.theme.views import Fact, Figure, FigurePage, KeyFigure, Link, Table
 
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
@@ -40,12 +40,11 @@ SECTIONS = {
 
 
 @dataclass(frozen=True)
-class JointPage(Page):
+class JointPage(FigurePage):
     """What the page of a diagnosis of several logs shows.
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
     discrepancies : Table
         Those of half of the logs, two at least, largest first.
     next_steps, remarks : tuple of str
@@ -60,11 +59,8 @@ class JointPage(Page):
     extension : ExtensionSection
     silent : Table
         Causes that all logs together could not have shown.
-    figures : tuple of Figure
-        All of the page, in the order of `data`.
     """
 
-    key_figures: tuple[KeyFigure, ...]
     discrepancies: Table
     next_steps: tuple[str, ...]
     remarks: tuple[str, ...]
@@ -78,7 +74,6 @@ class JointPage(Page):
     logs: Table
     extension: ExtensionSection
     silent: Table
-    figures: tuple[Figure, ...]
 
 
 def render(found: JointDiagnosis) -> str:
@@ -112,7 +107,6 @@ def _page(found: JointDiagnosis) -> JointPage:
             Link(anchor, name, text)
             for (anchor, name), text in zip(SECTIONS.items(), _found(found), strict=True)
         ),
-        data=tuple(figure.drawn for figure in (*tracks, *errors)),
         key_figures=key_figures(found),
         discrepancies=Table(tuple(discrepancy_rows(found)), ("", "size", "of the error", "logs")),
         next_steps=tuple(steps),

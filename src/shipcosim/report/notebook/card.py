@@ -35,7 +35,7 @@ class Block:
         return bool(self.table.rows or self.lines)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Card(Page):
     """What a card shows besides title, facts and outcome.
 

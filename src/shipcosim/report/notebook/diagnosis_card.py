@@ -46,8 +46,6 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
         title=name,
         facts=_facts(found),
         outcome=outcome(found, found.causes),
-        links=(),
-        data=(),
         blocks=(
             Block("Wrong, largest first", Table(tuple(discrepancy_rows(found)))),
             Block(
@@ -91,8 +89,6 @@ def joint_card(found: JointDiagnosis, name: str) -> Card:
             Fact("Logs", ", ".join(found.logs)),
         ),
         outcome=joint.outcome(found),
-        links=(),
-        data=(),
         blocks=(
             Block("Wrong, largest first", Table(tuple(joint.discrepancy_rows(found)))),
             Block("Faults of the data in common", Table(tuple(joint.fault_rows(found)))),

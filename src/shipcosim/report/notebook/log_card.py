@@ -44,8 +44,6 @@ def log_card(
         title=name,
         facts=facts,
         outcome=_outcome(faults),
-        links=(),
-        data=(),
         blocks=(
             Block("Faults", Table(found)),
             Block("Channels", Table(_channels(table), ("", "unit", "least", "largest", "missing"))),

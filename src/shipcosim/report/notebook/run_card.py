@@ -38,8 +38,6 @@ def run_card(
         + (f": {scenario.description}" if scenario.description and scenario.name else ""),
         facts=_facts(table, scenario, system),
         outcome=found.outcome,
-        links=(),
-        data=(),
         blocks=(
             Block("Expected", Table(rows, ("", "", "during", "worst", "at"))),
             Block("Changed for this run", lines=(changed,) if changed else ()),

@@ -46,8 +46,6 @@ def comparison_card(found: Comparison, name: str) -> Card:
         title=f"Engines on {name}",
         facts=tuple(Fact(engine, f"{seconds:.1f} s") for engine, seconds in found.seconds.items()),
         outcome=_agreement(found, others),
-        links=(),
-        data=(),
         blocks=(
             Block(
                 f"Largest differences, {len(rows)} of {len(found.signals)} signals",
@@ -87,8 +85,6 @@ def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
         title=f"Replay of {name}",
         facts=(Fact("Predictions", f"{found.tracks.horizon:.0f} s each"),),
         outcome=replay_outcome(found),
-        links=(),
-        data=(),
         blocks=(
             Block("Errors, root mean square", error_rows(errors_of(found.tracks))),
             Block("Remarks", lines=(*faults, *found.remarks)),
@@ -108,8 +104,6 @@ def calibration_card(found: CalibratedShip) -> Card:
         title=f"Calibration of {found.reference.system}",
         facts=(Fact("Logs", ", ".join(log.name for log in found.logs)),),
         outcome=Outcome(word.kind, word.word, calibration.sentence(found)),
-        links=(),
-        data=(),
         blocks=(
             Block("Why", lines=found.refusals),
             Block("Moved most", Table(moved, ("", "before", "calibrated", "by tolerances"))),
@@ -132,8 +126,6 @@ def capability_card(found: Capability) -> Card:
         title=f"Static DP capability of {found.vessel.name}",
         facts=page.facts,
         outcome=page.outcome,
-        links=(),
-        data=(),
         blocks=(
             Block("Numbers by direction", page.numbers, folded=True),
             Block("Thrusters", page.thrusters),
@@ -147,8 +139,6 @@ def sea_trials_card(found: SeaTrialStudy, name: str) -> Card:
         title=f"Sea trials of {name}",
         facts=(Fact("Trials", f"{len(found.trials)}"),),
         outcome=sea_trials.outcome(found),
-        links=(),
-        data=(),
         blocks=(
             Block("Causes", sea_trials.sets_table(found)),
             Block("Judged on the other side", sea_trials.held_out_table(found)),

@@ -33,8 +33,6 @@ def sweep_card(tables: StudyTables) -> Card:
         title=page.title,
         facts=page.facts,
         outcome=page.outcome,
-        links=(),
-        data=(),
         blocks=(
             Block(
                 "Over all runs that did not fail", Table(numbers, ("", "median", "90 %", "largest"))

@@ -80,5 +80,5 @@ def write_overview(
         If the file cannot be written.
     """
     facts = (Fact("Scenarios", str(len(rows))),)
-    page = OverviewPage(title, facts, overview_outcome(rows), (), (), tuple(rows))
+    page = OverviewPage(title=title, facts=facts, outcome=overview_outcome(rows), rows=tuple(rows))
     write_file(path, render("run/templates/overview.html.jinja", page).encode())

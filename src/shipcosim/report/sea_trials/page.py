@@ -14,7 +14,7 @@ from shipcosim.report.sea_trials.words import (
     sets_table,
 )
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, KeyFigure, Link, Page, Table, facts_of
+from shipcosim.report.theme.views import Figure, FigurePage, KeyFigure, Link, Table, facts_of
 
 SECTIONS = {
     "tracks": "Tracks",
@@ -31,21 +31,18 @@ KEY_FEATURES = {
 
 
 @dataclass(frozen=True)
-class SeaTrialPage(Page):
+class SeaTrialPage(FigurePage):
     """What the page of sea trials shows.
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
-    figures, tracks, errors, manoeuvres : tuple of Figure
-        All figures; tracks of circles; errors of features; what manoeuvres would tell.
+    tracks, errors, manoeuvres : tuple of Figure
+        Tracks of circles; errors of features; what manoeuvres would tell.
     sets, held_out, features, separations : Table
     steps : tuple of str
         What to sail next.
     """
 
-    key_figures: tuple[KeyFigure, ...]
-    figures: tuple[Figure, ...]
     tracks: tuple[Figure, ...]
     errors: tuple[Figure, ...]
     manoeuvres: tuple[Figure, ...]
@@ -79,7 +76,6 @@ def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
         links=tuple(
             Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
         ),
-        data=tuple(figure.drawn for figure in figures),
         key_figures=_key_figures(found),
         figures=figures,
         tracks=tracks,

@@ -81,7 +81,7 @@ class Figure:
         return {"data": self.traces, "layout": self.layout}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Page:
     """Contents of every page.
 
@@ -101,5 +101,23 @@ class Page:
     title: str
     facts: tuple[Fact, ...]
     outcome: Outcome
-    links: tuple[Link, ...]
-    data: Mapping[str, Any] | tuple[Any, ...]
+    links: tuple[Link, ...] = ()
+    data: Mapping[str, Any] | tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class FigurePage(Page):
+    """A page whose script draws its figures.
+
+    Attributes
+    ----------
+    key_figures : tuple of KeyFigure
+    figures : tuple of Figure
+        All of the page, in the order of `data`.
+    """
+
+    key_figures: tuple[KeyFigure, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", tuple(figure.drawn for figure in self.figures))

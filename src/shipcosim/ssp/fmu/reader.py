@@ -119,6 +119,8 @@ def _description(
     n_states = int(root.get("numberOfContinuousStates") or 0) or len(
         [part for part in derivatives if local(part)]
     )
+    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
+    experiment = {name: float(text) for name, text in given.items()}
     return FmuDescription(
         path=path,
         fmi_version=version,
@@ -130,7 +132,7 @@ def _description(
         interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
         units=read_units(parts_of(root, "UnitDefinitions")),
         platforms=tuple(sorted(platforms)),
-        experiment=_experiment(root),
+        experiment=experiment,
         n_states=n_states,
         n_event_indicators=int(root.get("numberOfEventIndicators") or len(_indicators(root))),
     )
@@ -144,8 +146,3 @@ def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
 def _indicators(root: etree._Element) -> list[etree._Element]:
     """Event indicators that FMI 3.0 lists."""
     return [part for part in parts_of(root, "ModelStructure") if local(part) == "EventIndicator"]
-
-
-def _experiment(root: etree._Element) -> dict[str, float]:
-    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
-    return {name: float(text) for name, text in given.items()}
