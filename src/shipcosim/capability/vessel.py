@@ -22,7 +22,7 @@ from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters
-from shipcosim.ships import Ship
+from shipcosim.ships import Quantity, Ship
 from shipcosim.ssp import Component, System
 
 Kind = TypeVar("Kind")
@@ -50,17 +50,6 @@ class Simulated:
 
 
 @dataclass(frozen=True)
-class Particular:
-    """A number that stands in a file of the ship, for the reader: its file, meaning, value, unit and origin."""
-
-    file: str
-    description: str
-    value: Any
-    unit: str
-    origin: str
-
-
-@dataclass(frozen=True)
 class Vessel:
     """A ship, as Level 1 and as the simulator have her.
 
@@ -72,8 +61,8 @@ class Vessel:
     thrusters : tuple of Thruster
         With their nominal thrust.
     simulated : Simulated
-    particulars : tuple of Particular
-        All that was read from the files of the ship.
+    particulars : mapping of str to mapping of str to Quantity
+        All that was read from the files of the ship, by file and name.
     buses : mapping of str to tuple of str
         Names of the thrusters that each bus of the switchboard feeds; empty where the system has none.
     """
@@ -84,7 +73,7 @@ class Vessel:
     hull: Hull
     thrusters: tuple[Thruster, ...]
     simulated: Simulated
-    particulars: tuple[Particular, ...]
+    particulars: Mapping[str, Mapping[str, Quantity]]
     buses: Mapping[str, tuple[str, ...]]
 
 
@@ -140,16 +129,11 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
         _thruster(unit, ThrusterParticulars(**values[_file(name)]), hull)
         for name, unit in units.items()
     ]
-    listed = [
-        Particular(f, q.description, q.value, q.unit, q.origin)
-        for f, e in said.items()
-        for q in e.values()
-    ]
     # The second method needs the simulator's own models and limits.
     simulated = _simulated(body, units)
     buses = _buses(system, list(units))
     return Vessel(
-        ship.name, ship.description, system.name, hull, tuple(made), simulated, tuple(listed), buses
+        ship.name, ship.description, system.name, hull, tuple(made), simulated, said, buses
     )
 
 

@@ -316,7 +316,7 @@ def _used(step: Step) -> set[int]:
 
     # Roots: guards, conditions, and the results or error texts at the ends of all ways.
     def note(block: Block):
-        due.extend(symbol for symbol in block.values if symbol.op in ("guard",))
+        due.extend(symbol for symbol in block.values if symbol.op == "guard")
         if block.condition is not None:
             due.append(block.condition)
             note(_of(block.yes))

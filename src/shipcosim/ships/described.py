@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ships.entries import Entry
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.file import KINDS, ShipFile
 from shipcosim.ships.thrusters import ShipThruster, units_of_ship
@@ -35,7 +35,7 @@ class Described:
         What it says.
     form : HullDimensions
         Her main particulars.
-    vessel : dict of str to Entry
+    vessel : dict of str to Quantity
         Parameters of her hull, given or estimated.
     units : list of ShipThruster
         Her thrusters.
@@ -45,11 +45,11 @@ class Described:
     path: Path
     file: ShipFile
     form: HullDimensions
-    vessel: dict[str, Entry]
+    vessel: dict[str, Quantity]
     units: list[ShipThruster]
 
     @property
-    def entries(self) -> dict[str, dict[str, Entry]]:
+    def entries(self) -> dict[str, dict[str, Quantity]]:
         """Parameters by component."""
         return {"vessel": self.vessel} | {unit.name: unit.entries for unit in self.units}
 

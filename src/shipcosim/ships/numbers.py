@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from shipcosim.errors import Problem, suggestion
-from shipcosim.ships.entries import Entry, table_entry
+from shipcosim.ships.entries import Quantity, table_entry
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.given import PLAIN, Given, given_in_unit
 from shipcosim.ships.kinds import metadata_of
@@ -30,7 +30,7 @@ class Numbers:
         Where numbers come from that do not say it themselves.
     problems : list of Problem
         Gets what is wrong.
-    entries : dict of str to Entry
+    entries : dict of str to Quantity
         What was found.
     """
 
@@ -39,7 +39,7 @@ class Numbers:
     folder: Path
     source: str
     problems: list[Problem]
-    entries: dict[str, Entry] = field(default_factory=dict)
+    entries: dict[str, Quantity] = field(default_factory=dict)
 
     def give(self, name: str, given: Given | None) -> bool:
         """Take a number from the file; return whether there is one."""
@@ -49,7 +49,7 @@ class Numbers:
         origin = given.origin or self.source or PLAIN
         unit = metadata_of(self.fmu)[name]["unit"]
         more = given.tolerance or 0.0, origin, (), f"{self.where}: {name}", given.uncertainty
-        self.entries[name] = Entry(given.value, unit, *more)
+        self.entries[name] = Quantity(given.value, unit, *more)
         return True
 
     def estimate(self, name: str, estimate: EstimatedNumber) -> None:
@@ -59,7 +59,7 @@ class Numbers:
         about = metadata_of(self.fmu)[name]
         origin = f"{ESTIMATED}{estimate.source}"
         where = f"{self.where}: {name}"
-        self.entries[name] = Entry(
+        self.entries[name] = Quantity(
             estimate.value, about["unit"], estimate.tolerance, origin, about["columns"], where
         )
 

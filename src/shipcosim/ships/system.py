@@ -7,7 +7,7 @@ from pathlib import Path
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.control import COMPONENTS, dp_entries, units_for_dp, why_no_dp
 from shipcosim.ships.described import Described, describe
-from shipcosim.ships.entries import Entry
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.folder import Ship
 from shipcosim.ships.kinds import FMU_OF, PARAMETERS
 from shipcosim.ships.parameter_set import parameter_values
@@ -255,5 +255,5 @@ def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:
     )
 
 
-def _as_ship(ship: Described, entries: Mapping[str, Mapping[str, Entry]]) -> Ship:
+def _as_ship(ship: Described, entries: Mapping[str, Mapping[str, Quantity]]) -> Ship:
     return Ship(ship.name, ship.file.description, ship.path.parent, (), entries)

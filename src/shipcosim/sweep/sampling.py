@@ -13,7 +13,7 @@ import numpy as np
 from shipcosim.errors import Problem, ShipcosimError, imported, suggestion
 from shipcosim.scenario import units_of
 from shipcosim.sweep.levels import Levels, start_value
-from shipcosim.sweep.study_model import Distribution, Study
+from shipcosim.sweep.study_model import Distribution, Sample, Study
 from shipcosim.units import UnitError, number_in
 
 if TYPE_CHECKING:
@@ -110,10 +110,10 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     with imported("sample", "Samples come from SciPy, which is missing."):
         import scipy  # noqa: F401
     lines = [
-        line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)
+        line for key, one in sample.of.items() for line in _lines(sample, levels, system, key, one)
     ]
     # Each column maps probabilities to values (inverse transform sampling).
-    quantiles = [_quantiles(study, levels, system, *line) for line in lines]
+    quantiles = [_quantiles(levels, system, *line) for line in lines]
     usable = [one for one in quantiles if one is not None]
     if len(usable) < len(quantiles) or not usable:
         return None
@@ -123,12 +123,12 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     found = Samples(tuple(column for column, _ in usable), numbers)
     # Only the extremes can break a bound.
-    _check_ends(study, levels, found, [key for key, _, _ in lines])
+    _check_ends(levels, found, [key for key, _, _ in lines])
     return found
 
 
 def _lines(
-    study: Study, levels: Levels, system: System, key: str, one: Distribution
+    sample: Sample, levels: Levels, system: System, key: str, one: Distribution
 ) -> Iterator[tuple[str, str, Distribution]]:
     """Key, name and distribution of each column of a line; ``vessel.*`` gives one per tolerance."""
     if not key.endswith(EVERY):
@@ -147,10 +147,9 @@ def _lines(
         known = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
         found = f"No parameter set states a tolerance of {key}."
         levels.complain(keys, found, suggestion(key, known))
-    of = study.sample.of if study.sample else {}
     own = {
         signal
-        for line, said in of.items()
+        for line, said in sample.of.items()
         for name in (line, *said.also)
         for signal in levels.signals_of(name)
     }
@@ -158,7 +157,7 @@ def _lines(
 
 
 def _quantiles(
-    study: Study, levels: Levels, system: System, key: str, name: str, one: Distribution
+    levels: Levels, system: System, key: str, name: str, one: Distribution
 ) -> tuple[SampledColumn, Callable[[np.ndarray], np.ndarray]] | None:
     """A column of samples, and its quantile function; None with a problem."""
     keys = "sample", "of", key
@@ -241,7 +240,7 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     return lambda shares: norm.ppf(shares, loc=start_value(system, signal), scale=tolerances[name])
 
 
-def _check_ends(study: Study, levels: Levels, found: Samples, lines: Sequence[str]) -> None:
+def _check_ends(levels: Levels, found: Samples, lines: Sequence[str]) -> None:
     """Check the extremes of each column against bounds and types."""
     for i, (key, column) in enumerate(zip(lines, found.columns, strict=True)):
         for row in (int(np.argmin(found.numbers[:, i])), int(np.argmax(found.numbers[:, i]))):

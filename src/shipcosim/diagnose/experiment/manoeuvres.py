@@ -123,7 +123,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
         _pulses(
             "pulses of one thruster after the other",
             T,
-            {name: mass * _PUSH for name in model.thrusters},
+            dict.fromkeys(model.thrusters, mass * _PUSH),
         ),
     ]
     if model.azimuths:
@@ -131,7 +131,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
             _pulses(
                 "reversal of each azimuth thruster",
                 T,
-                {name: -mass * _PUSH for name in model.azimuths},
+                dict.fromkeys(model.azimuths, -mass * _PUSH),
             )
         )
     sweeps = _sweeps(model, T, [name for name in model.azimuths if name not in fixed], mass * _PUSH)
@@ -260,7 +260,7 @@ def _held(manoeuvre, name, time):
 
 def rows_of(manoeuvre: Manoeuvre, step: float) -> int:
     """Number of rows of a manoeuvre."""
-    return 1 + int(round(60.0 * manoeuvre.minutes / step))
+    return 1 + round(60.0 * manoeuvre.minutes / step)
 
 
 def _track(manoeuvre, time, start):

@@ -196,7 +196,7 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     channels[2] += (
         2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
     )
-    kept = slice(int(round(lag / STEP)), None)
+    kept = slice(round(lag / STEP), None)
     return _dataset(
         [values[:, kept] for values in channels], time[kept] - time[kept][0], record.time[rows]
     )

@@ -120,13 +120,12 @@ def _curve(
     values = np.asarray(numbers, float)
     filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
     return {
-        **{
-            "type": "scatterpolar",
-            "mode": "lines",
-            "name": name,
-            "hovertemplate": "%{r} from %{theta}",
-        },
-        **{"theta": rounded([*angles, 360.0]), "r": rounded([*values, values[0]])},
+        "type": "scatterpolar",
+        "mode": "lines",
+        "name": name,
+        "hovertemplate": "%{r} from %{theta}",
+        "theta": rounded([*angles, 360.0]),
+        "r": rounded([*values, values[0]]),
         "line": {"color": colour, "width": 2, "dash": dash},
         **filled,
     }

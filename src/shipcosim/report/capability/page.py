@@ -71,15 +71,20 @@ def page_of(capability: Capability) -> CapabilityPage:
     vessel = capability.vessel
     figures = (*plots, *loads)
     # Neutral particulars change nothing and are left out.
-    said = [one for one in vessel.particulars if one.origin != "neutral"]
+    said = [
+        (file, one)
+        for file, quantities in vessel.particulars.items()
+        for one in quantities.values()
+        if one.origin != "neutral"
+    ]
     facts = {
         "Ship": vessel.description or vessel.name,
         "System": vessel.system,
         "Dynamic factor": f"{DYNAMIC_FACTOR:g}",
     }
     rows = (
-        (p.file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
-        for p in said
+        (file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
+        for file, p in said
     )
     particulars = Table(tuple(rows), ("file", "what", "value", "from"), tight=(2,))
     return CapabilityPage(
@@ -96,7 +101,7 @@ def page_of(capability: Capability) -> CapabilityPage:
         conditions=_conditions(),
         particulars=particulars,
         simulated=", ".join(map(str, capability.elements(SIMULATOR))),
-        assumed=sum("assumed" in one.origin for one in said),
+        assumed=sum("assumed" in one.origin for _, one in said),
         total=len(said),
     )
 

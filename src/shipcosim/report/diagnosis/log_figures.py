@@ -85,13 +85,11 @@ def track_figure(clean: Dataset) -> Figure | None:
     ends = [(known[0], "start", "circle-open"), (known[-1], "end", "circle")]
     marks = [
         {
-            **{
-                "type": "scatter",
-                "mode": "markers",
-                "name": name,
-                "x": rounded(east[[row]]),
-                "y": rounded(north[[row]]),
-            },
+            "type": "scatter",
+            "mode": "markers",
+            "name": name,
+            "x": rounded(east[[row]]),
+            "y": rounded(north[[row]]),
             "marker": {
                 "color": palette.INK,
                 "size": 9,
@@ -203,13 +201,13 @@ def _shades(fault: Finding, raw: Dataset) -> Iterator[dict[str, Any]]:
     time = raw["time"].values
     for start, end in fault.segments or ((time[0], time[-1]),):
         yield {
-            **{
-                "type": "rect",
-                "x0": float(start),
-                "x1": float(end),
-                "y0": 0,
-                "y1": 1,
-                "yref": "paper",
-            },
-            **{"layer": "below", "fillcolor": palette.FAULT, "line": {"width": 0}},
+            "type": "rect",
+            "x0": float(start),
+            "x1": float(end),
+            "y0": 0,
+            "y1": 1,
+            "yref": "paper",
+            "layer": "below",
+            "fillcolor": palette.FAULT,
+            "line": {"width": 0},
         }

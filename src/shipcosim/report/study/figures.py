@@ -81,17 +81,14 @@ def _around(
     theta = rounded([*degrees, *degrees[end]])
     # The curve itself, filled for the first series only.
     curve = {
-        **{
-            "type": "scatterpolar",
-            "mode": "lines+markers",
-            "name": one.label or "all",
-            "theta": theta,
-        },
-        **{
-            "r": rounded([*points[:, 0], *points[end, 0]]),
-            "hovertemplate": "%{r:.3~g} from %{theta}",
-        },
-        **{"line": {"color": one.colour, "width": 2}, "marker": {"size": 4}},
+        "type": "scatterpolar",
+        "mode": "lines+markers",
+        "name": one.label or "all",
+        "theta": theta,
+        "r": rounded([*points[:, 0], *points[end, 0]]),
+        "hovertemplate": "%{r:.3~g} from %{theta}",
+        "line": {"color": one.colour, "width": 2},
+        "marker": {"size": 4},
     }
     if fill is not None and closed:
         curve |= {"fill": "toself", "fillcolor": palette.faded(one.colour, fill)}
@@ -132,12 +129,12 @@ def _beside(
             degrees = np.degrees(np.asarray(one["angle"], float))
             found.append(
                 {
-                    **{"type": "scatterpolar", "mode": "lines", "name": str(one["name"])},
-                    **{
-                        "theta": rounded([*degrees, degrees[0]]),
-                        "hovertemplate": "%{r:.3~g} from %{theta}",
-                    },
-                    **{"r": rounded([*one["radius_values"], one["radius_values"][0]])},
+                    "type": "scatterpolar",
+                    "mode": "lines",
+                    "name": str(one["name"]),
+                    "theta": rounded([*degrees, degrees[0]]),
+                    "hovertemplate": "%{r:.3~g} from %{theta}",
+                    "r": rounded([*one["radius_values"], one["radius_values"][0]]),
                     "line": {
                         "color": colours[str(one["series"])],
                         "width": 2,

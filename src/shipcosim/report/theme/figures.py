@@ -98,13 +98,11 @@ def bars(
 ) -> dict[str, Any]:
     """Upright bars, one for each category."""
     return {
-        **{
-            "type": "bar",
-            "name": name,
-            "x": list(categories),
-            "y": rounded(sizes, 3),
-            "marker": {"color": colour},
-        },
+        "type": "bar",
+        "name": name,
+        "x": list(categories),
+        "y": rounded(sizes, 3),
+        "marker": {"color": colour},
         "hovertemplate": f"%{{y:.3~g}} {unit}",
     }
 
@@ -116,7 +114,7 @@ def polar_axes(**radial: Any) -> dict[str, Any]:
     return {
         "bgcolor": "@card",
         "angularaxis": angular | look,
-        "radialaxis": {"angle": 45, "tickangle": 45} | radial | look,
+        "radialaxis": radial | {"angle": 45, "tickangle": 45} | look,
     }
 
 
