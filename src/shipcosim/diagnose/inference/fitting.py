@@ -16,7 +16,7 @@ from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.instruments import NONLINEAR
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
+    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.inference.innovations import Gram, Noise
     from shipcosim.diagnose.inference.parts import InParts
     from shipcosim.diagnose.ship.inputs import Record
@@ -276,16 +276,14 @@ def own_columns(
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
+    # The regressor of a parameter of a hypothesis.
     return found + [
-        _regressor(one, parameter) for one in hypotheses for parameter in one.parameters
+        Regressor(
+            dict.fromkeys(parameter.paths, parameter.typical), vector=one.vector_of(parameter)
+        )
+        for one in hypotheses
+        for parameter in one.parameters
     ]
-
-
-def _regressor(hypothesis: Hypothesis, parameter: HypothesisParameter) -> Regressor:
-    """The regressor of a parameter of a hypothesis."""
-    return Regressor(
-        dict.fromkeys(parameter.paths, parameter.typical), vector=hypothesis.vector_of(parameter)
-    )
 
 
 @dataclass(frozen=True)

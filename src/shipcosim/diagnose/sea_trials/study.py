@@ -354,7 +354,7 @@ def studied(
     SeaTrialStudy
     """
     sides = {
-        name: [t for t in trials if _turns(t, side)]
+        name: [t for t in trials if (t.kind == "turning circle" and t.side == side)]
         for name, side in (("port", -1), ("starboard", 1))
     }
     held_out = {}
@@ -377,10 +377,6 @@ def studied(
     progress("what would tell causes apart")
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
-
-
-def _turns(trial, side):
-    return trial.kind == "turning circle" and trial.side == side
 
 
 def _judged(train, others, model, hypotheses, orders):

@@ -325,12 +325,12 @@ def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.nda
     """Errors of each prediction of one simulation after some time: distance of the positions, other channels."""
     there = one.sel(time=end, method="nearest")
     at = one["start_time"].values + float(there["time"])
-    off = {role: there[role].values - _between(tracks.measured, role, at) for role in CHANNELS}
+    # A channel of the log at some times, linear between rows; NaN where one of them has no value.
+    off = {
+        role: there[role].values
+        - np.interp(at, tracks.measured["time"].values, tracks.measured[role].values)
+        for role in CHANNELS
+    }
     off["heading"] = wrap_series(off["heading"])
     far = np.hypot(off.pop("north"), off.pop("east"))
     return {"position": far} | off
-
-
-def _between(measured: xarray.Dataset, role: str, at: np.ndarray) -> np.ndarray:
-    """A channel of the log at some times, linear between rows; NaN where one of them has no value."""
-    return np.interp(at, measured["time"].values, measured[role].values)
