@@ -348,7 +348,14 @@ def _quantity(field: Field, entry: Quantity | None, problems: list[Problem]) -> 
     found, remedy = _wrong(value, entry, about)
     if found:
         problems.append(Problem(entry.where, found, remedy))
-    return entry._replace(value=value, unit=about["unit"], description=about["description"])
+    return Quantity(
+        value,
+        about["unit"],
+        entry.tolerance,
+        entry.origin,
+        uncertainty=entry.uncertainty,
+        description=about["description"],
+    )
 
 
 def _wrong(value: Any, entry: Quantity, about: Mapping[str, Any]) -> tuple[str, str]:

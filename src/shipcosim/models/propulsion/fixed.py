@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 
-from shipcosim.models.core.kinematics import load_at, velocity_at
-from shipcosim.models.core.maths import Arithmetic, cos, maximum, sin, where
+from shipcosim.models.core.maths import Arithmetic, where
 from shipcosim.models.core.parameters import quantity, required
-from shipcosim.models.propulsion.thruster import LOSS, Loads
+from shipcosim.models.propulsion.thruster import LOSS, Loads, loads_at_speed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,12 +102,4 @@ def fixed_loads(
     thrust = thrust + speed * abs(speed) * where(
         speed < 0.0, p.coefficient_astern, p.coefficient_ahead
     )
-    # Speed of the water along the thruster, at its place on the ship.
-    c = cos(p.direction)
-    s = sin(p.direction)
-    u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
-    along = c * u_a + s * v_a
-    # Advance in the direction of thrust reduces it linearly, but never below zero.
-    kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
-    thrust = (1.0 - p.thrust_loss) * thrust * kept
-    return Loads(thrust, 0.0 * thrust, *load_at(p.x, p.y, c * thrust, s * thrust))
+    return loads_at_speed(thrust, u_r, v_r, r, p)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Sequence
 from importlib.resources import files
 from typing import Any
 
+from shipcosim.native.checking import bounds
 from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import procedure_of
 from shipcosim.native.export.variants import Variant
@@ -272,8 +272,7 @@ def say(text: str, recording: Recording) -> str:
 def _variable(variable) -> str:
     # A missing bound is infinite, so that the runtime needs no special case.
     text = variable.type == "String"
-    low = -math.inf if variable.minimum is None else variable.minimum
-    high = math.inf if variable.maximum is None else variable.maximum
+    low, high = bounds(variable)
     parts = [
         _text(variable.name),
         TYPES[variable.type],

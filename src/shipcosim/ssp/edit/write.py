@@ -1,8 +1,6 @@
 """Write parameter sets, and pack systems into an .ssp."""
 
-import os
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from copy import deepcopy
 from os import PathLike
 from pathlib import Path
@@ -15,7 +13,7 @@ from shipcosim.ssp.edit.parameter_sets import write_value
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterValue
-from shipcosim.ssp.xml.archive import write_archive
+from shipcosim.ssp.xml.archive import replaced, write_archive
 from shipcosim.ssp.xml.document import Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
 from shipcosim.ssp.xml.values import Value
@@ -98,16 +96,8 @@ def write_file(path: Path, data: bytes) -> None:
     ShipcosimError
         If it cannot be written.
     """
-    # Write next to the file, then replace it in one step.
-    partial = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(path) as partial:
         partial.write_bytes(data)
-        os.replace(partial, path)
-    except OSError as error:
-        with suppress(OSError):
-            partial.unlink()
-        raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
 
 
 def pack(

@@ -6,8 +6,8 @@ import struct
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path, PurePosixPath
 
@@ -214,21 +214,32 @@ def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None
     ShipcosimError
         If it cannot be written.
     """
-    path = Path(path)
+    # Fixed order, date and attributes: the same files give the same bytes.
+    with replaced(Path(path)) as partial, zipfile.ZipFile(partial, "w") as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+            entry.create_system = 3
+            entry.external_attr = 0o644 << 16
+            # FMUs and SSPs are compressed already.
+            entry.compress_type = (
+                zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
+            )
+            archive.writestr(entry, files[name], compresslevel=9)
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Path of a file to write, which then replaces another in one step; its folder is made if needed.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
     partial = path.with_name(path.name + ".part")
     try:
-        # Fixed order, date and attributes: the same files give the same bytes.
         path.parent.mkdir(parents=True, exist_ok=True)
-        with zipfile.ZipFile(partial, "w") as archive:
-            for name in sorted(files):
-                entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-                entry.create_system = 3
-                entry.external_attr = 0o644 << 16
-                # FMUs and SSPs are compressed already.
-                entry.compress_type = (
-                    zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
-                )
-                archive.writestr(entry, files[name], compresslevel=9)
+        yield partial
         os.replace(partial, path)
     except OSError as error:
         with suppress(OSError):
