@@ -27,6 +27,7 @@ from shipcosim.diagnose.inference.linearisation import linearise, rows_first
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.dynamics import with_steady_current
+from shipcosim.diagnose.ship.inputs import part_of
 from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
@@ -266,7 +267,7 @@ def _simulated(problem, models, manoeuvres):
     for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
         motions.append(Motion(*(value[part] for value in motion)))
-        here = {name: tuple(series[part] for series in pair) for name, pair in units.items()}
+        here = part_of(units, part)
         records.append(replace(record, units=here))
         through.append(_keeps_track(motions[-1], track, manoeuvres, dp))
     return motions, records, through

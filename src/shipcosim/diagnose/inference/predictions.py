@@ -11,6 +11,7 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
+from shipcosim.diagnose.ship.inputs import part_of
 from shipcosim.diagnose.ship.instruments import LAGS
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.models.core.kinematics import to_body, to_ned
@@ -258,7 +259,7 @@ def _bounded(motion):
 
 def _at(inputs, rows):
     """Inputs at some rows."""
-    units = {name: tuple(series[rows] for series in pair) for name, pair in inputs.units.items()}
+    units = part_of(inputs.units, rows)
     wind = (
         None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from)
     )

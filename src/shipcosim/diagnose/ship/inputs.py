@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -139,6 +140,11 @@ class Record:
 def _between(series: np.ndarray, low: np.ndarray, share: np.ndarray) -> np.ndarray:
     """A series linear between rows."""
     return series[..., low] * (1.0 - share) + series[..., low + 1] * share
+
+
+def part_of(units: Mapping[str, tuple], rows: Any) -> dict[str, tuple]:
+    """Some rows, or some of several logs, of each thruster's channels."""
+    return {name: tuple(series[rows] for series in pair) for name, pair in units.items()}
 
 
 def record_of(log: xarray.Dataset, model: ShipModel) -> Record:

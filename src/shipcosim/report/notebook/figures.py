@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from io import StringIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,7 @@ COLOURS = {
     palette.FAINT: "#b4c0cb",
 }
 """The light ones of `theme.css`: a picture in a notebook stands on white, whatever the notebook's own colours."""
-STYLE = {
+STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",  # texts stay texts, so that they can be searched
     "svg.hashsalt": "shipcosim",  # the same identifiers in each run
     "path.simplify_threshold": 0.5,  # px that a point may lie off a line to be left out of it
