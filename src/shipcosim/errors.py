@@ -78,6 +78,17 @@ class ShipcosimError(Exception):
         ]
 
 
+def error_at(where: str, found: str, remedy: str = "") -> ShipcosimError:
+    """An error of one problem, to be raised; parameters as of `Problem`.
+
+    Examples
+    --------
+    >>> print(error_at("gust.toml, line 3", "stop_time = -1.", "Give a time above 0."))
+    gust.toml, line 3: stop_time = -1. Give a time above 0.
+    """
+    return ShipcosimError(Problem(where, found, remedy))
+
+
 def held_strictly(problems: Iterable[Problem]) -> list[Problem]:
     """The problems, with flaws that have only one meaning as errors.
 
@@ -172,6 +183,4 @@ def imported(where: str, found: str, extra: str = "sweep") -> Iterator[None]:
     try:
         yield
     except ImportError:
-        raise ShipcosimError(
-            Problem(where, found, f"Install it: pip install 'shipcosim[{extra}]'.")
-        ) from None
+        raise error_at(where, found, f"Install it: pip install 'shipcosim[{extra}]'.") from None

@@ -22,7 +22,7 @@ from shipcosim.calls.arguments import (
     values_of_sets,
 )
 from shipcosim.calls.keywords import with_known_keywords
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, error_at
 from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
 from shipcosim.results.log import Log
 from shipcosim.results.shown import parts_of
@@ -265,7 +265,7 @@ def _extended_from(system: System, given: str) -> str:
     """Name of the system that was extended, where it is one of the project's."""
     if library.named("system", system.name) is None:
         found = f"it extends a system '{system.name}', which has no name here."
-        raise ShipcosimError(Problem(given, found, f"Say which one it was: {named('before')}."))
+        raise error_at(given, found, f"Say which one it was: {named('before')}.")
     return system.name
 
 

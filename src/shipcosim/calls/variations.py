@@ -19,7 +19,7 @@ from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.runs import system_for
 from shipcosim.cosim import Variation
 from shipcosim.cosim import simulate_many as run_variations
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.options import RunOptions
 from shipcosim.results.signals import chosen
 from shipcosim.scenario import Scenario
@@ -94,9 +94,7 @@ def simulate_many(
     """
     if engine not in ("native", "fmpy"):
         found = f"engine = {engine!r}."
-        raise ShipcosimError(
-            Problem("simulate_many()", found, "Variations are run by 'native' or 'fmpy'.")
-        )
+        raise error_at("simulate_many()", found, "Variations are run by 'native' or 'fmpy'.")
     if scenario is not None:
         scenario = read_scenario(scenario)
     ship = system_for(system, scenario, components=components)

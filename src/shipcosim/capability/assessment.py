@@ -8,7 +8,7 @@ from pathlib import Path
 
 from shipcosim import library
 from shipcosim.capability.vessel import Vessel, read_vessel
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 from shipcosim.ships import read_ship
 from shipcosim.ssp import osp_file, read, read_system
 
@@ -75,9 +75,7 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
             return folder
     known = [file.parent.name for file in sorted(ships.glob("*/ship.toml"))]
     found = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
-    raise ShipcosimError(
-        Problem("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
-    )
+    raise error_at("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
 
 
 def _ships(system: Path) -> Path:

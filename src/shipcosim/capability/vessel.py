@@ -18,7 +18,7 @@ from shipcosim.capability.thrust import (
     Thruster,
     nominal_thrust,
 )
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters
@@ -106,10 +106,8 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     if left_out := [
         f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out
     ]:
-        raise ShipcosimError(
-            Problem(
-                system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
-            )
+        raise error_at(
+            system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
         )
     # All files of the ship are read before anything is checked, so that all errors come together.
     said = ship.parameter_set(asked)
@@ -156,7 +154,7 @@ def _vessel_of(system: System) -> Component:
             else f"{len(found)} vessels, {', '.join(c.name for c in found)},"
         )
         remedy = "It needs one whose FMU has the parameters of fmus/vessel, with the forces of thrusters connected to it."
-        raise ShipcosimError(Problem(system.file, f"{what} found.", remedy))
+        raise error_at(system.file, f"{what} found.", remedy)
     return found[0]
 
 
@@ -168,7 +166,7 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
     found = {name: part for name, part in parts.items() if part.fmu.variables.keys() >= _THRUSTER}
     if not found:
         remedy = "It needs components with the parameters of fmus/azimuth_thruster or fmus/tunnel_thruster."
-        raise ShipcosimError(Problem(system.file, f"no thruster is connected to {vessel}.", remedy))
+        raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)
     return found
 
 

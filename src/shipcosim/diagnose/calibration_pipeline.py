@@ -29,7 +29,7 @@ from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference,
 from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 
 if TYPE_CHECKING:
     import xarray
@@ -201,7 +201,7 @@ def _check_usable(found: dict[str, Identification]) -> None:
 def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
-        raise ShipcosimError(Problem("logs", "There are none.", "Give at least one log."))
+        raise error_at("logs", "There are none.", "Give at least one log.")
     stems = [_stem(log, k) for k, log in enumerate(logs, start=1)]
     return [
         stem if stems.count(stem) == 1 else f"{stem}-{k}" for k, stem in enumerate(stems, start=1)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.results.shown import HtmlPage, Picture, SavedResult
 
 if TYPE_CHECKING:
@@ -36,9 +36,7 @@ class DiagnosisOfLog(SavedResult, Diagnosis):
 
         if self.tracks is None:
             found = "There are no predictions of this log to draw."
-            raise ShipcosimError(
-                Problem(self._name, found, "`shipcosim.read_log(...).track()` draws the log.")
-            )
+            raise error_at(self._name, found, "`shipcosim.read_log(...).track()` draws the log.")
         return Picture(f"track of {self._name}", tracks_svg(self.tracks, f"track of {self._name}"))
 
     def page(self) -> HtmlPage:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.results.shown import LikeTable, Picture
 from shipcosim.results.signals import chosen
 
@@ -88,8 +88,8 @@ class Log(LikeTable):
         from shipcosim.report.notebook.figures import Path, track_svg
 
         if not {"north", "east"} <= set(self.table):
-            raise ShipcosimError(
-                Problem(self.name, "The log has no position.", "`.plot(...)` draws any channels.")
+            raise error_at(
+                self.name, "The log has no position.", "`.plot(...)` draws any channels."
             )
         heading = self.table["heading"].values if "heading" in self.table else None
         path = Path("measured", self.table["north"].values, self.table["east"].values, heading)

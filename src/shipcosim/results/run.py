@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, error_at
 from shipcosim.results.shown import HtmlPage, LikeTable, Picture, Result
 from shipcosim.results.signals import chosen
 from shipcosim.staging import staged
@@ -113,7 +113,7 @@ class Run(LikeTable, Result):
         drawn = [name for name in names if name in shown]
         if not drawn:
             found = f"{', '.join(names)}: no signal among these is a number over time."
-            raise ShipcosimError(Problem(self.name, found, "Only those can be drawn."))
+            raise error_at(self.name, found, "Only those can be drawn.")
         title = f"{', '.join(signals) or 'signals'} of {self.name}"
         events = sorted({event.time for event in self.scenario.events})
         return Picture(title, panels_svg(shown, drawn, title, events))
@@ -131,8 +131,8 @@ class Run(LikeTable, Result):
         svg = run_track(self.table, self.expectations, f"track of {self.name}")
         if svg is None:
             remedy = "`.plot(...)` draws any signals."
-            raise ShipcosimError(
-                Problem(self.name, "Nothing here is a ship, with x, y and psi over time.", remedy)
+            raise error_at(
+                self.name, "Nothing here is a ship, with x, y and psi over time.", remedy
             )
         return Picture(f"track of {self.name}", svg)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.file import KINDS, ShipFile
@@ -142,16 +142,12 @@ def _text(path: Path) -> str:
     try:
         text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror}.")) from None
+        raise error_at(str(path), f"cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError:
-        raise ShipcosimError(
-            Problem(str(path), "is not UTF-8 text.", "Save the file in UTF-8.")
-        ) from None
+        raise error_at(str(path), "is not UTF-8 text.", "Save the file in UTF-8.") from None
     if len(text) > LONGEST:
-        raise ShipcosimError(
-            Problem(
-                str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."
-            )
+        raise error_at(
+            str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."
         )
     return text
 
@@ -164,8 +160,8 @@ def _toml(text: str, path: Path) -> dict[str, Any]:
         line = re.search(r" \(at line (\d+), column \d+\)", str(error))
         where = f"{path}, line {line[1]}" if line else str(path)
         said = str(error).replace(line[0], "") if line else "brackets are nested too deep"
-        raise ShipcosimError(
-            Problem(where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes.")
+        raise error_at(
+            where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes."
         ) from None
 
 

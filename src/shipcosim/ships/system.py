@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ships.control import COMPONENTS, dp_entries, units_for_dp, why_no_dp
 from shipcosim.ships.described import Described, describe
 from shipcosim.ships.entries import Quantity
@@ -163,9 +163,7 @@ def _fmu(name: str, folders: list[Path]) -> Path:
     for folder in folders:
         if (folder / f"{name}.fmu").is_file():
             return folder / f"{name}.fmu"
-    raise ShipcosimError(
-        Problem(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them.")
-    )
+    raise error_at(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them.")
 
 
 def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.flatten.with_values import with_values
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterValue, read_parameter_set
@@ -53,9 +53,7 @@ def fitting_values(
     # A set of which nothing fits is for another system.
     if not values:
         found = f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
-        raise ShipcosimError(
-            Problem(str(path), found, f"Components: {', '.join(system.components)}.")
-        )
+        raise error_at(str(path), found, f"Components: {', '.join(system.components)}.")
     return values, remarks
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, imported, suggestion
+from shipcosim.errors import ShipcosimError, error_at, imported, suggestion
 from shipcosim.scenario import units_of
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.study_model import Distribution, Sample, Study
@@ -88,9 +88,7 @@ class Samples:
         row = self.numbers[number].tolist()
         if any(map(isnan, row)):
             remedy = "Run the study so far: each generation follows from the one before."
-            raise ShipcosimError(
-                Problem(f"trial {number}", "It has not been proposed yet.", remedy)
-            )
+            raise error_at(f"trial {number}", "It has not been proposed yet.", remedy)
         return [
             round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)
         ]
@@ -207,22 +205,20 @@ def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     known = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
     if one.distribution not in known:
         found = f"scipy.stats has no distribution '{one.distribution}'."
-        raise ShipcosimError(Problem("", found, suggestion(str(one.distribution), known)))
+        raise error_at("", found, suggestion(str(one.distribution), known))
     distribution = getattr(stats, str(one.distribution))
     needed = (distribution.shapes or "").replace(",", " ").split()
     allowed = [*needed, "loc"] + ([] if isinstance(distribution, stats.rv_discrete) else ["scale"])
     if unknown := [name for name in one.shape if name not in allowed]:
-        raise ShipcosimError(
-            Problem("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
-        )
+        raise error_at("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
     if missing := [name for name in needed if name not in one.shape]:
         found = f"'{missing[0]}' is missing."
-        raise ShipcosimError(Problem("", found, f"{one.distribution} has: {', '.join(allowed)}."))
+        raise error_at("", found, f"{one.distribution} has: {', '.join(allowed)}.")
     # Wrong parameters show as values that are not finite.
     if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **one.shape)).all():
         found = f"{one.distribution} with {', '.join(f'{n} = {v:g}' for n, v in one.shape.items()) or 'no numbers'}."
-        raise ShipcosimError(
-            Problem("", found, "These numbers make no distribution, or one without finite values.")
+        raise error_at(
+            "", found, "These numbers make no distribution, or one without finite values."
         )
     return lambda shares: distribution.ppf(shares, **one.shape)
 
@@ -236,7 +232,7 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     if name not in tolerances:
         known = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
         found = f"No parameter set states a tolerance of {signal}."
-        raise ShipcosimError(Problem("", found, suggestion(signal, known)))
+        raise error_at("", found, suggestion(signal, known))
     return lambda shares: norm.ppf(shares, loc=start_value(system, signal), scale=tolerances[name])
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim import __version__
-from shipcosim.errors import Problem, ShipcosimError, imported
+from shipcosim.errors import error_at, imported
 from shipcosim.scenario.model import Value
 from shipcosim.series import write_file
 from shipcosim.staging import set_aside
@@ -331,7 +331,7 @@ class _said:
         if isinstance(error, OSError):
             found = f"Results cannot be written here: {error.strerror or error}."
             remedy = "Make room and run the study again: it goes on from what is done."
-            raise ShipcosimError(Problem(str(self._folder), found, remedy)) from error
+            raise error_at(str(self._folder), found, remedy) from error
 
 
 def _kind(labels: list[Value]) -> Any:

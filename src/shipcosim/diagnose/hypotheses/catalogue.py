@@ -15,7 +15,7 @@ from pydantic import ValidationError
 
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import conversion
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def read_cause(path: Path) -> Cause:
             )
         raise ShipcosimError(problems) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise ShipcosimError(Problem(str(path), f"It cannot be read: {error}.", remedy)) from None
+        raise error_at(str(path), f"It cannot be read: {error}.", remedy) from None
 
 
 @cache

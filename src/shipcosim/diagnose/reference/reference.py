@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from shipcosim.diagnose.inference.thresholds import ENOUGH
 from shipcosim.diagnose.reference.thresholds import DAY_TO_DAY, NEGLIGIBLE, ORDINARY
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import write_file
 
 SCHEMA = "shipcosim-reference/1"
@@ -152,7 +152,7 @@ def read_reference(path: str | os.PathLike[str] | Reference) -> Reference:
         return Reference.model_validate_json(file.read_bytes())
     except OSError as error:
         remedy = "Give the folder or the file that `shipcosim calibrate` left."
-        raise ShipcosimError(Problem(str(file), "There is no such reference.", remedy)) from error
+        raise error_at(str(file), "There is no such reference.", remedy) from error
     except ValidationError as error:
         problems = [
             Problem(f"{file}: {'.'.join(map(str, e['loc']))}", e["msg"]) for e in error.errors()

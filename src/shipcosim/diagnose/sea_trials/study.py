@@ -36,7 +36,7 @@ from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_tria
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 if TYPE_CHECKING:
     import os
@@ -282,9 +282,7 @@ def study(
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise ShipcosimError(
-            Problem(system.file, found, "Sea trials are sailed with thrusters of ours.")
-        )
+        raise error_at(system.file, found, "Sea trials are sailed with thrusters of ours.")
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
     record = as_ordered(record, read.repaired, read.ship) if orders else record
@@ -292,7 +290,7 @@ def study(
     if not any(trial.kind == "turning circle" for trial in trials):
         found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
         right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
-        raise ShipcosimError(Problem(str(read.repaired.attrs.get("source", "log")), found, right))
+        raise error_at(str(read.repaired.attrs.get("source", "log")), found, right)
     return studied(
         trials,
         read.ship,

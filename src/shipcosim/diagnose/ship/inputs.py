@@ -13,7 +13,7 @@ from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
@@ -172,7 +172,7 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     if missing:
         found = f"no channel {', '.join(missing)}."
         right = "A diagnosis needs north, east and heading."
-        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
+        raise error_at(str(log.attrs.get("source", "log")), found, right)
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
     )
@@ -273,7 +273,7 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
         )
         found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
         right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
-        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
+        raise error_at(str(log.attrs.get("source", "log")), found, right)
 
 
 def _thinned(record: Record, rows: int, model: ShipModel) -> Record:

@@ -29,7 +29,7 @@ from shipcosim.diagnose.validation.thresholds import (
     STEP,
     TIME_CONSTANTS,
 )
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
@@ -230,9 +230,7 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
             row += 1
     if not rows:
         found = f"no {horizon:g} s of the log have a position and heading, and everything that drives her throughout."
-        raise ShipcosimError(
-            Problem("replay", found, "Ask for shorter predictions, or for a longer log.")
-        )
+        raise error_at("replay", found, "Ask for shorter predictions, or for a longer log.")
     return np.array(rows), count
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import lxml.etree as etree
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.osp.reader import osp_file
@@ -49,7 +49,7 @@ def read(
     findings = Findings()
     if osp_file(path):
         found = "An OspSystemStructure.xml cannot be edited."
-        raise ShipcosimError(Problem(str(path), found, "`simulate` and `read_system` take it."))
+        raise error_at(str(path), found, "`simulate` and `read_system` take it.")
     package = open_package(
         path, findings, library.fmus(path, build=False) if fmus is None else fmus
     )

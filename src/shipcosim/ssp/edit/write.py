@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 import lxml.etree as etree
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.ssp.edit.parameter_sets import write_value
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.read.package import open_package
@@ -57,9 +57,7 @@ def parameter(
     # A unit must be convertible, or the value has no meaning.
     defined = find_unit(unit)
     if defined is not None and defined.exponents is None:
-        raise ShipcosimError(
-            Problem(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
-        )
+        raise error_at(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
     kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, error_at, suggestion
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.portability.subject import Subject, subject_of
 from shipcosim.ssp.portability.support_table import FEATURES, HOSTS, TOLD, Feature
@@ -21,9 +21,7 @@ def check_host(host: str) -> None:
         If it is not one of HOSTS.
     """
     if host not in HOSTS:
-        raise ShipcosimError(
-            Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS))
-        )
+        raise error_at(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS))
 
 
 def check_for(

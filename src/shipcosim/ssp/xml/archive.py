@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path, PurePosixPath
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 
 MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
@@ -63,8 +63,8 @@ def unpack(
             raise _damaged(shown, error) from None
         except OSError as error:
             found = f"Cannot be unpacked into {folder}: {error.strerror}."
-            raise ShipcosimError(
-                Problem(shown, found, "Make room there, or name another folder in TMPDIR.")
+            raise error_at(
+                shown, found, "Make room there, or name another folder in TMPDIR."
             ) from None
 
 
@@ -113,7 +113,7 @@ def read_entry(
             return None
         # The stated size first: a large file is never read.
         if archive.getinfo(name).file_size > limit:
-            raise ShipcosimError(Problem(shown, f"{name} is larger than {limit >> 20} MiB."))
+            raise error_at(shown, f"{name} is larger than {limit >> 20} MiB.")
         try:
             return archive.read(name)
         except CANNOT as error:
@@ -126,7 +126,7 @@ def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
     except BROKEN as error:
         raise _damaged(shown, error) from None
     except OSError as error:
-        raise ShipcosimError(Problem(shown, f"Cannot be read: {error.strerror}.")) from None
+        raise error_at(shown, f"Cannot be read: {error.strerror}.") from None
     # The first entry must start at 0: otherwise this is the tail of another archive.
     if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:
         archive.close()  # cut off within an archive that it contains, whose directory was taken for its own
@@ -135,10 +135,8 @@ def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
 
 
 def _damaged(shown: str, error: object) -> ShipcosimError:
-    return ShipcosimError(
-        Problem(
-            shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."
-        )
+    return error_at(
+        shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."
     )
 
 
@@ -244,4 +242,4 @@ def replaced(path: Path) -> Iterator[Path]:
     except OSError as error:
         with suppress(OSError):
             partial.unlink()
-        raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
+        raise error_at(str(path), f"Cannot be written: {error.strerror}.") from None
