@@ -7,7 +7,8 @@ import json
 import os
 import platform
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from time import monotonic
@@ -318,20 +319,15 @@ class Store:
         return pyarrow.table(columns)
 
 
-class _said:
+@contextmanager
+def _said(folder: Path) -> Iterator[None]:
     """Turn errors of the operating system into one ShipcosimError."""
-
-    def __init__(self, folder: Path):
-        self._folder = folder
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: Any, error: BaseException | None, _: Any) -> None:
-        if isinstance(error, OSError):
-            found = f"Results cannot be written here: {error.strerror or error}."
-            remedy = "Make room and run the study again: it goes on from what is done."
-            raise error_at(str(self._folder), found, remedy) from error
+    try:
+        yield
+    except OSError as error:
+        found = f"Results cannot be written here: {error.strerror or error}."
+        remedy = "Make room and run the study again: it goes on from what is done."
+        raise error_at(str(folder), found, remedy) from error
 
 
 def _kind(labels: list[Value]) -> Any:

@@ -23,7 +23,7 @@ from shipcosim.report.study.static import NAMES, bases_of
 from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, polar_axes, rounded
+from shipcosim.report.theme.figures import evenly, line, polar_axes, rounded
 from shipcosim.report.theme.views import Figure
 
 TALL = 380  # px
@@ -443,7 +443,7 @@ def _drawn(column: Column, rows: NDArray) -> list[Any]:
 def _even(rows: NDArray, share: float | None = None) -> NDArray:
     """Evenly thinned rows."""
     most = MOST_DOTS if share is None else max(int(share * len(rows)), 1)
-    return rows if len(rows) <= most else rows[np.linspace(0, len(rows) - 1, most).astype(int)]
+    return rows if len(rows) <= most else rows[evenly(len(rows), most)]
 
 
 def _axes(x: Column, y: Column) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from shipcosim.report.study.frames import Lacking, narrowed
 from shipcosim.report.study.tables import Column, StudyTables, columns_of, signed
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Figure, KeyFigure, Link, Page, Table
@@ -181,7 +182,7 @@ def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
     # The others evenly spaced.
     others = np.flatnonzero(~failed)
     room = min(most - len(parts[0]), len(others))
-    parts.append(others[np.unique(np.linspace(0, len(others) - 1, room).astype(int))])
+    parts.append(others[evenly(len(others), room)])
     return np.sort(np.concatenate(parts))
 
 

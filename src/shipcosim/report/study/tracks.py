@@ -13,6 +13,7 @@ from shipcosim.report.run.track import hull_outline, symbol_size
 from shipcosim.report.study.figures import distance_figure
 from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
 from shipcosim.report.study.tables import StudyTables, columns_of
+from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import packed_series
 from shipcosim.report.theme.views import Figure
 
@@ -77,12 +78,7 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
     circles = [float(radius) for radius in view.get("circles") or _circles(distance)]
     # Rows of the drawn tracks: equally many of each series.
     most = MOST_TRACKS // max(len(series), 1)
-    drawn = [
-        one.rows[np.unique(np.linspace(0, len(one.rows) - 1, min(most, len(one.rows))).astype(int))]
-        if len(one.rows)
-        else one.rows
-        for one in series
-    ]
+    drawn = [one.rows[evenly(len(one.rows), most)] if len(one.rows) else one.rows for one in series]
     note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
     note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
     # Rows without a track, which do not count as left out.
@@ -117,7 +113,7 @@ def _read(tables: StudyTables) -> _Tracks:
     for k, name in enumerate(names[:3]):
         full[k, row[row >= 0], column[row >= 0]] = table[name].to_numpy(float)[row >= 0]
     # Evenly fewer times, first and last included.
-    kept = np.unique(np.linspace(0, len(stamps) - 1, MOST_TIMES).astype(int))
+    kept = evenly(len(stamps), MOST_TIMES)
     north, east, psi = full[:, :, kept]
     # Each track relative to its first known position.
     first = [

@@ -66,6 +66,17 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
     return np.insert(x[rows], breaks, np.nan), np.insert(y[rows], breaks, np.nan)
 
 
+def evenly(count: int, most: int) -> NDArray:
+    """Rows to draw of so many, evenly fewer where there are more than `most`; first and last among them.
+
+    Examples
+    --------
+    >>> evenly(9, 3).tolist(), evenly(2, 3).tolist()
+    ([0, 4, 8], [0, 1])
+    """
+    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(int))
+
+
 def _told_apart(values: NDArray) -> list[float | None]:
     """Numbers with five significant digits, more where they differ by little, as late times."""
     # Additional digits as the size exceeds the span: 100000.1 and 100000.2 must differ.
