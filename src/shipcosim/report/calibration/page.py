@@ -82,15 +82,15 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         errors=errors,
         figures=(*what, *errors),
         numbers=Table(
-            tuple(moved_rows(ship)), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
+            moved_rows(ship), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
         ),
         error_table=Table(
-            tuple(error_rows(ship)),
+            error_rows(ship),
             ("Log", "After", "As it is", "Calibrated", "This log fitted too", ""),
             (1, 2, 3, 4),
         ),
         logs=Table(
-            tuple(log_rows(ship)),
+            log_rows(ship),
             ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),
         ),
         untold=untold(ship),

@@ -82,11 +82,11 @@ def page_of(capability: Capability) -> CapabilityPage:
         "System": vessel.system,
         "Dynamic factor": f"{DYNAMIC_FACTOR:g}",
     }
-    rows = (
+    rows = [
         (file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
         for file, p in said
-    )
-    particulars = Table(tuple(rows), ("file", "what", "value", "from"), tight=(2,))
+    ]
+    particulars = Table(rows, ("file", "what", "value", "from"), tight=(2,))
     return CapabilityPage(
         title=f"Static DP capability of {vessel.name}",
         facts=facts_of(facts),
@@ -221,7 +221,7 @@ def _thrusters(capability: Capability) -> Table:
         "simulator's",
         "forbidden",
     )
-    return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6, 7))
+    return Table(rows, head, tight=(0, 2, 3, 4, 5, 6, 7))
 
 
 def _conditions() -> Table:

@@ -80,7 +80,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
             Link(anchor, title, section.found) for anchor, (title, section) in links.items()
         ),
         key_figures=key_figures(diagnosis),
-        discrepancies=Table(tuple(discrepancy_rows(diagnosis)), ("", "size", "of the error")),
+        discrepancies=Table(discrepancy_rows(diagnosis), ("", "size", "of the error")),
         next_steps=tuple(steps),
         tracks=tracks,
         log=log,

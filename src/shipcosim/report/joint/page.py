@@ -108,20 +108,18 @@ def _page(found: JointDiagnosis) -> JointPage:
             for (anchor, name), text in zip(SECTIONS.items(), _found(found), strict=True)
         ),
         key_figures=key_figures(found),
-        discrepancies=Table(tuple(discrepancy_rows(found)), ("", "size", "of the error", "logs")),
+        discrepancies=Table(discrepancy_rows(found), ("", "size", "of the error", "logs")),
         next_steps=tuple(steps),
         remarks=found.remarks,
-        causes=Table(tuple(cause_rows(found)), ("Cause", "By", "Parameter", "Size"), (3,)),
-        faults=Table(
-            tuple(fault_rows(found)), ("Fault of the data", "Channels", "Logs", "Done about it")
-        ),
+        causes=Table(cause_rows(found), ("Cause", "By", "Parameter", "Size"), (3,)),
+        faults=Table(fault_rows(found), ("Fault of the data", "Channels", "Logs", "Done about it")),
         alike=Table(alike, ("Cause", "Probability")),
         tracks=tracks,
         errors=errors,
-        error_table=Table(tuple(error_rows(found)), _ERROR_HEAD, (0, 1, 2, 3, 4, 5)),
+        error_table=Table(error_rows(found), _ERROR_HEAD, (0, 1, 2, 3, 4, 5)),
         is_held_out=any(one.fitted_on for one in found.errors.values()),
         logs=Table(
-            tuple(log_rows(found)),
+            log_rows(found),
             ("Log", "Verdict", "Faults of its own", "Causes", "Largest discrepancy", "Error"),
             (0, 5),
         ),

@@ -47,9 +47,9 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
         facts=_facts(found),
         outcome=outcome(found, found.causes),
         blocks=(
-            Block("Wrong, largest first", Table(tuple(discrepancy_rows(found)))),
+            Block("Wrong, largest first", Table(discrepancy_rows(found))),
             Block(
-                "Found", Table(tuple(finding_rows(found.findings)), ("", "probability", "", "size"))
+                "Found", Table(list(finding_rows(found.findings)), ("", "probability", "", "size"))
             ),
             Block("This log cannot tell apart", Table(alike)),
             Block(
@@ -90,10 +90,10 @@ def joint_card(found: JointDiagnosis, name: str) -> Card:
         ),
         outcome=joint.outcome(found),
         blocks=(
-            Block("Wrong, largest first", Table(tuple(joint.discrepancy_rows(found)))),
-            Block("Faults of the data in common", Table(tuple(joint.fault_rows(found)))),
-            Block("Causes in common", Table(tuple(joint.cause_rows(found)))),
-            Block("Errors by log", Table(tuple(joint.error_rows(found)), head)),
+            Block("Wrong, largest first", Table(joint.discrepancy_rows(found))),
+            Block("Faults of the data in common", Table(joint.fault_rows(found))),
+            Block("Causes in common", Table(joint.cause_rows(found))),
+            Block("Errors by log", Table(joint.error_rows(found), head)),
             Block("Each log by itself", Table(tuple(row[:4] for row in joint.log_rows(found)))),
             Block("Remarks", lines=tuple(found.remarks)),
             Block("What to do next", lines=tuple(joint.next_steps(found))),

@@ -110,7 +110,7 @@ def calibration_card(found: CalibratedShip) -> Card:
             Block(
                 "Position error that remains",
                 Table(
-                    tuple(calibration.error_rows(found)),
+                    calibration.error_rows(found),
                     ("log", "after", "as it is", "calibrated", "at best", ""),
                 ),
             ),

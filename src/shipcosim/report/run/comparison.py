@@ -373,7 +373,7 @@ def _table(found: Sequence[Difference]) -> Table:
         (d.signal, f"{plain(d.rms)} {d.unit}", f"{plain(d.largest)} {d.unit}", f"{d.time:g} s")
         for d in found[:MOST_DIFFERENCES]
     ]
-    return Table(tuple(rows), ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
+    return Table(rows, ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
 
 
 def _details(pair: Pair) -> tuple[Detail, ...]:

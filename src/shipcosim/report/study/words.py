@@ -170,7 +170,7 @@ def quantities_table(runs: Mapping[str, Column]) -> Table:
         "no value",
         "varies most with",
     )
-    return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6))
+    return Table(rows, head, tight=(0, 2, 3, 4, 5, 6))
 
 
 def _varies_with(column: Column, causes: Sequence[Column]) -> str:
@@ -228,7 +228,7 @@ def varied_table(study: Mapping[str, Any]) -> Table:
     for signal, how in (_given(_given(study).get("tune") or {}).get("of") or {}).items():
         ends = f"sought from {how['low']} to {how['high']}{' in the logarithm' if how.get('log') else ''}"
         rows.append((str(how.get("name") or signal), _with_others(signal, how), ends))
-    return Table(tuple(rows), ("name", "what it sets", "values"), tight=(0,))
+    return Table(rows, ("name", "what it sets", "values"), tight=(0,))
 
 
 def _with_others(signal: str, how: Mapping[str, Any]) -> str:
@@ -307,7 +307,7 @@ def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
     rows = [(str(one.get("name", "")), _quantity(one)) for one in _parts(study, "quantity")]
     rows += [(str(one.get("name", "")), _summary(one)) for one in _parts(study, "summary")]
-    return Table(tuple(rows), ("name", "what it is"), tight=(0,))
+    return Table(rows, ("name", "what it is"), tight=(0,))
 
 
 def _quantity(one: Mapping[str, Any]) -> str:

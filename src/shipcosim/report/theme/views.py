@@ -1,6 +1,6 @@
 """Records that all page templates fill in: texts and figures without any HTML."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -46,9 +46,12 @@ class Link:
 class Table:
     """A table of texts; the columns numbered in `tight` do not wrap."""
 
-    rows: tuple[tuple[str, ...], ...]
+    rows: Sequence[tuple[str, ...]]
     head: tuple[str, ...] = ()
     tight: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rows", tuple(self.rows))
 
 
 @dataclass(frozen=True)
