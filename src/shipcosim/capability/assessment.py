@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -10,12 +9,12 @@ from shipcosim import library
 from shipcosim.capability.vessel import Vessel, read_vessel
 from shipcosim.errors import error_at, suggestion
 from shipcosim.ships import read_ship
-from shipcosim.ssp import osp_file, read, read_system
+from shipcosim.ssp import AnyPath, osp_file, read, read_system
 
 
 def vessel_of(
-    system: str | os.PathLike[str],
-    parameters: Sequence[str | os.PathLike[str]] = (),
+    system: AnyPath,
+    parameters: Sequence[AnyPath] = (),
     ship: str | None = None,
 ) -> Vessel:
     """The vessel of a system whose capability is asked for.

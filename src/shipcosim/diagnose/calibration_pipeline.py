@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,7 +33,7 @@ from shipcosim.errors import Problem, ShipcosimError, error_at
 if TYPE_CHECKING:
     import xarray
 
-    from shipcosim.ssp import System, SystemStructure
+    from shipcosim.ssp import AnyPath, System, SystemStructure
 
 
 READING = "are the logs right?"
@@ -92,7 +91,7 @@ class CalibratedShip:
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 
 
-def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
     """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
     many = len(logs)
     return {
@@ -104,13 +103,13 @@ def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, fl
 
 
 def calibrate(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    logs: Sequence[AnyPath | xarray.Dataset],
+    system: AnyPath | SystemStructure | System,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
+    out: AnyPath | None = None,
 ) -> CalibratedShip:
     """Fit a ship's numbers to logs in which she is known to be well.
 
@@ -198,7 +197,7 @@ def _check_usable(found: dict[str, Identification]) -> None:
         raise ShipcosimError(problems)
 
 
-def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
+def log_names(logs: Sequence[AnyPath | xarray.Dataset]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
         raise error_at("logs", "There are none.", "Give at least one log.")
@@ -209,16 +208,16 @@ def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
 
 
 def _stem(log, number):
-    if isinstance(log, str | os.PathLike):
+    if isinstance(log, AnyPath):
         return Path(Path(log).name.removesuffix(".gz")).stem.replace("|", "_")
     return f"log-{number}"
 
 
 def problems_of(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    logs: Sequence[AnyPath | xarray.Dataset],
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
     reference: Reference | None = None,

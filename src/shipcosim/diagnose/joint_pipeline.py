@@ -15,7 +15,6 @@ with what the other logs say of them.
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -67,12 +66,12 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import CommonRatio
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
     from shipcosim.diagnose.reference.reference import Reference
-    from shipcosim.ssp import System, SystemStructure
+    from shipcosim.ssp import AnyPath, System, SystemStructure
 
 __all__ = ["JointDiagnosis", "diagnose_jointly", "find_common_causes", "steps_of"]
 
 
-def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
     """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
     names = log_names(logs)
     return {
@@ -86,14 +85,14 @@ def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, fl
 
 
 def diagnose_jointly(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    logs: Sequence[AnyPath | xarray.Dataset],
+    system: AnyPath | SystemStructure | System,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    out: AnyPath | None = None,
+    reference: AnyPath | Reference | None = None,
 ) -> JointDiagnosis:
     """Diagnose several logs of one ship together: what they have in common, the system with it, what that gains.
 
@@ -172,10 +171,10 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
 
 
 def find_common_causes(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    logs: Sequence[AnyPath | xarray.Dataset],
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> JointDiagnosis:

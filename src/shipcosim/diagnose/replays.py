@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -16,7 +15,7 @@ from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
-from shipcosim.ssp import System
+from shipcosim.ssp import AnyPath, System
 
 _SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
 
@@ -40,9 +39,9 @@ class LogReplay:
 
 
 def replay_log(
-    log: str | os.PathLike | xarray.Dataset,
+    log: AnyPath | xarray.Dataset,
     systems: dict[str, System],
-    channels: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
     *,
     horizon: float | None = None,
     progress: Callable[[int, int], None] | None = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.finding import Finding
+    from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -36,8 +36,8 @@ class Log(LikeTable):
 
     name: str
     table: xarray.Dataset
-    source: str | os.PathLike[str] | xarray.Dataset
-    channels: str | os.PathLike[str] | None = None
+    source: AnyPath | xarray.Dataset
+    channels: AnyPath | None = None
 
     @cached_property
     def remarks(self) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from shipcosim.report.notebook.card import Card
     from shipcosim.scenario import Expectation, Scenario, Verdict
-    from shipcosim.ssp import System
+    from shipcosim.ssp import AnyPath, System
 
 
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
@@ -145,7 +144,7 @@ class Run(LikeTable, Result):
         )
         return HtmlPage(self.name, page)
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+    def save(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write result.nc, result.csv, report.html and, where something predicts, predictions.csv; returns the folder.
 
         Parameters
@@ -168,7 +167,7 @@ class Run(LikeTable, Result):
                 write_predictions(predictions, stage / PREDICTIONS)
         return Path(folder)
 
-    def save_part(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+    def save_part(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write result-partial.nc, .csv and .html of a run that did not get to its end; returns the folder.
 
         Parameters and errors as for `save`.

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.report.notebook.card import Card
+    from shipcosim.ssp import AnyPath
 
 
 HEIGHT = 820  # px, of a page within a notebook
@@ -44,7 +45,7 @@ class HtmlPage:
     title: str
     html: str = field(repr=False)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: AnyPath) -> Path:
         """Write the page to a file; it is there completely or not at all.
 
         Raises
@@ -92,7 +93,7 @@ class Picture:
     name: str
     svg: str = field(repr=False)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: AnyPath) -> Path:
         """Write the picture to an .svg file; errors as for `HtmlPage.save`."""
         write_file(path, self.svg.encode())
         return Path(path)
@@ -137,7 +138,7 @@ class SavedResult(Result):
             write_json(self.as_json(), stage / self.json_name)  # pyright: ignore[reportAttributeAccessIssue]
         self.page().save(stage / "report.html")
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+    def save(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write the files that the command of the same name leaves; returns the folder.
 
         Parameters

@@ -1,7 +1,6 @@
 """Systems of a described ship: open, for replays and diagnosis, and in a closed DP loop."""
 
 from collections.abc import Iterable, Mapping
-from os import PathLike
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, error_at
@@ -12,7 +11,7 @@ from shipcosim.ships.folder import Ship
 from shipcosim.ships.kinds import FMU_OF, PARAMETERS
 from shipcosim.ships.parameter_set import parameter_values
 from shipcosim.ships.thrusters import ShipThruster
-from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
+from shipcosim.ssp import AnyPath, SystemStructure, new, parameter, read, write_ssv
 
 STEP = 0.05  # s
 LONG_RUN = 600.0
@@ -48,9 +47,9 @@ APPARENT = ("apparent_wind_speed", "apparent_wind_from")
 
 
 def make_systems(
-    ship: str | PathLike[str] | Described,
-    out: str | PathLike[str],
-    fmus: Iterable[str | PathLike[str]],
+    ship: AnyPath | Described,
+    out: AnyPath,
+    fmus: Iterable[AnyPath],
 ) -> list[Path]:
     """Parameter sets and systems of a ship: ``NAME_open``, and ``NAME_dp`` where her thrusters allow a DP.
 

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from os import PathLike
-
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.flatten.with_values import with_values
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterValue, read_parameter_set
-from shipcosim.ssp.xml.document import Findings, read_document
+from shipcosim.ssp.xml.document import AnyPath, Findings, read_document
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import conversion, spelled_unit
 
 
-def fitting_values(
-    path: str | PathLike[str], system: System
-) -> tuple[dict[str, Value], list[Problem]]:
+def fitting_values(path: AnyPath, system: System) -> tuple[dict[str, Value], list[Problem]]:
     """Start values of a parameter set, as far as a system has what they are for.
 
     Parameters
@@ -57,7 +53,7 @@ def fitting_values(
     return values, remarks
 
 
-def _read(path: str | PathLike[str]) -> ParameterSet:
+def _read(path: AnyPath) -> ParameterSet:
     findings = Findings()
     document = read_document(path, str(path), findings)
     found = None if document is None else read_parameter_set(document, findings)

@@ -1,7 +1,6 @@
 """One FMU as a system: one component with the file's name; its inputs are system inputs."""
 
 from collections.abc import Iterable, Mapping
-from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
 
@@ -13,7 +12,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSets
-from shipcosim.ssp.xml.document import Document, Findings, qualified
+from shipcosim.ssp.xml.document import AnyPath, Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
 
@@ -24,7 +23,7 @@ STEPS = 500
 """Steps of a run whose FMU says when it ends and not how long a step is, as other tools have it."""
 
 
-def single_fmu(path: str | PathLike[str]) -> Path | None:
+def single_fmu(path: AnyPath) -> Path | None:
     """Path of an FMU that is used as a system, or None."""
     path = Path(path)
     return path if path.suffix.lower() == ".fmu" and path.is_file() else None
@@ -33,7 +32,7 @@ def single_fmu(path: str | PathLike[str]) -> Path | None:
 def assemble_fmu(
     path: Path,
     parameters: ParameterSets,
-    fmus: Iterable[str | PathLike[str]],
+    fmus: Iterable[AnyPath],
     findings: Findings,
     swapped: Mapping[str, Path] | None = None,
 ) -> System | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,6 +13,7 @@ from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.scenario.locations import line_of, location_of
 from shipcosim.scenario.reader import complaint_of, read_toml
+from shipcosim.ssp import AnyPath
 from shipcosim.sweep.study_model import Study
 
 LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
@@ -62,7 +62,7 @@ class Source:
         return str(self.files[0][0])
 
 
-def read_study(path: str | os.PathLike[str]) -> Study:
+def read_study(path: AnyPath) -> Study:
     """Read and check a study file in itself; `shipcosim.sweep.plan` checks it with its scenario.
 
     Raises

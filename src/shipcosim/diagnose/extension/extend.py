@@ -1,6 +1,5 @@
 """The named causes as part of the system: values in extended.ssv, and in extended.ssp what the system did not have."""
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,7 +13,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
-from shipcosim.ssp import SystemStructure, read, write_ssv
+from shipcosim.ssp import AnyPath, SystemStructure, read, write_ssv
 
 _SHOWN = {"north": "x", "east": "y", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
 
@@ -55,7 +54,7 @@ class Extension:
 def extend(
     system: str | Path | SystemStructure,
     findings: Iterable[Finding],
-    folder: str | os.PathLike[str],
+    folder: AnyPath,
     *,
     log_attributes: Mapping[str, Any] | None = None,
     catalogue: Mapping[str, Cause] | None = None,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from shipcosim.series import conversion
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Hypothesis:
         return tuple(other.paths[0] for other in self.parameters[first : first + 2])
 
 
-def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Cause]:
+def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
     """All causes by name: our own, and those of a folder.
 
     Parameters

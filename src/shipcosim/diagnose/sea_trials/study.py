@@ -39,12 +39,10 @@ from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
 
 if TYPE_CHECKING:
-    import os
-
     import xarray
 
     from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.ssp import System
+    from shipcosim.ssp import AnyPath, System
 
 
 STEPS = {
@@ -242,10 +240,10 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
 
 
 def study(
-    log: str | os.PathLike | xarray.Dataset,
+    log: AnyPath | xarray.Dataset,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Callable[..., None] | None = None,
     *,
     orders: bool = False,

@@ -1,6 +1,5 @@
 """The page of a run: its contents, and functions that write or summarise it."""
 
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -24,7 +23,7 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Fact, Link, Outcome, Page, Table
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.series import write_file
-from shipcosim.ssp import System
+from shipcosim.ssp import AnyPath, System
 
 EXACT = 1e9  # steps of the time axis
 BYTES_FOR_SIGNALS = 750_000  # of a page that shall stay below 1.5 MB
@@ -83,7 +82,7 @@ class Digest(NamedTuple):
 
 def write_report(
     table: Dataset,
-    path: str | os.PathLike[str],
+    path: AnyPath,
     *,
     scenario: Scenario | None = None,
     verdicts: Sequence[Verdict] = (),

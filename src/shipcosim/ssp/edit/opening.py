@@ -2,7 +2,6 @@
 
 import tempfile
 from collections.abc import Iterable
-from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
@@ -14,7 +13,7 @@ from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package, open_package
 from shipcosim.ssp.read.parameters import has_root
-from shipcosim.ssp.xml.document import Document, Findings, child, children
+from shipcosim.ssp.xml.document import AnyPath, Document, Findings, child, children
 
 EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
   version="1.0" name="">
@@ -23,9 +22,7 @@ EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SS
 """
 
 
-def read(
-    path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | None = None
-) -> SystemStructure:
+def read(path: AnyPath, *, fmus: Iterable[AnyPath] | None = None) -> SystemStructure:
     """Read a system structure to look at it, change it, run it, write it.
 
     Parameters

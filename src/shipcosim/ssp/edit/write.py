@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from copy import deepcopy
-from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
 
@@ -14,7 +13,7 @@ from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.xml.archive import replaced, write_archive
-from shipcosim.ssp.xml.document import Findings, qualified
+from shipcosim.ssp.xml.document import AnyPath, Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import find_unit
@@ -62,7 +61,7 @@ def parameter(
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
-def write_ssv(path: str | PathLike[str], name: str, values: Iterable[ParameterValue]) -> None:
+def write_ssv(path: AnyPath, name: str, values: Iterable[ParameterValue]) -> None:
     """Write a parameter set; complete or not at all.
 
     Parameters
@@ -98,9 +97,7 @@ def write_file(path: Path, data: bytes) -> None:
         partial.write_bytes(data)
 
 
-def pack(
-    folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: str | PathLike[str]
-) -> None:
+def pack(folder: AnyPath, fmus: Iterable[AnyPath], out: AnyPath) -> None:
     """Pack a folder with a SystemStructure.ssd and its FMUs into an .ssp; the same input gives the same bytes.
 
     Parameters

@@ -3,7 +3,6 @@
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """
 
-from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
@@ -14,11 +13,19 @@ from shipcosim.ssp.fmu.fmi1 import interfaces_of
 from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
 from shipcosim.ssp.xml.definitions import note_empty_units, read_units
-from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, local, parse, parts_of
+from shipcosim.ssp.xml.document import (
+    LARGEST_FILE,
+    AnyPath,
+    Document,
+    Findings,
+    local,
+    parse,
+    parts_of,
+)
 from shipcosim.ssp.xml.validation import validate
 
 
-def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescription:
+def read_fmu(path: AnyPath, shown: str | None = None) -> FmuDescription:
     """Read the description of an FMU without running any of it.
 
     Parameters
@@ -45,7 +52,7 @@ def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescript
 
 
 def describe_fmu(
-    path: str | PathLike[str], findings: Findings, shown: str | None = None
+    path: AnyPath, findings: Findings, shown: str | None = None
 ) -> FmuDescription | None:
     """Description of an FMU, or None if it cannot be read; problems are collected.
 

@@ -5,7 +5,6 @@ Reference: System Structure and Parameterization 1.0, sections 4.5, 6, 7 and 8.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from os import PathLike
 
 import lxml.etree as etree
 
@@ -13,6 +12,7 @@ from shipcosim.ssp.read.attributes import attribute
 from shipcosim.ssp.xml.definitions import note_empty_units, read_enumerations, read_units
 from shipcosim.ssp.xml.document import (
     NAMESPACES,
+    AnyPath,
     Document,
     Findings,
     children,
@@ -99,7 +99,7 @@ class ParameterSet:
     file: str = ""
 
 
-ParameterSets = str | PathLike[str] | ParameterSet | Iterable[str | PathLike[str] | ParameterSet]
+ParameterSets = AnyPath | ParameterSet | Iterable[AnyPath | ParameterSet]
 """Parameter sets given for a run: one or several, each read already or the path of its .ssv."""
 
 

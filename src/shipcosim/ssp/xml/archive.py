@@ -8,10 +8,10 @@ import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
-from os import PathLike
 from pathlib import Path, PurePosixPath
 
 from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.ssp.xml.document import AnyPath
 
 MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
@@ -33,9 +33,7 @@ CANNOT = (
 )  # sizes and places that a damaged directory states can be absurd
 
 
-def unpack(
-    path: str | PathLike[str], folder: str | PathLike[str], shown: str | None = None
-) -> None:
+def unpack(path: AnyPath, folder: AnyPath, shown: str | None = None) -> None:
     """Unpack an archive into a folder, within the limits and not outside the folder.
 
     Parameters
@@ -68,7 +66,7 @@ def unpack(
             ) from None
 
 
-def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
+def entries(path: AnyPath, shown: str | None = None) -> list[str]:
     """Names of an archive's files, read without unpacking.
 
     Raises
@@ -82,9 +80,7 @@ def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
         return [entry.filename for entry in archive.infolist() if not entry.is_dir()]
 
 
-def read_entry(
-    path: str | PathLike[str], name: str, limit: int, shown: str | None = None
-) -> bytes | None:
+def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -> bytes | None:
     """Bytes of one file of an archive, or None if it is missing.
 
     Parameters
@@ -120,7 +116,7 @@ def read_entry(
             raise _damaged(shown, error) from None
 
 
-def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
+def _opened(path: AnyPath, shown: str) -> zipfile.ZipFile:
     try:
         archive = zipfile.ZipFile(path)
     except BROKEN as error:
@@ -197,7 +193,7 @@ def _unsafe(entry: zipfile.ZipInfo) -> str | None:
     return None
 
 
-def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None:
+def write_archive(path: AnyPath, files: Mapping[str, bytes]) -> None:
     """Write an archive whose bytes depend only on names and contents; complete or not at all.
 
     Parameters
