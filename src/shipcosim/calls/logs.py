@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.pipeline import Progress
     from shipcosim.diagnose.reference.reference import Reference
+    from shipcosim.options import CountProgress
     from shipcosim.results.run import Run
 
     AnyLog = AnyPath | xarray.Dataset | Log | Run
@@ -180,7 +181,7 @@ def replay(
     *,
     parameters: Sequence[AnyPath] = (),
     horizon: float | str | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
     out: AnyPath | None = None,
     force: bool = False,
 ) -> Replay:

@@ -13,6 +13,7 @@ from shipcosim.calls.arguments import AnyPath, find, mapping
 from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.runs import PreparedRun, prepare_run
 from shipcosim.errors import error_at
+from shipcosim.options import CountProgress
 from shipcosim.results.run import Run
 from shipcosim.results.shown import parts_of
 from shipcosim.results.study import StudyResult
@@ -111,7 +112,7 @@ def sweep(
     engine: str = "native",
     set: Mapping[str, object] | None = None,
     at_most: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
     force: bool = False,
 ) -> StudyResult:
     """Run a study: a scenario many times, with other weather, events, parameters.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
@@ -26,7 +26,7 @@ from shipcosim.calls.arguments import (
 )
 from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.errors import error_at, held_strictly
-from shipcosim.options import RunOptions
+from shipcosim.options import CountProgress, RunOptions
 from shipcosim.results.check import CheckedFiles
 from shipcosim.results.shown import parts_of
 from shipcosim.results.studies import CapabilityOfShip, EngineComparison
@@ -138,7 +138,7 @@ def compare(
     tolerance: float = 1e-9,
     as_read: bool = False,
     strict: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> EngineComparison:
     """Run on every engine that is installed, and on ours with half the step; by how much does each signal differ?
 

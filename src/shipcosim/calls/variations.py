@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from shipcosim.options import CountProgress
+
 
 @with_known_keywords
 def simulate_many(
@@ -46,7 +48,7 @@ def simulate_many(
     components: Mapping[str, AnyPath] | None = None,
     events: Iterable[Mapping[str, object]] = (),
     engine: str = "native",
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> xarray.Dataset:
     """Run many variations of one run, on all cores.
 

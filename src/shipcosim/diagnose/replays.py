@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import xarray
@@ -15,6 +14,7 @@ from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
+from shipcosim.options import CountProgress
 from shipcosim.ssp import AnyPath, System
 
 _SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
@@ -44,7 +44,7 @@ def replay_log(
     channels: AnyPath | None = None,
     *,
     horizon: float | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> LogReplay:
     """Predict a log piece by piece with some systems.
 

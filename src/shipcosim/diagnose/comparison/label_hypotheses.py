@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
     from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
     from shipcosim.diagnose.ship.model import ShipModel
 
 
@@ -43,9 +43,7 @@ class LabelError:
     thrusters: tuple[str, ...]
     turns: bool = False
 
-    def undo(
-        self, units: dict[str, tuple[np.ndarray, np.ndarray]]
-    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def undo(self, units: ThrusterSeries) -> ThrusterSeries:
         """What drives the thrusters, put right; the direction of one that does not turn stays."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
@@ -93,7 +91,7 @@ class LabelHypothesis:
     step: float
     commanded: Commanded
     ahead: dict[str, np.ndarray]
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
 
     @property
     def is_late(self) -> bool:
@@ -180,7 +178,7 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
 
 
 def driven(
-    units: dict[str, tuple[np.ndarray, np.ndarray]], record: Record, felt: Felt, model: ShipModel
+    units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel
 ) -> tuple[Record, Felt, ShipModel]:
     """A log and its ship with thrusters that are driven otherwise, as `commanded_by` takes them.
 

@@ -18,7 +18,7 @@ from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 if TYPE_CHECKING:
     import xarray
 
-    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
     from shipcosim.diagnose.ship.model import ShipModel
 
 
@@ -50,7 +50,7 @@ class SeaTrial:
     steering: float
     time: np.ndarray
     measured: np.ndarray
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
 
     @property
     def name(self) -> str:

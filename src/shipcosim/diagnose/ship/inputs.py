@@ -38,6 +38,10 @@ CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
 
 
+ThrusterSeries = dict[str, tuple[np.ndarray, np.ndarray]]
+"""By thruster its speed or thrust, and its direction, over the rows. [rev/s or N, rad]"""
+
+
 class Inputs(NamedTuple):
     """Inputs of the ship model at some times, arrays of one shape.
 
@@ -79,7 +83,7 @@ class Record:
 
     time: np.ndarray
     measured: np.ndarray
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
     wind: tuple[np.ndarray, np.ndarray] | None
     known: np.ndarray
     remarks: tuple[str, ...] = field(default=())

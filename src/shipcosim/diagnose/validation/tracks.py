@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -35,6 +35,7 @@ from shipcosim.models.core.motion import Motion
 if TYPE_CHECKING:
     from shipcosim.diagnose.explanation.verdict import JudgedLog
     from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.options import CountProgress
 
 
 _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
@@ -123,7 +124,7 @@ def tracks_by_systems(
     model: ShipModel,
     systems: Mapping[str, Replayed],
     horizon: float,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
     most: int | None = None,
 ) -> Tracks:
     """Predictions of systems, by co-simulation.

@@ -87,11 +87,12 @@ def _take_system(
             _take_component(tree, part, inner, place)
     for link in element.links:
         # Wires of a connection; one per element for arrays.
-        ends = ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
         owners = [
-            tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in ends
+            tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in link.ends
         ]
-        start, end = (known.get(name, ()) for known, (_, name) in zip(owners, ends, strict=True))
+        start, end = (
+            known.get(name, ()) for known, (_, name) in zip(owners, link.ends, strict=True)
+        )
         for single in element_links(link, start, end, tree.findings):
             wire = wire_of(single, element, path, tree)
             tree.wires += [] if wire is None else [wire]

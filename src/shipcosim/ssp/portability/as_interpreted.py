@@ -132,7 +132,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
     # Connections of the file with the transformation that is written.
     links = {}
     for link, _, _ in subject.links:
-        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        ends = link.ends
         how = link.transformation
         linear = how if how is not None and how.kind == "Linear" else Transformation()
         links[ends] = (linear.factor, linear.offset), link.place
