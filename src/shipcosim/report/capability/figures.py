@@ -1,7 +1,5 @@
 """Figures of the capability: polar plots, bow up, and the loads by direction."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +10,7 @@ from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import line, polar_axes, rounded
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.views import Figure, PlotlyDict
 
 TALL = 400
 """Height of a polar plot. [px]"""
@@ -91,9 +89,7 @@ def load_figures(capability: Capability) -> tuple[Figure, ...]:
     )
 
 
-def _lines(
-    loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool
-) -> list[dict[str, Any]]:
+def _lines(loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool) -> list[PlotlyDict]:
     # Dynamic factor included, as in the balance of forces.
     angles = np.degrees(DIRECTIONS)
     factor = DYNAMIC_FACTOR / size
@@ -113,7 +109,7 @@ def _lines(
 
 def _curve(
     name: str, numbers: NDArray, colour: str, *, dash: str = "solid", fill: float | None = None
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """A closed curve of capability numbers around the ship."""
     # Repeat the first direction at 360 deg to close the curve.
     angles = np.degrees(DIRECTIONS)
@@ -131,6 +127,6 @@ def _curve(
     }
 
 
-def _polar(title: str, traces: tuple[dict[str, Any], ...], note: str) -> Figure:
+def _polar(title: str, traces: tuple[PlotlyDict, ...], note: str) -> Figure:
     axes = polar_axes(range=[0, 11], tickvals=[2, 4, 6, 8, 10])
     return Figure(title, "", traces, {"polar": axes}, note, TALL)

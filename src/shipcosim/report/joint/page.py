@@ -1,7 +1,6 @@
 """The page of a diagnosis of several logs: what they say together, what that gains in each, and each by itself."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
@@ -22,7 +21,15 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars
 from shipcosim.report.theme.numbers import metres, percent
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Figure, FigurePage, KeyFigure, Link, Table
+from shipcosim.report.theme.views import (
+    Fact,
+    Figure,
+    FigurePage,
+    KeyFigure,
+    Link,
+    PlotlyDict,
+    Table,
+)
 
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
@@ -215,7 +222,7 @@ def _error_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
     )
 
 
-def _bars(sizes: dict[str, dict[str, tuple[float, ...]]], unit: str) -> tuple[dict[str, Any], ...]:
+def _bars(sizes: dict[str, dict[str, tuple[float, ...]]], unit: str) -> tuple[PlotlyDict, ...]:
     """Bars by log, before and after; none where a log has no after."""
     shown = {
         label: look for label, look in LOOKS.items() if any(label in one for one in sizes.values())

@@ -24,7 +24,7 @@ from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly, line, polar_axes, rounded
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.views import Figure, PlotlyDict
 
 TALL = 380  # px
 POLAR = 420
@@ -71,7 +71,7 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
 
 def _around(
     one: SeriesOfRows, degrees: NDArray, points: NDArray, *, with_band: bool, fill: float | None
-) -> list[dict[str, Any]]:
+) -> list[PlotlyDict]:
     """A curve around the ship, closed if directions go all around, and the band of its interval."""
     # Closed if no gap is much larger than the mean spacing.
     closed = len(degrees) > 2 and np.diff(
@@ -112,7 +112,7 @@ def _around(
 
 def _beside(
     tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]
-) -> list[dict[str, Any]]:
+) -> list[PlotlyDict]:
     """Curves from `about` for the same quantity and series, such as static capability."""
     # Only curves of the bases that the view asks for.
     colours = {one.label: one.colour for one in series}
@@ -193,7 +193,7 @@ def _steps(
     largest: float,
     *,
     with_band: bool,
-) -> list[dict[str, Any]]:
+) -> list[PlotlyDict]:
     # Prolong the last step to the right edge of the figure.
     x = np.concatenate([reached, [largest]])
     y = np.concatenate([share, share[-1:] if len(share) else [0.0]])
@@ -209,7 +209,7 @@ def _steps(
     curve["line"] |= {"shape": "hv"}
     if not with_band:
         return [curve]
-    look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
+    look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
     # Band of the distribution, within 0 and 1.
     low, high = (
         line("", x, np.clip(y + k * half, 0, 1), one.colour, width=0, **look) for k in (-1, 1)
@@ -266,7 +266,7 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, height)
 
 
-def _bar_axes(is_upright: bool) -> dict[str, Any]:
+def _bar_axes(is_upright: bool) -> PlotlyDict:
     """Axes: long names stand next to horizontal bars, the first one on top."""
     if is_upright:
         return {"barmode": "group", "xaxis": {"type": "category"}}
@@ -275,7 +275,7 @@ def _bar_axes(is_upright: bool) -> dict[str, Any]:
 
 def _bar(
     name: str, categories: Sequence[str], points: NDArray, colour: str, is_upright: bool
-) -> dict[str, Any]:
+) -> PlotlyDict:
     # Upright or horizontal bars with the same data.
     along, across = ("y", "x") if is_upright else ("x", "y")
     made = {"type": "bar", "name": name, across: list(categories), along: rounded(points[:, 0])}
@@ -411,7 +411,7 @@ def _dots(
     rows: NDArray,
     third: Column | None,
     look: Mapping[str, Any],
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """Dots, each with the number of its run where it stands for one."""
     marker = {"opacity": 0.7, "line": {"width": 0}} | dict(look)
     # A third quantity sets the size of the dots.
@@ -446,7 +446,7 @@ def _even(rows: NDArray, share: float | None = None) -> NDArray:
     return rows if len(rows) <= most else rows[evenly(len(rows), most)]
 
 
-def _axes(x: Column, y: Column) -> dict[str, Any]:
+def _axes(x: Column, y: Column) -> PlotlyDict:
     return {"xaxis": {"title": {"text": x.titled}}, "yaxis": {"title": {"text": y.titled}}}
 
 
@@ -454,7 +454,7 @@ def _figure(
     view: Mapping[str, Any],
     title: str,
     unit: str,
-    traces: Sequence[dict[str, Any]],
+    traces: Sequence[PlotlyDict],
     layout: Mapping[str, Any],
     notes: Sequence[str],
     height: int,
@@ -484,7 +484,7 @@ def distance_figure(
     traces = []
     for one, (low, middle, high) in spread:
         # Band between the outer quantiles, then the median on top.
-        look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
+        look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
         top = line("", time, high, one.colour, width=0, **look)
         traces += [line("", time, low, one.colour, width=0, **look)]
         traces += [top | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}]

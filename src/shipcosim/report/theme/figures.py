@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.views import PlotlyDict
 
-TIME: dict[str, Any] = {"ticksuffix": " s", "showticksuffix": "first"}
+TIME: PlotlyDict = {"ticksuffix": " s", "showticksuffix": "first"}
 """Axis of time. [s]"""
 MOST_POINTS = 3000
 """Points of a curve: five for each pixel of a figure's width."""
@@ -95,7 +96,7 @@ def line(
     width: float = 1.5,
     dash: str = "solid",
     **more: Any,
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """A curve, thinned where it has more points than a figure shows; the colour is one of `palette`."""
     # Thinned to what a figure can show, so that pages stay small.
     x, y = thinned_curve(x, y)
@@ -106,7 +107,7 @@ def line(
 
 def bars(
     name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """Upright bars, one for each category."""
     return {
         "type": "bar",
@@ -118,7 +119,7 @@ def bars(
     }
 
 
-def polar_axes(**radial: Any) -> dict[str, Any]:
+def polar_axes(**radial: Any) -> PlotlyDict:
     """Axes of a polar plot: bow up, clockwise, as on a nautical chart; `radial` says more of the radial axis."""
     look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
     angular = {"rotation": 90, "direction": "clockwise", "dtick": 30, "ticksuffix": "°"}
@@ -129,7 +130,7 @@ def polar_axes(**radial: Any) -> dict[str, Any]:
     }
 
 
-def limit(x: float) -> dict[str, Any]:
+def limit(x: float) -> PlotlyDict:
     """A dotted upright line across the figure."""
     look = {"color": palette.VERMILLION, "dash": "dot", "width": 1.5}
     return {"type": "line", "x0": x, "x1": x, "y0": 0, "y1": 1, "yref": "paper", "line": look}

@@ -4,6 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+PlotlyDict = dict[str, Any]
+"""A trace of a figure, or a part of its layout, as plotly has it."""
+
 
 class Fact(NamedTuple):
     """One fact below the title: name and text."""
@@ -73,7 +76,7 @@ class Figure:
 
     title: str
     unit: str
-    traces: tuple[dict[str, Any], ...]
+    traces: tuple[PlotlyDict, ...]
     layout: dict[str, Any] = field(default_factory=dict)
     note: str = ""
     height: int | None = None
