@@ -12,7 +12,7 @@ from shipcosim.report.diagnosis.log_section import LogSection, log_section
 from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
 from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Figure, FigurePage, Link, Table
+from shipcosim.report.theme.views import Fact, Figure, FigurePage, Link, Table, known_facts
 from shipcosim.ssp import System
 
 
@@ -101,4 +101,4 @@ def _facts(log: LogSummary, system: System | None) -> tuple[Fact, ...]:
         ("Log", length),
         ("Step", f"{log.step:g} s"),
     )
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)

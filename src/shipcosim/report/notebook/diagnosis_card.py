@@ -20,7 +20,7 @@ from shipcosim.report.joint import words as joint
 from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.figures import Path, track_svg
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.views import Fact, Table
+from shipcosim.report.theme.views import Fact, Table, known_facts
 
 COLOURS = (palette.ORANGE, palette.BLUE, palette.GREEN)
 
@@ -69,7 +69,7 @@ def _facts(found: Diagnosis) -> tuple[Fact, ...]:
     if found.log is not None:
         time = found.log.measured["time"].values
         facts.append(("Log", f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"))
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)
 
 
 def joint_card(found: JointDiagnosis, name: str) -> Card:

@@ -10,7 +10,7 @@ from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.run_track import run_track
 from shipcosim.report.run.details import parsed
 from shipcosim.report.run.page import digest
-from shipcosim.report.theme.views import Fact, Table
+from shipcosim.report.theme.views import Fact, Table, known_facts
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.ssp import System
 
@@ -58,7 +58,7 @@ def _facts(table: Dataset, scenario: Scenario, system: System) -> tuple[Fact, ..
         ("Step size", f"{scenario.step_size:g} s"),
     ]
     facts.append(("Table", f"{len(time)} rows, {len(table)} signals"))
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)
 
 
 def _signals(table: Dataset) -> tuple[tuple[str, str], ...]:

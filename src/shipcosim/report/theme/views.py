@@ -1,6 +1,6 @@
 """Records that all page templates fill in: texts and figures without any HTML."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -18,6 +18,11 @@ class Fact(NamedTuple):
 def facts_of(texts: Mapping[str, str]) -> tuple[Fact, ...]:
     """Facts from texts by their names."""
     return tuple(Fact(name, text) for name, text in texts.items())
+
+
+def known_facts(facts: Iterable[tuple[str, str]]) -> tuple[Fact, ...]:
+    """Facts from names and texts; those without a text are left out."""
+    return tuple(Fact(name, text) for name, text in facts if text)
 
 
 class KeyFigure(NamedTuple):
