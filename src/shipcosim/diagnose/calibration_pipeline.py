@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -208,7 +209,7 @@ def log_names(logs: Sequence[AnyPath | xarray.Dataset]) -> list[str]:
 
 
 def _stem(log, number):
-    if isinstance(log, AnyPath):
+    if isinstance(log, str | os.PathLike):
         return Path(Path(log).name.removesuffix(".gz")).stem.replace("|", "_")
     return f"log-{number}"
 
