@@ -14,7 +14,7 @@ _NAME = re.compile(r"(?:\.unfinished|shipcosim)-(?P<host>.+)-(?P<process>\d+)-[^
 
 def temporary_folder(
     parent: Path | None = None, *, unfinished: bool = False
-) -> tempfile.TemporaryDirectory:
+) -> tempfile.TemporaryDirectory[str]:
     """A temporary folder, after clearing away those of processes that are no longer there.
 
     Parameters

@@ -157,6 +157,7 @@ ONLY_DOOR = {
     "platformdirs": {"library"},
     "jinja2": {"report.theme"},
     "markupsafe": {"report.theme"},
+    "matplotlib": {"report.notebook"},
     "typer": {"cli"},
     "scipy": {"sweep"},  # 143 MB: an extra
     "SALib": {"sweep"},

@@ -29,12 +29,12 @@ from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference,
 from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 
 if TYPE_CHECKING:
     import xarray
 
-    from shipcosim.ssp import System, SystemStructure
+    from shipcosim.ssp import AnyPath, System, SystemStructure
 
 
 READING = "are the logs right?"
@@ -92,7 +92,7 @@ class CalibratedShip:
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 
 
-def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
     """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
     many = len(logs)
     return {
@@ -104,13 +104,13 @@ def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, fl
 
 
 def calibrate(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    logs: Sequence[AnyPath | xarray.Dataset],
+    system: AnyPath | SystemStructure | System,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
+    out: AnyPath | None = None,
 ) -> CalibratedShip:
     """Fit a ship's numbers to logs in which she is known to be well.
 
@@ -198,10 +198,10 @@ def _check_usable(found: dict[str, Identification]) -> None:
         raise ShipcosimError(problems)
 
 
-def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
+def log_names(logs: Sequence[AnyPath | xarray.Dataset]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
-        raise ShipcosimError(Problem("logs", "There are none.", "Give at least one log."))
+        raise error_at("logs", "There are none.", "Give at least one log.")
     stems = [_stem(log, k) for k, log in enumerate(logs, start=1)]
     return [
         stem if stems.count(stem) == 1 else f"{stem}-{k}" for k, stem in enumerate(stems, start=1)
@@ -215,10 +215,10 @@ def _stem(log, number):
 
 
 def problems_of(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    logs: Sequence[AnyPath | xarray.Dataset],
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
     reference: Reference | None = None,

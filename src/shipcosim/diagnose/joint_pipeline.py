@@ -15,7 +15,6 @@ with what the other logs say of them.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
@@ -66,12 +65,11 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.comparison.gains import CommonRatio
     from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
     from shipcosim.diagnose.reference.reference import Reference
-    from shipcosim.ssp import System, SystemStructure
+    from shipcosim.ssp import AnyPath, System, SystemStructure
 
 
-def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
     """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
     names = log_names(logs)
     return {
@@ -85,14 +83,14 @@ def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, fl
 
 
 def diagnose_jointly(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    logs: Sequence[AnyPath | xarray.Dataset],
+    system: AnyPath | SystemStructure | System,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    out: AnyPath | None = None,
+    reference: AnyPath | Reference | None = None,
 ) -> JointDiagnosis:
     """Diagnose several logs of one ship together: what they have in common, the system with it, what that gains.
 
@@ -171,10 +169,10 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
 
 
 def find_common_causes(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    logs: Sequence[AnyPath | xarray.Dataset],
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> JointDiagnosis:
@@ -278,10 +276,21 @@ def _together(
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
     say("all logs together")
-    verdict = judged_jointly(
-        SeveralLogs(_of_one_form({name: one.problem for name, one in about.items()}))
+    # The problems of a ship whose form may differ by one scale: that of the log that says most of it.
+    problems = {name: one.problem for name, one in about.items()}
+    widest = max(problem.model.form_scale for problem in problems.values())
+    of_one_form = {
+        name: problem
+        if problem.model.form_scale == widest or problem.model.directions
+        else of_scale(problem, widest)
+        for name, problem in problems.items()
+    }
+    verdict = judged_jointly(SeveralLogs(of_one_form))
+    # Whether a common ratio is named: where it is gross, or where no cause explains the logs.
+    has_ratio = ratios.common is not None and ratios.common.differs(
+        GROSS if verdict.judgement.verdict != "unknown" else PLAIN
     )
-    basis = JointBasis(verdict, ratios, _has_ratio(ratios.common, verdict.judgement.verdict))
+    basis = JointBasis(verdict, ratios, has_ratio)
     said = replace(
         found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()}
     )
@@ -316,22 +325,6 @@ def _about_common(
     if ratio is not None:
         read = replace(read, ship=with_thrust(ship, ratio.ratio, ratio.std))
     return with_learnt_form(corrected(problem_of(read)))
-
-
-def _of_one_form(problems: dict[str, IdentificationProblem]) -> dict[str, IdentificationProblem]:
-    """The problems of a ship whose form may differ by one scale: that of the log that says most of it."""
-    widest = max(problem.model.form_scale for problem in problems.values())
-    return {
-        name: problem
-        if problem.model.form_scale == widest or problem.model.directions
-        else of_scale(problem, widest)
-        for name, problem in problems.items()
-    }
-
-
-def _has_ratio(ratio: CommonRatio | None, verdict: str) -> bool:
-    """Whether a common ratio is named: where it is gross, or where no cause explains the logs."""
-    return ratio is not None and ratio.differs(GROSS if verdict != "unknown" else PLAIN)
 
 
 def _stated(found: JointDiagnosis) -> JointDiagnosis:

@@ -29,7 +29,6 @@ From the verdict to the gain, `diagnose`:
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -57,7 +56,7 @@ from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
-from shipcosim.ssp import System, SystemStructure, read
+from shipcosim.ssp import AnyPath, System, SystemStructure, read
 from shipcosim.temporary import temporary_folder
 
 Progress = Callable[..., None]
@@ -77,14 +76,14 @@ of half an hour, on one core. [s]"""
 
 
 def diagnose(
-    log: str | os.PathLike | xarray.Dataset,
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    log: AnyPath | xarray.Dataset,
+    system: AnyPath | SystemStructure | System,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    out: AnyPath | None = None,
+    reference: AnyPath | Reference | None = None,
 ) -> Diagnosis:
     """Diagnose a log: what the simulation gets wrong, by which causes, the system with them, and what that gains.
 
@@ -139,7 +138,7 @@ def diagnose(
     return replace(completed(found, predicted, extended, simulated), folder=folder)
 
 
-def given_system(system: str | os.PathLike | SystemStructure | System) -> ExtendedSystem:
+def given_system(system: AnyPath | SystemStructure | System) -> ExtendedSystem:
     """A system in whichever form, to be extended."""
     if isinstance(system, System):
         return ExtendedSystem(system, system.file)
@@ -148,10 +147,10 @@ def given_system(system: str | os.PathLike | SystemStructure | System) -> Extend
 
 
 def find_causes(
-    log: str | os.PathLike | xarray.Dataset,
+    log: AnyPath | xarray.Dataset,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> Diagnosis:
@@ -203,10 +202,10 @@ def causes_in(
 
 
 def read_measurements(
-    log: str | os.PathLike | xarray.Dataset,
+    log: AnyPath | xarray.Dataset,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     reference: Reference | None = None,
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""

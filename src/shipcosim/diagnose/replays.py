@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import xarray
@@ -16,7 +14,8 @@ from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
-from shipcosim.ssp import System
+from shipcosim.options import CountProgress
+from shipcosim.ssp import AnyPath, System
 
 _SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
 
@@ -40,12 +39,12 @@ class LogReplay:
 
 
 def replay_log(
-    log: str | os.PathLike | xarray.Dataset,
+    log: AnyPath | xarray.Dataset,
     systems: dict[str, System],
-    channels: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
     *,
     horizon: float | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> LogReplay:
     """Predict a log piece by piece with some systems.
 

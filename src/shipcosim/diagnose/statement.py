@@ -7,7 +7,7 @@ from pathlib import Path
 
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
 from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
-from shipcosim.diagnose.explanation.summary import LoadForm, evidence_of, load_form
+from shipcosim.diagnose.explanation.summary import evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.log.remarks import handled
@@ -43,6 +43,9 @@ def stated(log: JudgedLog) -> Diagnosis:
     rivals = (
         judgement.rivals if not found.ship.third_party else ()
     )  # with those no manoeuvre can be prescribed
+    # How far the form of the ship's loads differs from the model's, with what that hides.
+    form = load_form(log)
+    form_of = replace(form, hides=hidden_by_form(log)) if form else None
     return Diagnosis(
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
         (
@@ -55,7 +58,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors if comparison else None,
         discrepancies=comparison.told(judgement.verdict) if comparison else (),
-        form=_form_of(log),
+        form=form_of,
         obstacles=comparison.obstacles if comparison else (),
         remarks=comparison.remarks if comparison else (),
         basis=log,
@@ -81,12 +84,6 @@ def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
     ):
         return None
     return comparison.crude.errors.as_gain()
-
-
-def _form_of(log: JudgedLog) -> LoadForm | None:
-    """How far the form of the ship's loads differs from the model's, with what that hides."""
-    form = load_form(log)
-    return replace(form, hides=hidden_by_form(log)) if form else None
 
 
 def completed(

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.library import cache
 from shipcosim.temporary import temporary_folder
 
@@ -37,9 +37,7 @@ def check_installed() -> None:
     """
     if not is_installed():
         found = "It compiles the models, and there is no compiler."
-        raise ShipcosimError(
-            Problem("engine 'native'", found, "Install it: pip install 'shipcosim[native]'.")
-        )
+        raise error_at("engine 'native'", found, "Install it: pip install 'shipcosim[native]'.")
 
 
 def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
@@ -120,9 +118,9 @@ def _compiled(source: str) -> Path:
             ]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode:
-                raise ShipcosimError(Problem("compiler", f"fails: {done.stderr.strip()[:1000]}"))
+                raise error_at("compiler", f"fails: {done.stderr.strip()[:1000]}")
             keep_digest(made, path)
             os.replace(made, path)
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
+        raise error_at(str(path), f"cannot be written: {error.strerror}.") from None
     return path

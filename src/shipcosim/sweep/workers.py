@@ -16,8 +16,7 @@ from types import ModuleType
 from typing import Any
 
 from shipcosim.cosim.processes.child import end_with_parent
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.sweep.extras import imported
+from shipcosim.errors import error_at, imported
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
 from shipcosim.temporary import temporary_folder
@@ -135,13 +134,13 @@ class Cluster(Workers):
                 "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
             )
             found = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
-            raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy)) from None
+            raise error_at(f"--scheduler {address}", found, remedy) from None
         self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.n:
             self._client.close()
             found = "It has no worker."
             remedy = f"Start some: dask worker {address} --nthreads 1."
-            raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy))
+            raise error_at(f"--scheduler {address}", found, remedy)
         # The job goes to all workers once; each chunk then only refers to it.
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.commanded import inertia, moving_mass
+from shipcosim.diagnose.comparison.commanded import moving_mass
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
     BLOCK_WIDTHS,
@@ -247,7 +247,7 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     kernel = felt.kernel
     motion = felt.motion
     rows = felt.usable
-    force = inertia(model) @ felt.rates + kernel.smooth(moving_mass(motion, model))
+    force = model.mass_matrix @ felt.rates + kernel.smooth(moving_mass(motion, model))
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
     thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
     found = []

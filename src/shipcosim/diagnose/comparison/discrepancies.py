@@ -21,7 +21,8 @@ from shipcosim.diagnose.finding import Discrepancy
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import LabelError, Labels
+    from shipcosim.diagnose.comparison.label_hypotheses import LabelError
+    from shipcosim.diagnose.comparison.labels import Labels
     from shipcosim.diagnose.comparison.missing_loads import MissingLoad
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.comparison.axes import Axis
     from shipcosim.diagnose.comparison.commanded import Commanded
     from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
     from shipcosim.diagnose.ship.model import ShipModel
 
 
@@ -43,9 +43,7 @@ class LabelError:
     thrusters: tuple[str, ...]
     turns: bool = False
 
-    def undo(
-        self, units: dict[str, tuple[np.ndarray, np.ndarray]]
-    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def undo(self, units: ThrusterSeries) -> ThrusterSeries:
         """What drives the thrusters, put right; the direction of one that does not turn stays."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
@@ -93,7 +91,7 @@ class LabelHypothesis:
     step: float
     commanded: Commanded
     ahead: dict[str, np.ndarray]
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
 
     @property
     def is_late(self) -> bool:
@@ -121,7 +119,7 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     """
     names = [name for name in model.thrusters if np.any(record.units[name][0])]
     pairs = [
-        pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])
+        pair for pair in combinations(names, 2) if model.make_of(pair[0]) == model.make_of(pair[1])
     ]
     singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [
         LabelError((name,)) for name in names
@@ -129,12 +127,6 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     return [
         several for count in range(1, MOST_CHANGES + 1) for several in combinations(singles, count)
     ]
-
-
-def _make(model: ShipModel, name: str) -> object:
-    """What kind of thruster it is."""
-    third_party = model.third_party.get(name)
-    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
 
 
 def reading(
@@ -186,7 +178,7 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
 
 
 def driven(
-    units: dict[str, tuple[np.ndarray, np.ndarray]], record: Record, felt: Felt, model: ShipModel
+    units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel
 ) -> tuple[Record, Felt, ShipModel]:
     """A log and its ship with thrusters that are driven otherwise, as `commanded_by` takes them.
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import rest_of
 from shipcosim.diagnose.comparison.causality import blocks
-from shipcosim.diagnose.comparison.commanded import inertia, moving_mass
+from shipcosim.diagnose.comparison.commanded import moving_mass
 from shipcosim.diagnose.comparison.regression import bounded
 from shipcosim.diagnose.comparison.thresholds import (
     CAUSAL_ORDER,
@@ -116,7 +116,7 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = _with_past(usable[1:] & usable[:-1])
     rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
-    force = inertia(model) @ rates + _between(blocks(moving_mass(motion, model), count))
+    force = model.mass_matrix @ rates + _between(blocks(moving_mass(motion, model), count))
     listed = rest_of(motion, commanded)
     sizes = _sizes(commanded, length)
     axes = {}

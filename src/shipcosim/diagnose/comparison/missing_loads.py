@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shipcosim.diagnose.comparison.axes import AXES
-from shipcosim.diagnose.comparison.commanded import inertia
 from shipcosim.diagnose.comparison.thresholds import (
     ABOVE_NOISE,
     GOES_WITH,
@@ -189,7 +188,7 @@ def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
     rows = kernel.width / kernel.step
     rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
-    return np.diag(inertia(model)) * rates
+    return np.diag(model.mass_matrix) * rates
 
 
 def _rms(series: np.ndarray) -> float:

@@ -22,7 +22,7 @@ from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.ship.model import ShipModel
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.compared import LogComparison
+    pass
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
@@ -34,19 +34,19 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     """
     problem = log.problem
     found = log.explained.identification
-    of_log = (*(() if is_testable(problem) else ("clock",)), *_labels(found.comparison))
+    # Faults of the thrusters' labels, where a log does not tell whether it has them.
+    judged = (
+        found.comparison is None
+        or found.comparison.labels is None
+        or found.comparison.labels.is_judged
+    )
+    of_log = (*(() if is_testable(problem) else ("clock",)), *(() if judged else THRUSTER_LABELS))
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
     if found.comparison is not None and found.comparison.obstacles:
         return tuple(sorted({*of_log, *everywhere}))
     weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     return tuple(sorted({*weak, *of_log, *(everywhere - identifiable)}))
-
-
-def _labels(comparison: LogComparison | None) -> tuple[str, ...]:
-    """Faults of the thrusters' labels, where a log does not tell whether it has them."""
-    judged = comparison is None or comparison.labels is None or comparison.labels.is_judged
-    return () if judged else THRUSTER_LABELS
 
 
 def hidden_by_form(log: JudgedLog) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -104,12 +105,49 @@ def judged(explained: ExplainedLog) -> JudgedLog:
     comparison = explained.identification.comparison
     if comparison is not None and comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
-    unmodelled = {}
     without_wind = problem.record.wind is None
+    usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
+    found = judge_against_healthy(
+        fits,
+        lambda fit: unmodelled_gains(problem, fit),
+        lambda fit: _largest_null_gains(problem, fit, fits),
+        null={hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {},
+        without_wind=without_wind,
+    )
+    return JudgedLog(explained, *found)
+
+
+def judge_against_healthy(
+    fits: Sequence[Any],
+    gains_of: Callable[[Any], dict[str, float]],
+    healthy_gains: Callable[[Any], dict[str, float]],
+    *,
+    null: dict[str, float],
+    without_wind: bool,
+) -> tuple[Judgement, dict[str, float], dict[str, float]]:
+    """The verdict on causes by what they gain beyond what they gain on healthy logs.
+
+    Parameters
+    ----------
+    fits : sequence of Fit or JointFit
+        Best first.
+    gains_of, healthy_gains : function
+        Gains of unmodelled errors beside a fit, by kind; of its causes on simulated healthy logs, by label. [nats]
+    null : dict of str to float
+        Gains on healthy logs that are known before any is simulated, by label. [nats]
+    without_wind : bool
+        A log does not have the wind.
+
+    Returns
+    -------
+    tuple of Judgement, and two dicts of str to float
+        With the gains of unmodelled errors beside the judged fit, and the gains of causes on healthy logs. [nats]
+    """
+    unmodelled: dict[Any, dict[str, float]] = {}
 
     def unmodelled_beside(fit):
         if fit not in unmodelled:
-            unmodelled[fit] = unmodelled_gains(problem, fit)
+            unmodelled[fit] = gains_of(fit)
         # where nobody knows the wind, a force that nobody explains is no surprise
         return {
             kind: gain
@@ -117,21 +155,17 @@ def judged(explained: ExplainedLog) -> JudgedLog:
             if kind not in FORCES or not without_wind
         }
 
-    usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
-    null = {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {}
     judgement = judge(fits, unmodelled_beside, null)
-    if (
+    # An error that nobody explains, with causes and without, stays unknown whatever healthy logs gain.
+    is_unknown = (
         judgement.verdict == "unknown"
         and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
-    ):
-        return JudgedLog(
-            explained, judgement, unmodelled[judgement.fit], null
-        )  # whatever healthy logs gain
-    simulated = _largest_null_gains(problem, judgement.fit, fits)
+    )
+    simulated = {} if is_unknown else healthy_gains(judgement.fit)
     if simulated:
         null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
         judgement = judge(fits, unmodelled_beside, null)
-    return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)
+    return judgement, unmodelled[judgement.fit], null
 
 
 def with_crude_model(log: JudgedLog) -> JudgedLog:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +15,7 @@ from shipcosim.ssp import System, SystemStructure, read_system
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.hypotheses.cause import Cause
+    from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def with_findings(
     given: ExtendedSystem,
     findings: Iterable[Finding],
     log: Identification,
-    folder: str | os.PathLike,
+    folder: AnyPath,
 ) -> ExtendedSystem:
     """The system extended by findings of the physics; the given one where there are none.
 
@@ -92,7 +92,7 @@ def extended_by(
     findings: Iterable[Finding],
     about: Mapping[str, Any],
     causes: Mapping[str, Cause],
-    folder: str | os.PathLike,
+    folder: AnyPath,
 ) -> ExtendedSystem:
     """The same by findings of several logs.
 

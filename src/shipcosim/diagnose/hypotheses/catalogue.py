@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -15,11 +14,12 @@ from pydantic import ValidationError
 
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import conversion
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.ship.model import ShipModel
+    from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Hypothesis:
         return tuple(other.paths[0] for other in self.parameters[first : first + 2])
 
 
-def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Cause]:
+def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
     """All causes by name: our own, and those of a folder.
 
     Parameters
@@ -134,7 +134,7 @@ def read_cause(path: Path) -> Cause:
             )
         raise ShipcosimError(problems) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise ShipcosimError(Problem(str(path), f"It cannot be read: {error}.", remedy)) from None
+        raise error_at(str(path), f"It cannot be read: {error}.", remedy) from None
 
 
 @cache

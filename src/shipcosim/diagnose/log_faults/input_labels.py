@@ -203,7 +203,7 @@ def _mislabels(log, model):
     for one, other in combinations(model.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
-        if _make(model, one) == _make(model, other):
+        if model.make_of(one) == model.make_of(other):
             found += [
                 exchanged(group)
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
@@ -220,12 +220,6 @@ def _mislabels(log, model):
         labels = WIND_LABELS if motion else (negative("wind_from"),)
         found += possible(labels, log)
     return found
-
-
-def _make(model, name):
-    """What kind of thruster it is."""
-    third_party = model.third_party.get(name)
-    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
 
 
 def with_label(

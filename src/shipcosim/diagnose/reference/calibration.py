@@ -201,27 +201,23 @@ def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.nda
     wanted = [i for i, column in enumerate(fit.columns) if _is_known_of_ship(column, fit)]
     names = list(dict.fromkeys(path for i in wanted for path in fit.columns[i].changes))
     sizes = np.array([[fit.columns[i].changes.get(name, 0.0) for i in wanted] for name in names])
-    spread = (fit.covariance + 2.0 * _by_part(fit))[np.ix_(wanted, wanted)]
+    # Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
+    moves = _pulls(fit) @ fit.covariance
+    spread = (fit.covariance + 2.0 * (moves.T @ moves))[np.ix_(wanted, wanted)]
     return names, np.sqrt((sizes**2).sum(1)), sizes @ fit.theta[wanted], sizes @ spread @ sizes.T
 
 
 def dispersion_of(fit: JointFit) -> float:
     """How much more the parts of logs pull at the columns than by noise, mean square; 1 where the form is right."""
-    pulls = np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
+    pulls = _pulls(fit)
     known = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
     told = np.minimum(known * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT)
     return float((told * pulls**2 / np.maximum(known, 1e-12)).sum() / told.sum())
 
 
-def _by_part(fit: JointFit) -> np.ndarray:
-    """Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
-
-    Where the model's form is right this is at most the posterior's covariance; where it is not, each part of a log, and
-    each day, would have other numbers (the sandwich estimator of misspecified models: White 1982).
-    """
-    pulls = np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
-    moves = pulls @ fit.covariance
-    return moves.T @ moves
+def _pulls(fit: JointFit) -> np.ndarray:
+    """How much each part of the logs pulls at each column, (parts, p) array."""
+    return np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
 
 
 def reference_of(

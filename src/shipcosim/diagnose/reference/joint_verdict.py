@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
 from shipcosim.diagnose.experiment.testability import not_testable
 from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
 from shipcosim.diagnose.explanation.search import explain, without_causes
-from shipcosim.diagnose.explanation.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
-from shipcosim.diagnose.explanation.verdict import Judgement, gained, judge, usual_gain
+from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
+from shipcosim.diagnose.explanation.verdict import (
+    Judgement,
+    gained,
+    judge_against_healthy,
+    usual_gain,
+)
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.inference.screening import gains
@@ -65,28 +70,17 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     JointVerdict
     """
     fits = cast(list[JointFit], explain(logs, fitted=fitted_jointly, screened=screened_jointly))
-    known: dict[Any, dict[str, float]] = {}
     silent = any(problem.record.wind is None for problem in logs.problems.values())
-
-    def unmodelled_beside(fit):
-        if fit not in known:
-            known[fit] = _unmodelled(logs, fit)
-        # where nobody knows the wind, a force that nobody explains is no surprise
-        return {kind: gain for kind, gain in known[fit].items() if kind not in FORCES or not silent}
-
     models = [problem.model for problem in logs.problems.values()]
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
-    null = {one.label: usual for one in logs.hypotheses}
-    judgement = judge(fits, unmodelled_beside, null)
-    if (
-        judgement.verdict == "unknown"
-        and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
-    ):
-        return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
-    if simulated := _null_gains(logs, judgement.fit, fits):
-        null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
-        judgement = judge(fits, unmodelled_beside, null)
-    return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
+    found = judge_against_healthy(
+        fits,
+        lambda fit: _unmodelled(logs, fit),
+        lambda fit: _null_gains(logs, fit, fits),
+        null={one.label: usual for one in logs.hypotheses},
+        without_wind=silent,
+    )
+    return JointVerdict(logs, tuple(fits), *found)
 
 
 def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:

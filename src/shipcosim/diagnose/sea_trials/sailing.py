@@ -16,6 +16,7 @@ from shipcosim.models.propulsion.azimuth import AzimuthParameters, turned
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.windows import SeaTrial
+    from shipcosim.diagnose.ship.inputs import ThrusterSeries
     from shipcosim.diagnose.ship.model import ShipModel
 
 
@@ -117,7 +118,7 @@ def steered(
     model: ShipModel,
     changes: Mapping[str, float],
     h: float,
-) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, np.ndarray]]]:
+) -> tuple[np.ndarray, ThrusterSeries]:
     """Runs of a ship whose units follow what pilots order.
 
     Parameters

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.experiment.design import ExperimentDesign, differing
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.log.reader import read_log
@@ -30,22 +30,19 @@ from shipcosim.diagnose.sea_trials.separation import (
     MOST_SETS,
     Separation,
     designed,
-    differing,
     separations,
 )
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 if TYPE_CHECKING:
-    import os
-
     import xarray
 
     from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.ssp import System
+    from shipcosim.ssp import AnyPath, System
 
 
 STEPS = {
@@ -243,10 +240,10 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
 
 
 def study(
-    log: str | os.PathLike | xarray.Dataset,
+    log: AnyPath | xarray.Dataset,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Callable[..., None] | None = None,
     *,
     orders: bool = False,
@@ -283,9 +280,7 @@ def study(
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise ShipcosimError(
-            Problem(system.file, found, "Sea trials are sailed with thrusters of ours.")
-        )
+        raise error_at(system.file, found, "Sea trials are sailed with thrusters of ours.")
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
     record = as_ordered(record, read.repaired, read.ship) if orders else record
@@ -293,7 +288,7 @@ def study(
     if not any(trial.kind == "turning circle" for trial in trials):
         found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
         right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
-        raise ShipcosimError(Problem(str(read.repaired.attrs.get("source", "log")), found, right))
+        raise error_at(str(read.repaired.attrs.get("source", "log")), found, right)
     return studied(
         trials,
         read.ship,
@@ -355,7 +350,7 @@ def studied(
     SeaTrialStudy
     """
     sides = {
-        name: [t for t in trials if _turns(t, side)]
+        name: [t for t in trials if (t.kind == "turning circle" and t.side == side)]
         for name, side in (("port", -1), ("starboard", 1))
     }
     held_out = {}
@@ -378,10 +373,6 @@ def studied(
     progress("what would tell causes apart")
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
-
-
-def _turns(trial, side):
-    return trial.kind == "turning circle" and trial.side == side
 
 
 def _judged(train, others, model, hypotheses, orders):

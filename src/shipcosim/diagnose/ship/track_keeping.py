@@ -19,7 +19,7 @@ from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
 if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record
+    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
     from shipcosim.diagnose.ship.model import ShipModel
 
 
@@ -41,7 +41,7 @@ def kept_on_track(
     *,
     jolts: np.ndarray | None = None,
     held: Mapping[str, np.ndarray] | None = None,
-) -> tuple[Motion, dict[str, tuple[np.ndarray, np.ndarray]]]:
+) -> tuple[Motion, ThrusterSeries]:
     """Motion and thrusters of ships that a DP controller keeps on a track.
 
     Parameters
@@ -240,9 +240,7 @@ class DpController:
             place += len(own)
         return found
 
-    def speeds(
-        self, told: np.ndarray, record: Record, k: float
-    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def speeds(self, told: np.ndarray, record: Record, k: float) -> ThrusterSeries:
         """Speed and direction of each thruster: those of the record, changed by what the controller adds.
 
         The row may be a broken number, for a time between two.

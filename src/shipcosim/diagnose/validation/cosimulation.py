@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING, Any
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.validation.gain import Comparison, Predictor
+    from shipcosim.options import CountProgress
     from shipcosim.ssp import System
 
 _CALM = {
@@ -56,7 +57,7 @@ def simulated(
     extended: Replayed | None,
     *,
     most: int = MOST,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> xarray.Dataset:
     """Errors of a comparison, those of the plain and the extended model by co-simulation, on some of its segments.
 
@@ -120,7 +121,7 @@ def replayed(
     rows: np.ndarray,
     *,
     step_size: float = STEP,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> Motion:
     """What a system, run from some rows of a log, says that the log will show after the horizons.
 

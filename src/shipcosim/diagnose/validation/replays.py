@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -15,6 +14,7 @@ from shipcosim.diagnose.inference.fitting import Fit
 from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
 from shipcosim.errors import ShipcosimError
+from shipcosim.options import CountProgress
 from shipcosim.ssp import read_system
 from shipcosim.temporary import temporary_folder
 
@@ -41,7 +41,7 @@ class SimulatedLog:
 
 
 def with_cosimulation(
-    log: PredictedLog, extended: ExtendedSystem, progress: Callable[[int, int], None] | None = None
+    log: PredictedLog, extended: ExtendedSystem, progress: CountProgress | None = None
 ) -> SimulatedLog:
     """Predictions as co-simulations, with what was fitted on the training rows.
 

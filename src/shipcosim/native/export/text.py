@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from importlib.resources import files
 from typing import Any
 
+from shipcosim.native.checking import bounds
 from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import procedure_of
 from shipcosim.native.export.variants import Variant
@@ -211,8 +212,10 @@ class ModelWriter(Writer):
             return f"p{primitive.number}[{place}]"
         return super()._expression(symbol)
 
-    def _calling(self, number, where, again):
-        return [f"if ({self._names[number]}({where}, o)) {{", f"    {again}return GIVEN_UP;", "}"]
+    def _put_call(self, number, where, again, depth):
+        self._put(depth, f"if ({self._names[number]}({where}, o)) {{")
+        self._put(depth + 1, f"{again}return GIVEN_UP;")
+        self._put(depth, "}")
 
 
 class _Procedure(ModelWriter):
@@ -268,6 +271,7 @@ def say(text: str, recording: Recording) -> str:
 def _variable(variable) -> str:
     # A missing bound is infinite, so that the runtime needs no special case.
     text = variable.type == "String"
+    low, high = bounds(variable)
     parts = [
         _text(variable.name),
         TYPES[variable.type],
