@@ -98,16 +98,9 @@ def _give_inputs(fmu, compiled, random):
             setattr(fmu, variable.name, bool(value) ^ bool(random.random() < 0.1))
 
 
-def bounds(variable: Any) -> tuple[float, float]:
-    """Declared bounds of a variable, infinite where there is none."""
-    low = -np.inf if variable.minimum is None else variable.minimum
-    high = np.inf if variable.maximum is None else variable.maximum
-    return low, high
-
-
 def within_bounds(variable: Any, value: float) -> float:
     """The value, moved into the declared bounds of a variable."""
-    low, high = bounds(variable)
+    low, high = variable.bounds
     return float(min(max(value, low), high))
 
 

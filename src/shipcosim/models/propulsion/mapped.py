@@ -5,10 +5,11 @@ from functools import lru_cache
 from typing import Any
 
 from shipcosim.models.core.interpolation import interp
-from shipcosim.models.core.maths import Arithmetic, clip, exp
+from shipcosim.models.core.kinematics import load_at, velocity_at
+from shipcosim.models.core.maths import Arithmetic, clip, cos, exp, maximum, sin, where
 from shipcosim.models.core.parameters import quantity, required, required_table
 from shipcosim.models.core.tables import columns
-from shipcosim.models.propulsion.thruster import LOSS, Loads, loads_at_speed
+from shipcosim.models.propulsion.thruster import LOSS, Loads
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -223,7 +224,16 @@ def mapped_loads(
     >>> mapped_loads(mapped_thrust(1700.0, thruster=boat), 0.0, 0.0, 0.0, thruster=boat).tau_X
     27.5
     """
-    return loads_at_speed(thrust, u_r, v_r, r, thruster)
+    p = thruster
+    # Speed of the water along the thruster, at its place on the ship.
+    c = cos(p.direction)
+    s = sin(p.direction)
+    u_a, v_a = velocity_at(p.x, p.y, u_r, v_r, r)
+    along = c * u_a + s * v_a
+    # Advance in the direction of thrust reduces it linearly, but never below zero.
+    kept = maximum(1.0 - p.speed_loss * where(thrust < 0.0, -along, along), 0.0 * thrust)
+    thrust = (1.0 - p.thrust_loss) * thrust * kept
+    return Loads(thrust, 0.0 * thrust, *load_at(p.x, p.y, c * thrust, s * thrust))
 
 
 @lru_cache(maxsize=16)
