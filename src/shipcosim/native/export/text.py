@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from importlib.resources import files
 from typing import Any
 
-from shipcosim.native.checking import bounds
 from shipcosim.native.error_texts import parts
 from shipcosim.native.export.calls import procedure_of
 from shipcosim.native.export.variants import Variant
@@ -271,7 +270,6 @@ def say(text: str, recording: Recording) -> str:
 def _variable(variable) -> str:
     # A missing bound is infinite, so that the runtime needs no special case.
     text = variable.type == "String"
-    low, high = bounds(variable)
     parts = [
         _text(variable.name),
         TYPES[variable.type],
