@@ -110,9 +110,13 @@ def osp(
     )
     times = {"stop_time": stop_time, "step_size": step_size}
     keys = {name: time for name, time in times.items() if time is not None}
-    system, scenario, remarks = system_and_scenario(what, reading, keys, events)
+    # OSP's structures need no end; events need one.
+    system, scenario, remarks = system_and_scenario(
+        what, reading, keys, events, needs_end=events is not None
+    )
+    has_end = bool(stop_time or system.experiment.stop_time or scenario.path)
     print_problems([*(problem for problem in system.remarks if problem.flaw), *remarks])
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))], force=force)
-    print_problems(write_osp(system, scenario, out))
+    print_problems(write_osp(system, scenario, out, has_end=has_end))
     for path in sorted(out.glob("*")):
         say(shown_path(path))

@@ -23,7 +23,9 @@ TYPES = ("Real", "Integer", "Boolean", "String")
 """Types of initial values that OSP has."""
 
 
-def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], list[Problem]]:
+def osp_files(
+    system: System, scenario: Scenario, *, has_end: bool = True
+) -> tuple[dict[str, bytes], list[Problem]]:
     """Files of a system in libcosim's form, and what they cannot express.
 
     Nested systems are flat in them, unit conversions and linear transformations are functions, start values initial
@@ -35,6 +37,8 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
         As read.
     scenario : Scenario
         Its steps, start values and events.
+    has_end : bool
+        Whether the structure states the scenario's end.
 
     Returns
     -------
@@ -64,7 +68,7 @@ def osp_files(system: System, scenario: Scenario) -> tuple[dict[str, bytes], lis
         name: quote(names[component.fmu.path]) for name, component in system.components.items()
     }
     values = {name: _initial_values(job, name) for name in system.components}
-    structure = structure_of(job, sources, values, end_time=scenario.stop_time)
+    structure = structure_of(job, sources, values, end_time=scenario.stop_time if has_end else None)
     files = {STRUCTURE: structure.encode()}
     # A scenario file exists only if there are events. Its end lies beyond the run, so that nothing
     # is taken back.
@@ -153,15 +157,17 @@ def _remarks(system, scenario):
         yield Problem(scenario.name or "scenario", found, severity="remark")
 
 
-def write_osp(system: System, scenario: Scenario, folder: str | os.PathLike) -> list[Problem]:
-    """Write the files of `osp_files` into a folder; complete or not at all.
+def write_osp(
+    system: System, scenario: Scenario, folder: str | os.PathLike, *, has_end: bool = True
+) -> list[Problem]:
+    """Write the files of `osp_files` into a folder; complete or not at all. Arguments as there.
 
     Returns
     -------
     list of Problem
         What gets lost.
     """
-    files, remarks = osp_files(system, scenario)
+    files, remarks = osp_files(system, scenario, has_end=has_end)
     folder = Path(folder)
     # Write all files under temporary names, then rename: an error leaves the old export intact.
     partial = {name: folder / f".{name}.{os.getpid()}.part" for name in files}

@@ -159,10 +159,18 @@ def _clock_problems(clock):
     elif not np.isfinite(clock).all():
         row = int(np.flatnonzero(~np.isfinite(clock))[0])
         yield Problem("inputs", f"The time of row {row + 1} is {clock[row]}.", "Drop such rows.")
-    elif len(back := np.flatnonzero(np.diff(clock) <= 0.0)):
+    # Two rows of one time are a jump, as FMI's tools write it; three say nothing more.
+    elif len(back := np.flatnonzero((np.diff(clock) < 0.0) | _third_of_a_time(clock))):
         row = int(back[0]) + 1
         found = f"The time of row {row + 1} is {clock[row]:g} s, after {clock[row - 1]:g} s in the row before."
-        yield Problem("inputs", found, "Times have to grow. Sort the rows and drop repeated ones.")
+        remedy = "Times have to grow; two rows of one time are a jump. Sort the rows."
+        yield Problem("inputs", found, remedy)
+
+
+def _third_of_a_time(clock):
+    """Whether each row after the first is at least the third of its time."""
+    is_same = np.diff(clock) == 0.0
+    return is_same & np.concatenate([[False], is_same[:-1]])
 
 
 def _rows(clock, times):
@@ -175,7 +183,9 @@ def _rows(clock, times):
         remedy = "Start later or stop earlier: the table has to cover the run from the first step to the last."
         raise ShipcosimError(Problem("inputs", found, remedy))
     first = max(0, np.searchsorted(clock, start + CLOSE, side="right") - 1)
-    return slice(int(first), int(np.searchsorted(clock, end - CLOSE)) + 1)
+    last = int(np.searchsorted(clock, end - CLOSE)) + 1
+    # A jump at the end has its second row there too.
+    return slice(int(first), max(last, int(np.searchsorted(clock, end + CLOSE, side="right"))))
 
 
 def _gaps(table, clock):
@@ -239,6 +249,9 @@ def _interpolated(clock, values, times, turn):
     # Angles go the shorter way round: wrap each rise to half a turn either way.
     if turn is not None:
         rise = (rise + 0.5 * turn) % turn - 0.5 * turn
-    # Linear: x = x₀ + s (x₁ - x₀), s within 0 and 1.
-    share = np.clip((times - clock[row]) / np.diff(clock)[row], 0.0, 1.0)
+    # Linear: x = x₀ + s (x₁ - x₀), s within 0 and 1. At a jump the value after it holds.
+    length = np.diff(clock)[row]
+    share = np.ones(len(row))
+    np.divide(times - clock[row], length, out=share, where=length > 0.0)
+    share = np.clip(share, 0.0, 1.0)
     return values[row] + share * rise[row]

@@ -98,6 +98,7 @@ def mend(document: Document, tag: str) -> None:
         _mend_boolean(document, element, noted)
         _drop_unknown(document, element, noted)
         _sort(document, element, noted)
+        _join_lists(document, element, noted)
         _drop_empty_lists(document, element, noted)
         _drop_repeated(document, element, noted)
     document.flaws.extend(problem for problem in noted.problems if problem not in document.flaws)
@@ -279,6 +280,20 @@ def _sort(document: Document, element: etree._Element, noted: Findings) -> None:
             f"Its parts are in another order than the standard's: {listed}.",
             "Sort them.",
         )
+
+
+def _join_lists(document: Document, element: etree._Element, noted: Findings) -> None:
+    """Join lists of one name, such as two ParameterBindings, in the first of them."""
+    first: dict[str, etree._Element] = {}
+    for part in [part for part in element if local(part) in LISTS]:
+        name = local(part)
+        if name not in first:
+            first[name] = part
+            continue
+        first[name].extend(list(part))
+        element.remove(part)
+        found = f"A second <{name}>; its parts are taken for parts of the first."
+        noted.flaw(document.place(part), found, "Write them into one list.")
 
 
 def _drop_empty_lists(document: Document, element: etree._Element, noted: Findings) -> None:
