@@ -69,13 +69,12 @@ def within_run(
     is_whole = first == 0.0 and last >= max(planned, scenario.stop_time) - 1e-9
     found: tuple[list[Expectation], list[Expectation]] = [], []
     for expect in scenario.expect:
-        # A part contains those whose window it covers, or that look at every row.
-        lies_within = (
-            first <= expect.during[0] and expect.during[1] <= last
-            if expect.during
-            else not expect.statistic
-        )
-        found[0 if is_whole or lies_within else 1].append(expect)
+        # A window counts where all of it ran, also where a study or the scenario itself ends before it does.
+        if expect.during:
+            lies_within = first <= expect.during[0] and expect.during[1] <= last + 1e-9
+        else:
+            lies_within = is_whole or not expect.statistic
+        found[0 if lies_within else 1].append(expect)
     return found
 
 

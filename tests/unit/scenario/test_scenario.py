@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.scenario import Scenario, check_times, judge, read_scenario, whole_steps, within_run
@@ -261,3 +263,21 @@ def test_a_part_of_a_run_is_judged_by_what_lies_within_it():
     assert within_run(scenario, part) == (scenario.expect[:2], scenario.expect[2:])
     assert within_run(scenario, whole) == (scenario.expect, [])
     assert within_run(scenario, whole, planned=20.0) == (scenario.expect[:3], scenario.expect[3:])
+
+
+@given(
+    begin=st.sampled_from([0.0, 3.0, 9.5, 10.0, 11.0]),
+    length=st.sampled_from([0.0, 0.5, 5.0, 100.0]),
+    stop_time=st.sampled_from([5.0, 10.0]),
+)
+@settings(max_examples=40, deadline=None)
+def test_a_window_is_judged_only_where_all_of_it_ran(begin, length, stop_time):
+    window = (begin, begin + length)
+    scenario = Scenario(
+        stop_time=stop_time,
+        step_size=1.0,
+        expect=[{"signal": "a", "at_most": 1.0, "during": window}],
+    )
+    table = make_table(np.arange(stop_time + 1.0), [("a", np.zeros(round(stop_time) + 1), "", "")])
+    reached, late = within_run(scenario, table)
+    assert bool(reached) == (window[1] <= stop_time) and bool(late) == (window[1] > stop_time)
