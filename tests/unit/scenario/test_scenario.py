@@ -272,7 +272,7 @@ def test_a_part_of_a_run_is_judged_by_what_lies_within_it():
 )
 @settings(max_examples=40, deadline=None)
 def test_a_window_is_judged_only_where_all_of_it_ran(begin, length, stop_time):
-    window = (begin, begin + length)
+    window = [begin, begin + length]
     scenario = Scenario(
         stop_time=stop_time,
         step_size=1.0,
