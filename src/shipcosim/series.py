@@ -315,13 +315,31 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
             for name, variable in table.variables.items()
             if OWN_NAME in variable.attrs
         }
-        return table.rename(own)
+        return _within_valid_range(table.rename(own))
     except (
         Exception
     ) as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
         said = "".join(c if c.isprintable() else " " for c in str(error))[:200].rstrip(".")
         found = f"is no NetCDF 4 file that can be read: {said or type(error).__name__}."
         raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
+
+
+def _within_valid_range(table: xarray.Dataset) -> xarray.Dataset:
+    """Values beyond what a variable declares as valid are missing (CF conventions, section 2.5.1)."""
+    for name, variable in list(table.data_vars.items()):
+        if not {"valid_range", "valid_min", "valid_max"} & set(variable.attrs):
+            continue
+        limits = np.ravel(variable.attrs.get("valid_range", ()))
+        ends = dict(zip(("valid_min", "valid_max"), limits, strict=False))
+        low = variable.attrs.get("valid_min", ends.get("valid_min", -np.inf))
+        high = variable.attrs.get("valid_max", ends.get("valid_max", np.inf))
+        # NetCDF's limits are those of the packed values where these are scaled.
+        scale = variable.encoding.get("scale_factor", 1.0)
+        offset = variable.encoding.get("add_offset", 0.0)
+        low, high = sorted(float(end) * scale + offset for end in (low, high))
+        if variable.dtype.kind in "fiu" and ((variable < low) | (variable > high)).any():
+            table[name] = variable.where((variable >= low) & (variable <= high))
+    return table
 
 
 def _read_netcdf(path: Path) -> xarray.Dataset:
@@ -540,6 +558,8 @@ def _plain(values: np.ndarray | tuple[str, ...]) -> tuple[np.ndarray, bool]:
     values = np.asarray(values, object) if isinstance(values, tuple) else values
     if values.dtype.kind in "fiub":
         return values.astype(float), False
+    if values.dtype.kind == "m":
+        return np.where(np.isnat(values), np.nan, values / np.timedelta64(1, "s")), True
     if values.dtype.kind == "M":
         return _seconds_of(values.astype("datetime64[ns]")), True
     try:

@@ -156,3 +156,27 @@ def test_a_library_that_calls_exit_is_no_run_that_went_well():
     released = [sys.executable, "-c", code.format("release_exit(0);")]
     done = subprocess.run(released, capture_output=True, text=True, check=False)
     assert done.returncode == 0 and not done.stderr
+
+
+@given(
+    limits=st.sampled_from([{"valid_range": [0.0, 10.0]}, {"valid_min": 0.0}, {"valid_max": 10.0}]),
+    values=st.lists(st.floats(-100, 100), min_size=2, max_size=8),
+)
+@settings(max_examples=30, deadline=None)
+def test_values_beyond_the_valid_range_are_missing(tmp_path_factory, limits, values):
+    values = np.array(values)
+    table = make_table(np.arange(float(len(values))), [("a", values, "m", "")])
+    table["a"].attrs |= limits
+    path = tmp_path_factory.mktemp("valid") / "table.nc"
+    write_table(table, path)
+    low = limits.get("valid_range", [limits.get("valid_min", -np.inf)])[0]
+    high = limits.get("valid_range", [limits.get("valid_max", np.inf)])[-1]
+    expected = np.where((values >= low) & (values <= high), values, np.nan)
+    assert np.array_equal(read_table(path)["a"], expected, equal_nan=True)
+
+
+def test_durations_are_seconds(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    steps = pandas.to_timedelta([0, 1500, 3000], unit="ms")
+    pandas.DataFrame({"time": steps, "a [m]": [1.0, 2.0, 3.0]}).to_parquet(tmp_path / "t.parquet")
+    assert read_table(tmp_path / "t.parquet")["time"].values.tolist() == [0.0, 1.5, 3.0]
