@@ -1,13 +1,11 @@
 """From logs of a ship that is well to her own parameter set, and the reference that other logs are held against."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+import xarray
 from threadpoolctl import threadpool_limits
 
 import shipcosim
@@ -30,12 +28,7 @@ from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remai
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.errors import Problem, ShipcosimError
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.ssp import System, SystemStructure
-
+from shipcosim.ssp import System, SystemStructure
 
 READING = "are the logs right?"
 

@@ -1,7 +1,5 @@
 """What a diagnosis names: causes with their parameters, candidates, and where simulation and log differ."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
 
 

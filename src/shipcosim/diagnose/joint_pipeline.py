@@ -13,25 +13,27 @@ From the verdict to the gain, `diagnose_jointly`: the system with the common cau
 with what the other logs say of them.
 """
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
+import xarray
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.compared import compared, ratio_finding
+from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
 from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
@@ -54,21 +56,13 @@ from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
 from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
-from shipcosim.diagnose.reference.reference import read_reference, with_reference
+from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import with_thrust
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.comparison.gains import CommonRatio
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.reference.reference import Reference
-    from shipcosim.ssp import System, SystemStructure
+from shipcosim.ssp import System, SystemStructure
 
 
 def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:

@@ -27,8 +27,6 @@ From the verdict to the gain, `diagnose`:
     completed          Diagnosis       errors, gain, and all that the page shows
 """
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Callable

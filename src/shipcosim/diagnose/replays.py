@@ -1,7 +1,5 @@
 """A log as a system replays it, and as the system extended by a diagnosis does: `replay_log`."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from dataclasses import dataclass

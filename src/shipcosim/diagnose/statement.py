@@ -1,7 +1,5 @@
 """What is said of a log: its diagnosis from the verdict on, and with the errors, the gain and what the page shows."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

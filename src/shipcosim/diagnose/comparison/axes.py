@@ -5,17 +5,15 @@ explained by whatever else may act: the model's load of the water with any size,
 of the axes, wind, and a steady force. Damping takes energy away, in whatever model: its coefficients have one sign.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.commanded import inertia, moving_mass
-from shipcosim.diagnose.comparison.regression import regressed
+from shipcosim.diagnose.comparison.commanded import Commanded, inertia, moving_mass
+from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.regression import Regression, regressed
 from shipcosim.diagnose.comparison.thresholds import (
     BLOCK_WIDTHS,
     LEAST_COMMANDED,
@@ -24,14 +22,8 @@ from shipcosim.diagnose.comparison.thresholds import (
     TURNED_ROUND,
     WEAKER_WAY,
 )
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.comparison.regression import Regression
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
-
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
 
 AXES = ("surge", "sway", "yaw")
 _OF_HULL = 3  # columns of the water's load: the model's, and linear and quadratic damping

@@ -1,13 +1,13 @@
 """What differs between commanded and felt force, in words with sizes, the largest first, and what remains."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.missing_loads import FORCES
+from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError
+from shipcosim.diagnose.comparison.labels import Labels
+from shipcosim.diagnose.comparison.missing_loads import FORCES, MissingLoad
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
     LEAST_DAMPING,
@@ -18,12 +18,6 @@ from shipcosim.diagnose.comparison.thresholds import (
     TOLD,
 )
 from shipcosim.diagnose.finding import Discrepancy
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.labels import LabelError, Labels
-    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
-
 
 _DAMPING = "damping in"
 

@@ -1,13 +1,12 @@
 """How large the commanded force is beside the felt one: on each axis, of each thruster, and as a common ratio."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.axes import Axis, AxisFit
+from shipcosim.diagnose.comparison.commanded import Commanded
 from shipcosim.diagnose.comparison.thresholds import (
     COMMON_SPREAD,
     LEAST_SUPPORT,
@@ -19,10 +18,6 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_SPREAD,
     TOLD,
 )
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis, AxisFit
-    from shipcosim.diagnose.comparison.commanded import Commanded
 
 
 @dataclass(frozen=True)

@@ -10,19 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.axes import Axis
 from shipcosim.diagnose.comparison.causality import causal_support
-from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.commanded import Commanded, commanded_by, late
 from shipcosim.diagnose.comparison.label_hypotheses import (
     LabelHypothesis,
     changes_of,
     driven,
     reading,
 )
-from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
+from shipcosim.diagnose.comparison.likelihood import Blocks, blocks_of, likelihood_of, smoothed
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
     ALIKE,
@@ -41,15 +42,9 @@ from shipcosim.diagnose.comparison.thresholds import (
     TOLD,
     UNLIKELIER,
 )
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.likelihood import Blocks
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)

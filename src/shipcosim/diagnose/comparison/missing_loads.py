@@ -1,15 +1,13 @@
 """What the motion needs against what the model gives on each axis, whatever the cause: no large error goes unsaid."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.axes import AXES
-from shipcosim.diagnose.comparison.commanded import inertia
+from shipcosim.diagnose.comparison.axes import AXES, Axis
+from shipcosim.diagnose.comparison.commanded import Commanded, inertia
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     ABOVE_NOISE,
     GOES_WITH,
@@ -19,13 +17,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     STEADY,
 )
 from shipcosim.diagnose.finding import Discrepancy
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.model import ShipModel
-
+from shipcosim.diagnose.ship.model import ShipModel
 
 FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
 _SENSES = {

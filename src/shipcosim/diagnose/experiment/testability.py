@@ -1,13 +1,11 @@
 """What a log could not have shown, whatever is the matter: causes for which it has too little excitation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.compared import LogComparison
 from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.verdict import JudgedLog, usual_gain
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
@@ -20,9 +18,6 @@ from shipcosim.diagnose.log.mislabels import THRUSTER_LABELS
 from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.ship.model import ShipModel
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.compared import LogComparison
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:

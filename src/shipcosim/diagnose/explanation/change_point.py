@@ -1,7 +1,5 @@
 """Whether a cause began during the log: the rows before it are then healthy, and the rest is diagnosed on its own."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

@@ -1,18 +1,16 @@
 """How far the form of a ship's loads differs from her model's, learnt from the log by evidence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import fitted, prepared
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
@@ -23,10 +21,6 @@ from shipcosim.diagnose.inference.thresholds import (
     FORM_COST,
     FORM_SCALES,
 )
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
 
 def with_learnt_form(found: Identification) -> Identification:

@@ -1,25 +1,18 @@
 """The sets of causes that explain a log best: hypotheses are screened, the likely ones fitted, others sought beside."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.unmodelled import is_healthy
-from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.screening import screened
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
+from shipcosim.diagnose.inference.screening import Gain, screened
 from shipcosim.diagnose.inference.workers import each
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.inference.screening import Gain
-
 
 STRAIN = (
     2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight

@@ -1,7 +1,5 @@
 """From fitted sets of causes to a verdict: what may be named, how sure, and what cannot be told apart."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 

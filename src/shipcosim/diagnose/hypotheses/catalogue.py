@@ -1,7 +1,5 @@
 """The catalogue of causes, read from one file each, and their hypotheses: each cause at each place of one ship."""
 
-from __future__ import annotations
-
 import os
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -9,17 +7,15 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from pydantic import ValidationError
 
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import conversion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,11 @@
 """How noisy the channels can be at most, by what position and velocity agree upon, without any model of the ship."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from shipcosim.diagnose.inference.thresholds import NOISE_MARGIN, NOISE_WIDTHS, SOUND
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.smoothing import Kernel, is_measured, unsmoothed
 from shipcosim.models.core.kinematics import to_body
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record
 
 
 def most_white(record: Record) -> np.ndarray:

@@ -4,24 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.innovations import inner_products, smoothed
+from shipcosim.diagnose.inference.innovations import Gram, Noise, inner_products, smoothed
 from shipcosim.diagnose.inference.linearisation import Regressor
-from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
+from shipcosim.diagnose.inference.parts import InParts, explained, linearised_by_parts
 from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.instruments import NONLINEAR
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
-    from shipcosim.diagnose.inference.innovations import Gram, Noise
-    from shipcosim.diagnose.inference.parts import InParts
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
 
 ROUNDS = 5
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.inference import kalman
-from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
-from shipcosim.diagnose.inference.parts import in_parts
+from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES, Linear
+from shipcosim.diagnose.inference.parts import InParts, in_parts
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.models.control.wave_filter import wave_transition
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.linearisation import Linear
-    from shipcosim.diagnose.inference.parts import InParts
-    from shipcosim.diagnose.ship.inputs import Record
-
 
 WAVE_DAMPING = 0.1
 """Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""

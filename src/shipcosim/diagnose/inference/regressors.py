@@ -1,16 +1,9 @@
 """Regressors by which a hypothesis is first sought in a log."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.linearisation import Regressor
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-
 
 DIRECTIONS = 12
 """Directions in which a vector is sought, evenly over the circle."""

@@ -1,22 +1,16 @@
 """Screening of hypotheses: what each would gain in log-evidence beside a fit, linearised once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import screening_regressors
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-
 
 Gain = tuple[float, "Hypothesis", dict[str, float]]
 """Gain in log-evidence of a hypothesis, and first values of its parameters."""

@@ -1,7 +1,5 @@
 """What a channel can be instead of what its label says, and how to put it right."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 

@@ -1,13 +1,12 @@
 """A log as the simulation can use it: faults that were found undone or cut out, rows evenly spaced."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.angles import wrap_series
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
@@ -15,12 +14,6 @@ from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usu
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
-
 
 CUT_OUT = ("gap", "heading_wrap")
 

@@ -1,16 +1,11 @@
 """Rows of a log: which are usable, how far apart they are, which lie in some segments; its arrays."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.log.thresholds import UNEVEN
-
-if TYPE_CHECKING:
-    import xarray
 
 
 def usable_rows(time: np.ndarray) -> np.ndarray:

@@ -1,7 +1,5 @@
 """A run as a log: the table that `shipcosim run` and `simulate` leave, with the roles that its signals have."""
 
-from __future__ import annotations
-
 import gzip
 import hashlib
 import os

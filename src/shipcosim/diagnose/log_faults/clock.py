@@ -4,12 +4,10 @@ With ρ true seconds per logged second, a step moves the ship ρ times as far, a
 Each block of a log has a column for its own ρ; where a run of blocks agrees on one, the clock was wrong.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
@@ -38,10 +36,6 @@ from shipcosim.diagnose.log_faults.thresholds import (
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    import xarray
-
 
 ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
 

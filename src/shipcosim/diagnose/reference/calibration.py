@@ -1,7 +1,5 @@
 """The ship as her logs would have her, where she is known to be well: a fit of her numbers alone, and its reference."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

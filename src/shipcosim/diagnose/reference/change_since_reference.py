@@ -1,7 +1,5 @@
 """What has changed since a reference: the size of a cause at the reference beside what it is now."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 

@@ -1,20 +1,21 @@
 """What common causes gain in each log: the system extended by what the other logs say, co-simulated over this one."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
-from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log, values_in
 from shipcosim.diagnose.reference.thresholds import MOST_PIECES
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.replays import findings_of
@@ -28,13 +29,6 @@ from shipcosim.diagnose.validation.tracks import (
 )
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.extension.extended_system import ExtendedSystem
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)

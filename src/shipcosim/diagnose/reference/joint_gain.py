@@ -1,7 +1,5 @@
 """The entries `baseline` and `gain` of a joint diagnosis: over all logs, each by what the other logs say."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

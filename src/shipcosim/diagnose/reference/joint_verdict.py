@@ -1,7 +1,5 @@
 """The verdict on several logs of one ship together: common causes, and those of each log's weather."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, cast
 

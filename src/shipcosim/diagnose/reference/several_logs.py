@@ -4,8 +4,6 @@ Each log keeps its own noise, and is linearised about its own motion. A number o
 inner products of the logs add up; a number of the day has one for each log.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

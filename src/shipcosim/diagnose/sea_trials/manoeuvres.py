@@ -4,24 +4,17 @@ Lengths of way are ship lengths at the speed of approach; angles are those of ru
 sailed to both sides, on opposite courses, so that a current does not look like the ship.
 """
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.sailing import settled, steered
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _FULL = 1.0  # of the largest shaft speed of the trials
 _HALF = 0.6

@@ -1,18 +1,19 @@
 """A study of sea trials: which causes explain one side's circles, and how well they predict the others."""
 
-from __future__ import annotations
-
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
@@ -38,15 +39,7 @@ from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
-
-if TYPE_CHECKING:
-    import os
-
-    import xarray
-
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.ssp import System
-
+from shipcosim.ssp import System
 
 STEPS = {
     "which manoeuvres are in the log?": 1.0,

@@ -1,7 +1,5 @@
 """The errors of predictions again as co-simulations: the given system, and the one extended by what was fitted."""
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,21 +1,20 @@
 """A log again as simulated: open-loop predictions one after another, each from the measured state, beside the log."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
 
 from shipcosim.angles import wrap_series
 from shipcosim.cosim import replay
+from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table
@@ -31,11 +30,6 @@ from shipcosim.diagnose.validation.thresholds import (
 )
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.explanation.verdict import JudgedLog
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
 

@@ -4,8 +4,6 @@ With true seconds per logged second ρ, the way seen in a segment is ρ times th
 time, in all channels. What holds for the whole log alike, such as a scale of the velocity, is fitted beside it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

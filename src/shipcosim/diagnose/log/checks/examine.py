@@ -1,14 +1,13 @@
 """Faults of a log that show in the log itself, before any physics: each with its channels and where it is."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.clock import wrong_clock
 from shipcosim.diagnose.log.checks.labels import mislabelled
 from shipcosim.diagnose.log.checks.samples import gaps, lifeless, outliers, wraps
@@ -20,11 +19,6 @@ from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, m
 from shipcosim.diagnose.log.repair import rate_of, read_anew
 from shipcosim.diagnose.log.rows import inside, usable_rows
 from shipcosim.diagnose.log.thresholds import SEGMENT_COST
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
 
 
 def examine(log: xarray.Dataset) -> list[Finding]:

@@ -5,8 +5,6 @@ through the position's noise. A Kalman filter of that level leaves innovations t
 any change of the log that is linear goes through the same filter.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

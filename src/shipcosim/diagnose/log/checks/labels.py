@@ -5,8 +5,6 @@ against rate, say for every row how much likelier the changed log is. A hypothes
 data: where it is said to be, the way seen must be about the way told under it, and clearly not as labelled.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Samples that are no measurement: rows that are missing, held or filled in, headings interpolated across north."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

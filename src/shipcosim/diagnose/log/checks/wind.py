@@ -1,7 +1,5 @@
 """Wind channels that are not what they are labelled: the wind over ground must neither turn nor move with the ship."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding

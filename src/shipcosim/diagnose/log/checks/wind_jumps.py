@@ -4,8 +4,6 @@ No wind changes from one second to the next by just the factor of another unit, 
 again. So it does not take a ship that moves or turns to see it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding

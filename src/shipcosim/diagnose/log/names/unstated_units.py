@@ -1,7 +1,5 @@
 """Units and frames that nobody stated: by what the channels say of each other, or left as guesses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

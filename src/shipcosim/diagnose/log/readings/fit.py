@@ -6,8 +6,6 @@ and the fast, and a ship on her station is judged as one under way. Rows take th
 wrong by a thousand does no harm.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """The joint judgement of a log: which of its channels are not what they are labelled, or what is left open."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -6,8 +6,6 @@ form of the velocity; the time base has no part in it. Wind channels can have mi
 mirrored, over ground already, in another unit. Each reading is as likely as all of these together make it.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass
