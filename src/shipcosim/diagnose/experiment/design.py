@@ -17,7 +17,7 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     step_for,
     true_wind,
 )
-from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, paths_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import Noise, innovations
@@ -190,9 +190,7 @@ def _shared_columns(fits):
 
 
 def _own(fit):
-    turned = {
-        path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths
-    }
+    turned = paths_of(fit.hypotheses)
     turned |= {path for s in fit.hypotheses for path in s.definition.companions}
     return [column for column in fit.columns if column.gives_way(turned)]
 

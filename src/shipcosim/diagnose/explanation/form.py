@@ -15,7 +15,7 @@ from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import beside_likeliest, tuned_noise
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import regressors_of
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     FORM_COST,
@@ -95,15 +95,9 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
     sizes = {
         path: size for path, size in problem.model.form_sizes.items() if path not in fit.values
     }
-    added = [
-        column
-        for hypothesis in wanted
-        for group in screening_regressors(hypothesis)
-        for column in group
-    ]
     of_form = [Regressor({path: size}) for path, size in sizes.items()]
     form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
-    linear = beside(beside(fit.linear, form), problem.base_of(added))
+    linear = beside(beside(fit.linear, form), problem.base_of(regressors_of(wanted)))
     products = inner_products(linear, problem.noise, problem.record).products
     found = {}
     for scale in (0.0, *FORM_SCALES):

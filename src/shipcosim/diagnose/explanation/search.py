@@ -94,9 +94,7 @@ def explain(
             first = likely if stage == 0 else likely // 2
             strained = _strained(fit)
             for place, (gain, hypothesis, values) in enumerate(gains):
-                if (place >= first or gain < least) and not any(
-                    strained & set(parameter.paths) for parameter in hypothesis.parameters
-                ):
+                if (place >= first or gain < least) and not strained & hypothesis.paths:
                     continue
                 hypotheses = (*fit.hypotheses, hypothesis)
                 key = names(hypotheses)
@@ -189,15 +187,12 @@ def _simpler(problem, hypotheses):
 
 def _value(parameter, hypothesis, fit):
     """What a fit says of a number: its own value, or the mean of those of the more general cause."""
-    if parameter.paths[0] in fit.values:
-        return fit.values[parameter.paths[0]]
+    if parameter.path in fit.values:
+        return fit.values[parameter.path]
     general = next(s for s in fit.hypotheses if s.definition.special == hypothesis.cause)
     place = hypothesis.parameters.index(parameter)
     return float(
         np.mean(
-            [
-                fit.values[k.paths[0]]
-                for k in general.parameters[place :: len(hypothesis.parameters)]
-            ]
+            [fit.values[k.path] for k in general.parameters[place :: len(hypothesis.parameters)]]
         )
     )

@@ -159,7 +159,7 @@ def evidence_of(log: JudgedLog) -> Evidence:
 def _sizes(fit):
     for hypothesis in fit.hypotheses:
         for parameter in hypothesis.parameters:
-            path = parameter.paths[0]
+            path = parameter.path
             size = (fit.values[path] - parameter.neutral) / parameter.typical
             std = fit.std[path] / parameter.typical
             yield SizeEstimate(hypothesis.cause, hypothesis.component, parameter.name, size, std)

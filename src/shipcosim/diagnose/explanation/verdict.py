@@ -267,12 +267,11 @@ def _is_sized(hypothesis, fit):
     """Whether a cause is large enough to matter, clearly off neutral, and not at a bound."""
     parameters = hypothesis.parameters
     size = _size(hypothesis, fit)
-    std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(
+    std = np.hypot.reduce([fit.std[k.path] / k.typical for k in parameters]) / np.sqrt(
         len(parameters)
     )
     at_bound = any(
-        fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral
-        for k in parameters
+        fit.values[k.path] in k.bounds and fit.values[k.path] != k.neutral for k in parameters
     )
     return not (size < hypothesis.definition.least or size < DEVIATIONS * std or at_bound)
 
@@ -286,7 +285,7 @@ def _exceeds_special(hypothesis, fit, fits):
     special = next((one for one in fitted if _is_special(one, hypothesis)), None)
     if special is None:
         return True
-    sizes = [fit.values[k.paths[0]] / k.typical for k in hypothesis.parameters]
+    sizes = [fit.values[k.path] / k.typical for k in hypothesis.parameters]
     beyond = np.ptp(np.reshape(sizes, (-1, len(special.parameters))), axis=0)
     return bool(np.linalg.norm(beyond) >= hypothesis.definition.least)
 
@@ -310,7 +309,7 @@ def _in_shape(hypothesis, fit):
 def _size(hypothesis, fit):
     """Of a cause in a fit, in units of its typical size."""
     return np.hypot.reduce(
-        [(fit.values[k.paths[0]] - k.neutral) / k.typical for k in hypothesis.parameters]
+        [(fit.values[k.path] - k.neutral) / k.typical for k in hypothesis.parameters]
     )
 
 
@@ -365,8 +364,8 @@ def _finding(hypothesis, fit, candidates):
     parameters = {
         # of the log, and of a model that knows no number better than within its tolerance
         k.name: ParameterEstimate(
-            fit.values[k.paths[0]] * k.factor,
-            float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)),
+            fit.values[k.path] * k.factor,
+            float(abs(np.hypot(fit.std[k.path], k.tolerance) * k.factor)),
             k.unit,
         )
         for k in hypothesis.parameters

@@ -2,7 +2,7 @@
 
 import os
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -43,6 +43,11 @@ class HypothesisParameter:
     bounds: tuple[float, float]
     factor: float
 
+    @property
+    def path(self) -> str:
+        """The first of the numbers, which stands for all of them."""
+        return self.paths[0]
+
 
 @dataclass(frozen=True)
 class Hypothesis:
@@ -71,12 +76,27 @@ class Hypothesis:
         """``thrust_loss of port``."""
         return label_of(self.cause, self.component)
 
+    @property
+    def paths(self) -> set[str]:
+        """All numbers of the ship that it changes."""
+        return {path for parameter in self.parameters for path in parameter.paths}
+
     def vector_of(self, parameter: HypothesisParameter) -> tuple[str, ...]:
         """Numbers that a parameter is a vector with, where the law is one of vectors that turn; else none."""
         if self.definition.law != "turning":
             return ()
         first = self.parameters.index(parameter) // 2 * 2
-        return tuple(other.paths[0] for other in self.parameters[first : first + 2])
+        return tuple(other.path for other in self.parameters[first : first + 2])
+
+
+def parameters_of(hypotheses: Iterable[Hypothesis]) -> list[HypothesisParameter]:
+    """Parameters of several hypotheses, in their order."""
+    return [parameter for one in hypotheses for parameter in one.parameters]
+
+
+def paths_of(hypotheses: Iterable[Hypothesis]) -> set[str]:
+    """Numbers of the ship that several hypotheses change."""
+    return {path for one in hypotheses for path in one.paths}
 
 
 def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Cause]:

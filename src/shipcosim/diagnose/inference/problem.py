@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis, hypotheses_of
+from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis, hypotheses_of, parameters_of
 from shipcosim.diagnose.inference.channel_noise import most_white
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.innovations import Noise
@@ -97,8 +97,9 @@ def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
     allowed = [
         hypothesis for hypothesis in everyone if hypothesis.definition.without_wind == "allowed for"
     ]
-    parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]
-    return {path: parameter.typical for parameter in parameters for path in parameter.paths}
+    return {
+        path: parameter.typical for parameter in parameters_of(allowed) for path in parameter.paths
+    }
 
 
 def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:

@@ -11,7 +11,7 @@ from shipcosim.diagnose.explanation.search import explain, without_causes
 from shipcosim.diagnose.explanation.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import Judgement, gained, judge, usual_gain
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     FAR_ABOVE_NULL,
@@ -134,13 +134,8 @@ def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
     layout = screening_layout(logs, nothing.layout, logs.hypotheses)
     together = np.zeros(())
     for name, problem in logs.problems.items():
-        columns = list(nothing.parts[name].columns)
-        columns += [
-            c
-            for _, own in logs.all_within(name, logs.hypotheses)
-            for g in screening_regressors(own)
-            for c in g
-        ]
+        own = (one for _, one in logs.all_within(name, logs.hypotheses))
+        columns = nothing.parts[name].columns + regressors_of(own)
         products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
         together = together + layout.spread(name, products)
     groups = []

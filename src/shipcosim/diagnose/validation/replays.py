@@ -97,8 +97,8 @@ def findings_of(fit: Fit) -> list[Finding]:
             hypothesis.component,
             parameters={
                 of.name: ParameterEstimate(
-                    fit.values[of.paths[0]] * of.factor,
-                    abs(fit.std[of.paths[0]] * of.factor),
+                    fit.values[of.path] * of.factor,
+                    abs(fit.std[of.path] * of.factor),
                     of.unit,
                 )
                 for of in hypothesis.parameters

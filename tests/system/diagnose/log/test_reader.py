@@ -124,7 +124,10 @@ def test_an_unusable_file_is_refused_with_what_is_wrong(tmp_path, text, said):
         ('time = "t"\nnorth = "u"', "has north without east"),
         ('time = "t"\nsurge = {column = "u", sign = 2}', "surge.sign"),
         ('time = "t"\nsurge = {column = "u", scale = 2}', "surge.scale"),
-        ('time = "t"\nsurge = {column = "u", unit = "deg"}', "its unit 'deg' is none that converts to m/s"),
+        (
+            'time = "t"\nsurge = {column = "u", unit = "deg"}',
+            "its unit 'deg' is none that converts to m/s",
+        ),
         ("time = ", "cannot be read"),
     ],
 )
