@@ -251,8 +251,7 @@ def _unusable(one: Diagnosis) -> str:
     """Why a log says nothing of the ship; empty where it does."""
     if any(finding.alternatives for finding in one.findings):
         return "Its channels may be misread, and it does not tell which."
-    comparison = _identification(one).comparison
-    return " ".join(comparison.obstacles) if comparison is not None else ""
+    return " ".join(_identification(one).comparison.obstacles)
 
 
 def _together(
@@ -266,9 +265,7 @@ def _together(
     }
     comparisons = {name: one.comparison for name, one in usable.items()}
     comparisons |= {name: compared(checked(one)).comparison for name, one in read.items()}
-    ratios = ratio_of_logs(
-        {name: one.ratio for name, one in comparisons.items() if one is not None and one.ratio}
-    )
+    ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one.ratio})
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
     say("all logs together")
@@ -289,8 +286,7 @@ def _relabelled(
     found: dict[str, list[Finding]] = {}
     for fault in (one for one in faults if is_of_thrusters(one.what)):
         for name in (name for name in usable if name not in fault.logs):
-            comparison = usable[name].comparison
-            if leans_to(comparison.labels if comparison else None, fault.what):
+            if leans_to(usable[name].comparison.labels, fault.what):
                 found.setdefault(name, []).append(fault.what)
     return found
 

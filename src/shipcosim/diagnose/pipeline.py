@@ -223,7 +223,7 @@ def problem_of(read: ReadLog) -> Identification:
 def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     """The way of a log to its verdict, stage by stage."""
     progress("how does the ship answer?")
-    if problem.comparison is not None and problem.comparison.obstacles:
+    if problem.comparison.obstacles:
         return judged(with_causes(problem))
     identification = with_learnt_form(corrected(problem))
     progress("which causes explain it?")

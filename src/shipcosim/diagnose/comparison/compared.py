@@ -1,6 +1,6 @@
 """The stage between the checks of a log and its identification: what is grossly wrong, and where to start."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray
@@ -62,8 +62,8 @@ class LogComparison:
         What the model lacks by axis, largest first; empty where the log has too few usable rows.
     """
 
-    errors: dict[str, list[float]]
-    discrepancies: tuple[Discrepancy, ...]
+    errors: dict[str, list[float]] = field(default_factory=dict)
+    discrepancies: tuple[Discrepancy, ...] = ()
     gains: tuple[AxisGain, ...] = ()
     labels: Labels | None = None
     ratio: CommonRatio | None = None

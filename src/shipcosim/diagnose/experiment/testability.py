@@ -31,16 +31,16 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     found = log.explained.identification
     of_log = (*(() if is_testable(problem) else ("clock",)), *_labels(found.comparison))
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
-    if found.comparison is not None and found.comparison.obstacles:
+    if found.comparison.obstacles:
         return tuple(sorted({*of_log, *everywhere}))
     weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     return tuple(sorted({*weak, *of_log, *(everywhere - identifiable)}))
 
 
-def _labels(comparison: LogComparison | None) -> tuple[str, ...]:
+def _labels(comparison: LogComparison) -> tuple[str, ...]:
     """Faults of the thrusters' labels, where a log does not tell whether it has them."""
-    judged = comparison is None or comparison.labels is None or comparison.labels.is_judged
+    judged = comparison.labels is None or comparison.labels.is_judged
     return () if judged else THRUSTER_LABELS
 
 

@@ -19,13 +19,13 @@ class Identification(CheckedLog):
         Of the repaired log: noise and linearisation about the ship without a cause.
     misconnections : tuple of Finding
         Connections of the system that the log contradicts; `ship` has them put right.
-    comparison : LogComparison or None
-        Of simulated with measured, commanded with felt.
+    comparison : LogComparison
+        Of simulated with measured, commanded with felt; empty by default.
     """
 
     problem: IdentificationProblem
     misconnections: tuple[Finding, ...] = ()
-    comparison: LogComparison | None = None
+    comparison: LogComparison = LogComparison()
 
 
 def identified(checked: ComparedLog) -> Identification:

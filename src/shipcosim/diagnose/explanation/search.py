@@ -42,7 +42,7 @@ class ExplainedLog:
 
 def with_causes(found: Identification) -> ExplainedLog:
     """An identified log with the sets of causes that explain it, best first; none of a log that cannot tell causes."""
-    cannot_tell = found.comparison is not None and found.comparison.obstacles
+    cannot_tell = found.comparison.obstacles
     fits = tuple(explain(found.problem, most=0) if cannot_tell else explain(found.problem))
     return ExplainedLog(found, fits, is_healthy(found.problem, fits[0]))
 

@@ -1,7 +1,9 @@
 """From fitted sets of causes to a verdict: what may be named, how sure, and what cannot be told apart."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -99,37 +101,83 @@ def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
     problem = explained.identification.problem
     fits = explained.fits
-    comparison = explained.identification.comparison
-    if comparison is not None and comparison.obstacles:
+    if explained.identification.comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
-    unmodelled = {}
     without_wind = problem.record.wind is None
+    usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
+    found = judged_by_healthy_logs(
+        fits,
+        partial(unmodelled_gains, problem),
+        {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {},
+        lambda fit: null_gains(problem, fit.motion, fit.hypotheses),
+        without_wind=without_wind,
+    )
+    return JudgedLog(explained, *found)
+
+
+def judged_by_healthy_logs(
+    fits: Sequence[Fit],
+    unmodelled_of: Callable[[Any], dict[str, float]],
+    usual: dict[str, float],
+    simulated_of: Callable[[Any], Mapping[str, Sequence[float] | np.ndarray]],
+    *,
+    without_wind: bool,
+) -> tuple[Judgement, dict[str, float], dict[str, float]]:
+    """The verdict on fits, by what causes gain on healthy logs.
+
+    Parameters
+    ----------
+    fits : sequence of Fit
+    unmodelled_of : callable
+        Gains of unmodelled errors beside a fit, by kind.
+    usual : dict of str to float
+        What causes usually gain on healthy logs, by label.
+    simulated_of : callable
+        What the causes of a fit gain on simulated healthy logs, by label.
+    without_wind : bool
+        Where nobody knows the wind, a force that nobody explains is no surprise.
+
+    Returns
+    -------
+    tuple of Judgement, dict of str to float, dict of str to float
+        The verdict, unmodelled errors beside its fit, and what its causes gain on healthy logs.
+    """
+    unmodelled = {}
 
     def unmodelled_beside(fit):
         if fit not in unmodelled:
-            unmodelled[fit] = unmodelled_gains(problem, fit)
-        # where nobody knows the wind, a force that nobody explains is no surprise
+            unmodelled[fit] = unmodelled_of(fit)
         return {
             kind: gain
             for kind, gain in unmodelled[fit].items()
             if kind not in FORCES or not without_wind
         }
 
-    usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
-    null = {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {}
+    null = usual
     judgement = judge(fits, unmodelled_beside, null)
-    if (
+
+    # Where the log is unknown with and without causes, it is so whatever healthy logs gain.
+    is_unknown = (
         judgement.verdict == "unknown"
         and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
+    )
+
+    # Healthy logs are simulated where a cause gains so little that chance may give it.
+    fit = judgement.fit
+    if not is_unknown and any(
+        gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses
     ):
-        return JudgedLog(
-            explained, judgement, unmodelled[judgement.fit], null
-        )  # whatever healthy logs gain
-    simulated = _largest_null_gains(problem, judgement.fit, fits)
-    if simulated:
-        null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
+        null = {
+            label: usual.get(label, 0.0)
+            + (
+                float(max(np.mean(values) + 3.0 * np.std(values), np.max(values)))
+                if len(values)
+                else NULL_GAIN_UNKNOWN
+            )
+            for label, values in simulated_of(fit).items()
+        }
         judgement = judge(fits, unmodelled_beside, null)
-    return JudgedLog(explained, judgement, unmodelled[judgement.fit], null)
+    return judgement, unmodelled[judgement.fit], null
 
 
 def with_crude_model(log: JudgedLog) -> JudgedLog:
@@ -137,7 +185,7 @@ def with_crude_model(log: JudgedLog) -> JudgedLog:
     found = log.explained.identification
     comparison = found.comparison
     unclear = any(fault.alternatives for fault in found.faults)
-    if comparison is None or comparison.obstacles or comparison.findings or unclear:
+    if comparison.obstacles or comparison.findings or unclear:
         return log
     if log.judgement.verdict != "unknown" or comparison.ratio is None:
         return log
@@ -151,22 +199,6 @@ def usual_gain(model: ShipModel) -> float:
     if model.directions or not model.form_scale:
         return model.ordinary_errors.get(ANY_CAUSE, 0.0)
     return NULL_GAIN_OF_FORM
-
-
-def _largest_null_gains(problem, fit, fits):
-    """Largest gain of a fit's causes on simulated healthy logs, or mean and three deviations; where it could matter.
-
-    Where no healthy ship keeps to the log's track, as one that cannot go sideways, nobody knows: it is assumed.
-    """
-    if not any(gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses):
-        return {}
-    found = null_gains(problem, fit.motion, fit.hypotheses)
-    return {
-        label: float(max(values.mean() + 3.0 * values.std(), values.max()))
-        if values.size
-        else NULL_GAIN_UNKNOWN
-        for label, values in found.items()
-    }
 
 
 def judge(

@@ -7,7 +7,7 @@ import numpy as np
 
 from shipcosim.angles import wrap_series
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.log.checks.samples import quantum
+from shipcosim.diagnose.log.checks.samples import noise_of, quantum
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
 
@@ -291,5 +291,5 @@ def undone(
 def _is_rounded_away(values):
     """Whether a channel's noise is less than half its resolution, so that errors of rounding do not average out."""
     values = values[np.isfinite(values)]
-    noise = np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0) if len(values) > 2 else 0.0
+    noise = noise_of(values) if len(values) > 2 else 0.0
     return bool(noise <= 0.5 * quantum(values))

@@ -139,18 +139,21 @@ def _put_right(time, channels, findings):
         mislabel = mislabel_of(finding)
         if mislabel is not None and finding.segments:
             channels = undone(channels, mislabel, finding.segments)
+    cut_out = [finding for finding in findings if finding.cause in CUT_OUT]
+    channels = without_findings(channels, cut_out)
     channels.pop("time")
-    for role, bad in outliers(channels).items():
-        channels[role] = np.where(bad, np.nan, channels[role])
-    for finding in findings:
-        if finding.cause in CUT_OUT:
-            bad = inside(time, finding.segments)
-            channels |= {
-                role: np.where(bad, np.nan, channels[role])
-                for role in finding.channels
-                if role in channels
-            }
     return channels
+
+
+def without_findings(log: dict, findings: Sequence[Finding]) -> dict:
+    """A log without outliers, and without what findings say of their segments and channels."""
+    bad_rows = list(outliers(log).items())
+    for finding in findings:
+        here = inside(log["time"], finding.segments)
+        bad_rows += [(role, here) for role in finding.channels if role in log]
+    for role, bad in bad_rows:
+        log = log | {role: np.where(bad, np.nan, log[role])}
+    return log
 
 
 def _is_angle(name):

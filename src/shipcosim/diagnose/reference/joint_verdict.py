@@ -1,21 +1,20 @@
 """The verdict on several logs of one ship together: common causes, and those of each log's weather."""
 
 from dataclasses import dataclass
-from typing import Any, cast
+from functools import partial
+from typing import cast
 
 import numpy as np
 
 from shipcosim.diagnose.experiment.testability import not_testable
 from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
 from shipcosim.diagnose.explanation.search import explain, without_causes
-from shipcosim.diagnose.explanation.unmodelled import FORCES, errors_of_the_fit, unmodelled_gains
-from shipcosim.diagnose.explanation.verdict import Judgement, gained, judge, usual_gain
+from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
+from shipcosim.diagnose.explanation.verdict import Judgement, judged_by_healthy_logs, usual_gain
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
-    FAR_ABOVE_NULL,
-    NULL_GAIN_UNKNOWN,
     NULL_GAIN_WITHOUT_WIND,
     TESTABLE,
 )
@@ -63,28 +62,17 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     JointVerdict
     """
     fits = cast(list[JointFit], explain(logs, fitted=fitted_jointly, screened=screened_jointly))
-    known: dict[Any, dict[str, float]] = {}
     silent = any(problem.record.wind is None for problem in logs.problems.values())
-
-    def unmodelled_beside(fit):
-        if fit not in known:
-            known[fit] = _unmodelled(logs, fit)
-        # where nobody knows the wind, a force that nobody explains is no surprise
-        return {kind: gain for kind, gain in known[fit].items() if kind not in FORCES or not silent}
-
     models = [problem.model for problem in logs.problems.values()]
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
-    null = {one.label: usual for one in logs.hypotheses}
-    judgement = judge(fits, unmodelled_beside, null)
-    if (
-        judgement.verdict == "unknown"
-        and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
-    ):
-        return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
-    if simulated := _null_gains(logs, judgement.fit, fits):
-        null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
-        judgement = judge(fits, unmodelled_beside, null)
-    return JointVerdict(logs, tuple(fits), judgement, known[judgement.fit], null)
+    found = judged_by_healthy_logs(
+        fits,
+        partial(_unmodelled, logs),
+        {one.label: usual for one in logs.hypotheses},
+        lambda fit: _null_gains(logs, fit, fits),
+        without_wind=silent,
+    )
+    return JointVerdict(logs, tuple(fits), *found)
 
 
 def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
@@ -100,9 +88,7 @@ def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
 
 
 def _null_gains(logs, fit, fits):
-    """Largest gain of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
-    if not any(gained(one, fit, fits) < FAR_ABOVE_NULL for one in fit.hypotheses):
-        return {}
+    """Gains of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
     nothing = cast(JointFit, without_causes(fits))
     wanted = fit.hypotheses
     layout = screening_layout(logs, nothing.layout, wanted)
@@ -119,12 +105,7 @@ def _null_gains(logs, fit, fits):
             products, nothing.columns, np.zeros(len(nothing.columns)), wanted, nothing.get
         ):
             found[one.label].append(gain)
-    return {
-        label: float(max(np.mean(values) + 3.0 * np.std(values), max(values)))
-        if values
-        else NULL_GAIN_UNKNOWN
-        for label, values in found.items()
-    }
+    return found
 
 
 def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:

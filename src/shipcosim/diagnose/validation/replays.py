@@ -55,7 +55,7 @@ def with_cosimulation(
         return SimulatedLog(None, {}, False)
     in_array_form = {name: one.errors for name, one in log.held_out.items()}
     found = log.judged.explained.identification
-    beyond_doubt = found.comparison.findings if found.comparison else ()
+    beyond_doubt = found.comparison.findings
     if (log.comparison.fit.hypotheses or beyond_doubt) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
     run = partial(_cosimulated, extended, found.causes, beyond_doubt)

@@ -53,7 +53,7 @@ class Tracks:
     predicted: dict[str, xarray.Dataset]
 
 
-def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool = False) -> Tracks | None:
+def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool) -> Tracks | None:
     """Tracks of a judged log, before and, where something of the model is found wrong, after.
 
     Parameters
@@ -72,10 +72,10 @@ def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool = False) -> Tracks
     record = log.problem.record
     model = log.problem.model
     comparison = log.explained.identification.comparison
-    models = {"before": comparison.given(model) if comparison else model}
+    models = {"before": comparison.given(model)}
     if is_named or has_crude:
         after = model.with_values(log.fit.values) if is_named else model
-        models["after"] = comparison.with_crude(after) if comparison and has_crude else after
+        models["after"] = comparison.with_crude(after) if has_crude else after
     try:
         return tracks_by_models(record, models, fitting_horizon(record, model))
     except ShipcosimError:

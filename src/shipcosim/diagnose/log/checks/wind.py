@@ -3,7 +3,14 @@
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.log.checks.kinematics import Filter, Motion, filter_for, whiteness
+from shipcosim.diagnose.log.checks.kinematics import (
+    Filter,
+    Motion,
+    after_gaps,
+    complete_rows,
+    filter_for,
+    whiteness,
+)
 from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.rows import inside
@@ -50,8 +57,8 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
     """
-    rows = np.flatnonzero(np.all([np.isfinite(log[role]) for role in ROLES if role in log], axis=0))
-    if not set(ROLES) <= set(log) or len(rows) < 100:
+    rows = complete_rows(log, ROLES)
+    if len(rows) < 100:
         return []
     time, speed, wind_from, heading, surge, sway = (log[role][rows] for role in ("time", *ROLES))
     velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
@@ -72,8 +79,7 @@ def _axes(vector):
 
 
 def _still(time, velocity):
-    steps = np.diff(time, prepend=-np.inf)
-    return _Wind(time, velocity, velocity, {}, steps > 4.5 * np.median(steps[1:]))
+    return _Wind(time, velocity, velocity, {}, after_gaps(time, 4.5))
 
 
 class _Wind(Motion):

@@ -7,6 +7,7 @@ again. So it does not take a ship that moves or turns to see it.
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.log.checks.kinematics import complete_rows
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import (
     BESIDE_JUMP,
@@ -29,9 +30,7 @@ def jumping_wind(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
     """
-    if not set(ROLES) <= set(log):
-        return []
-    rows = np.flatnonzero(np.all([np.isfinite(log[role]) for role in ROLES], axis=0))
+    rows = complete_rows(log, ROLES)
     if len(rows) < 4 * BETWEEN_JUMPS:
         return []
     part = {role: log[role][rows] for role in ("time", *ROLES)}
