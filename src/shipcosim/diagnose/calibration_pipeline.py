@@ -5,15 +5,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import xarray
 from threadpoolctl import threadpool_limits
 
 import shipcosim
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
+from shipcosim.diagnose.log.runs import FilePath, LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
-from shipcosim.diagnose.pipeline import Progress, given_system, problem_of, read_measurements
+from shipcosim.diagnose.pipeline import (
+    AnySystem,
+    Progress,
+    given_system,
+    problem_of,
+    read_measurements,
+)
 from shipcosim.diagnose.reference.calibration import (
     calibrated_to,
     causes_beside,
@@ -28,7 +34,7 @@ from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remai
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.ssp import System, SystemStructure
+from shipcosim.ssp import System
 
 READING = "are the logs right?"
 
@@ -85,7 +91,7 @@ class CalibratedShip:
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 
 
-def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
     """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
     many = len(logs)
     return {
@@ -97,13 +103,13 @@ def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, fl
 
 
 def calibrate(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    logs: Sequence[LogSource],
+    system: AnySystem,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
+    out: FilePath | None = None,
 ) -> CalibratedShip:
     """Fit a ship's numbers to logs in which she is known to be well.
 
@@ -191,7 +197,7 @@ def _check_usable(found: dict[str, Identification]) -> None:
         raise ShipcosimError(problems)
 
 
-def log_names(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> list[str]:
+def log_names(logs: Sequence[LogSource]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
         raise ShipcosimError(Problem("logs", "There are none.", "Give at least one log."))
@@ -208,10 +214,10 @@ def _stem(log, number):
 
 
 def problems_of(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    logs: Sequence[LogSource],
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Progress | None = None,
     *,
     reference: Reference | None = None,

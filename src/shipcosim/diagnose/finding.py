@@ -2,6 +2,9 @@
 
 from dataclasses import asdict, dataclass, field
 
+Segment = tuple[float, float]
+"""First and last time of a part of a log. [s]"""
+
 
 def label_of(cause: str, component: str | None) -> str:
     """A cause with its place, in words: ``thrust_loss of port``."""
@@ -53,7 +56,7 @@ class Finding:
     kind: str = "physics"
     probability: float = 1.0
     parameters: dict[str, ParameterEstimate] = field(default_factory=dict)
-    segments: tuple[tuple[float, float], ...] = ()
+    segments: tuple[Segment, ...] = ()
     channels: tuple[str, ...] = ()
     onset: float | None = None
     note: str = ""

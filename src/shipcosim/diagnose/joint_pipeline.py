@@ -13,13 +13,10 @@ From the verdict to the gain, `diagnose_jointly`: the system with the common cau
 with what the other logs say of them.
 """
 
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import cast
 
-import xarray
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
@@ -34,8 +31,16 @@ from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
+from shipcosim.diagnose.log.runs import FilePath, LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
-from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
+from shipcosim.diagnose.pipeline import (
+    AnySystem,
+    Progress,
+    causes_in,
+    prepared_system,
+    problem_of,
+    ship_by,
+)
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.common_findings import (
     Shared,
@@ -55,17 +60,15 @@ from shipcosim.diagnose.reference.held_out import (
 from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
 from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
-from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
-from shipcosim.diagnose.reference.reference import Reference, read_reference, with_reference
+from shipcosim.diagnose.reference.reference import Reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import with_thrust
-from shipcosim.ssp import System, SystemStructure
+from shipcosim.ssp import System
 
 
-def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
     """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
     names = log_names(logs)
     return {
@@ -79,14 +82,14 @@ def steps_of(logs: Sequence[str | os.PathLike | xarray.Dataset]) -> dict[str, fl
 
 
 def diagnose_jointly(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    logs: Sequence[LogSource],
+    system: AnySystem,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    out: FilePath | None = None,
+    reference: FilePath | Reference | None = None,
 ) -> JointDiagnosis:
     """Diagnose several logs of one ship together: what they have in common, the system with it, what that gains.
 
@@ -108,14 +111,7 @@ def diagnose_jointly(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    folder = None
-    if out is None:
-        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
-        out = folder.name
-    given = given_system(system)
-    if reference is not None:
-        reference = read_reference(reference)
-        given = with_calibrated_numbers(given, reference, out)
+    given, reference, out, folder = prepared_system(system, reference, out)
     found = find_common_causes(logs, given.given, channels, causes, say, reference)
     say("extending the system")
     of_ship = [shared.what for shared in found.findings if shared.what.component not in found.logs]
@@ -165,10 +161,10 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
 
 
 def find_common_causes(
-    logs: Sequence[str | os.PathLike | xarray.Dataset],
+    logs: Sequence[LogSource],
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> JointDiagnosis:
@@ -199,11 +195,7 @@ def find_common_causes(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    ship = (
-        ship_model_of(system)
-        if reference is None
-        else with_reference(ship_model_of(system), reference)
-    )
+    ship = ship_by(system, reference)
     with threadpool_limits(1):
         problems = problems_of(logs, system, channels, causes, say, reference=reference)
         alone = {}
@@ -272,7 +264,11 @@ def _together(
     verdict = judged_jointly(
         SeveralLogs(_of_one_form({name: one.problem for name, one in about.items()}))
     )
-    basis = JointBasis(verdict, ratios, _has_ratio(ratios.common, verdict.judgement.verdict))
+
+    # A common ratio is named where it is gross, or where no cause explains the logs.
+    least = GROSS if verdict.judgement.verdict != "unknown" else PLAIN
+    has_ratio = ratios.common is not None and ratios.common.differs(least)
+    basis = JointBasis(verdict, ratios, has_ratio)
     said = replace(
         found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()}
     )
@@ -317,11 +313,6 @@ def _of_one_form(problems: dict[str, IdentificationProblem]) -> dict[str, Identi
         else of_scale(problem, widest)
         for name, problem in problems.items()
     }
-
-
-def _has_ratio(ratio: CommonRatio | None, verdict: str) -> bool:
-    """Whether a common ratio is named: where it is gross, or where no cause explains the logs."""
-    return ratio is not None and ratio.differs(GROSS if verdict != "unknown" else PLAIN)
 
 
 def _stated(found: JointDiagnosis) -> JointDiagnosis:

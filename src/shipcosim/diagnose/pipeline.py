@@ -27,12 +27,10 @@ From the verdict to the gain, `diagnose`:
     completed          Diagnosis       errors, gain, and all that the page shows
 """
 
-import os
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 
-import xarray
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
@@ -45,7 +43,7 @@ from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_crude
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.runs import run_as_log
+from shipcosim.diagnose.log.runs import FilePath, LogSource, run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
@@ -57,6 +55,9 @@ from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import System, SystemStructure, read
+
+AnySystem = FilePath | SystemStructure | System
+"""A system in whichever form."""
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
@@ -75,14 +76,14 @@ of half an hour, on one core. [s]"""
 
 
 def diagnose(
-    log: str | os.PathLike | xarray.Dataset,
-    system: str | os.PathLike | SystemStructure | System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    log: LogSource,
+    system: AnySystem,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Progress | None = None,
     *,
-    out: str | os.PathLike | None = None,
-    reference: str | os.PathLike | Reference | None = None,
+    out: FilePath | None = None,
+    reference: FilePath | Reference | None = None,
 ) -> Diagnosis:
     """Diagnose a log: what the simulation gets wrong, by which causes, the system with them, and what that gains.
 
@@ -114,14 +115,7 @@ def diagnose(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    folder = None
-    if out is None:
-        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
-        out = folder.name
-    given = given_system(system)
-    if reference is not None:
-        reference = read_reference(reference)
-        given = with_calibrated_numbers(given, reference, out)
+    given, reference, out, folder = prepared_system(system, reference, out)
     found = find_causes(log, given.given, channels, causes, say, reference)
     say("what does the simulation get wrong")
     basis = found.basis
@@ -137,7 +131,25 @@ def diagnose(
     return replace(completed(found, predicted, extended, simulated), folder=folder)
 
 
-def given_system(system: str | os.PathLike | SystemStructure | System) -> ExtendedSystem:
+def prepared_system(
+    system: AnySystem, reference: FilePath | Reference | None, out: FilePath | None
+) -> tuple[ExtendedSystem, Reference | None, FilePath, object]:
+    """A system with the numbers of a reference, that reference, and a folder for what is written.
+
+    The last entry keeps a temporary folder alive; None where `out` is given.
+    """
+    folder = None
+    if out is None:
+        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+        out = folder.name
+    given = given_system(system)
+    if reference is not None:
+        reference = read_reference(reference)
+        given = with_calibrated_numbers(given, reference, out)
+    return given, reference, out, folder
+
+
+def given_system(system: AnySystem) -> ExtendedSystem:
     """A system in whichever form, to be extended."""
     if isinstance(system, System):
         return ExtendedSystem(system, system.file)
@@ -146,10 +158,10 @@ def given_system(system: str | os.PathLike | SystemStructure | System) -> Extend
 
 
 def find_causes(
-    log: str | os.PathLike | xarray.Dataset,
+    log: LogSource,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> Diagnosis:
@@ -201,18 +213,23 @@ def causes_in(
 
 
 def read_measurements(
-    log: str | os.PathLike | xarray.Dataset,
+    log: LogSource,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     reference: Reference | None = None,
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""
-    ship = ship_model_of(system)
-    ship = ship if reference is None else with_reference(ship, reference)
+    ship = ship_by(system, reference)
     log = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
     drives = {name: ship.drives(name) for name in ship.thrusters}
     return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))
+
+
+def ship_by(system: System, reference: Reference | None) -> ShipModel:
+    """The ship of a system, as a reference knows her where there is one."""
+    ship = ship_model_of(system)
+    return ship if reference is None else with_reference(ship, reference)
 
 
 def problem_of(read: ReadLog) -> Identification:

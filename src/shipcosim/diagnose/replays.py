@@ -1,14 +1,12 @@
 """A log as a system replays it, and as the system extended by a diagnosis does: `replay_log`."""
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
-
-import xarray
 
 from shipcosim.diagnose.checked_log import checked
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.remarks import handled
+from shipcosim.diagnose.log.runs import FilePath, LogSource
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
@@ -38,9 +36,9 @@ class LogReplay:
 
 
 def replay_log(
-    log: str | os.PathLike | xarray.Dataset,
+    log: LogSource,
     systems: dict[str, System],
-    channels: str | os.PathLike | None = None,
+    channels: FilePath | None = None,
     *,
     horizon: float | None = None,
     progress: Callable[[int, int], None] | None = None,

@@ -22,6 +22,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     TURNED_ROUND,
     WEAKER_WAY,
 )
+from shipcosim.diagnose.numerics import root_mean_square
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
 
@@ -110,6 +111,21 @@ class Axis:
             (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
         )
 
+    def by_way(self, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Force of all thrusters where they push ahead, and where they push astern, (2, n) array."""
+        loads = commanded.thrusters.items()
+        return np.stack(
+            [
+                sum((self.smoothed(load * (ahead[name] == way)) for name, load in loads), 0.0)
+                for way in (True, False)
+            ]
+        )
+
+    def is_changed(self, commanded: Commanded, other: Commanded) -> bool:
+        """Whether two readings of the commands differ here by more than a tenth of the usual force."""
+        apart = np.abs(self.total(other) - self.total(commanded)).max()
+        return bool(apart > 0.1 * self.size)
+
     def is_driven(self, commanded: Commanded) -> bool:
         """Whether the thrusters are commanded to do something on this axis, beside what is felt."""
         total = self.total(commanded)
@@ -164,7 +180,7 @@ class Axis:
     @property
     def felt_unit(self) -> float:
         """Root mean square of the felt force."""
-        return float(np.sqrt((self.felt**2).mean())) + 1e-30
+        return root_mean_square(self.felt) + 1e-30
 
     def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
         """The same by what thrusters do ahead and astern, neither way much weaker than the other.
@@ -246,7 +262,7 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
     for i, (listed, sign) in enumerate(rest_of(motion, commanded)):
         rest = kernel.smooth(listed)[:, rows].T
-        size = float(np.sqrt((kernel.smooth(thrust[i])[rows] ** 2).mean())) + 1e-9
+        size = root_mean_square(kernel.smooth(thrust[i])[rows]) + 1e-9
         hull, air = (kernel.smooth(load[i])[rows] for load in (commanded.hull, wind))
         found.append(Axis(i, force[i][rows], hull, air, rest, sign, size, rows, felt, block))
     return found

@@ -378,8 +378,9 @@ def _held_out(
 ) -> HeldOutErrors:
     """Errors of each part of the log, by what was fitted without it, (f, p) arrays, of the crude model and a rival."""
     given = predictions.missed(np.zeros((1, logs.shape[1])))[0]
+    # Squared distance after the longest horizon.
     squares = [
-        _squares(one)
+        (one[:2, -1] ** 2).sum(0)
         for one in (given, _each_by_its_fold(predictions, logs), _each_by_its_fold(rival, others))
     ]
     number = np.unique(predictions.block, return_inverse=True)[1]
@@ -400,11 +401,6 @@ def _each_by_its_fold(predictions, logs):
     return np.moveaxis(predictions.missed(logs), -1, 1)[fold, np.arange(fold.size)].transpose(
         1, 2, 0
     )
-
-
-def _squares(off):
-    """Squared distance after the longest horizon."""
-    return (off[:2, -1] ** 2).sum(0)
 
 
 def _interval(ratios):

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.gains import is_beyond
 from shipcosim.diagnose.comparison.thresholds import SURE_OF_RATIO
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.cause import Cause
@@ -40,7 +41,7 @@ class CrudeNumber:
 
     def differs(self, least: float) -> bool:
         """Whether it differs from 1 by a factor of more than `least` for sure."""
-        return abs(np.log(self.estimate)) - SURE_OF_RATIO * self.std / self.estimate > np.log(least)
+        return is_beyond(self.estimate, self.std, least, SURE_OF_RATIO)
 
     def values(self, model: ShipModel, factor: Any) -> dict[str, Any]:
         """Numbers of the ship with a factor, a float or an array, on what the model has."""

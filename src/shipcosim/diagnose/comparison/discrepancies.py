@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
+from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio, is_beyond
 from shipcosim.diagnose.comparison.label_hypotheses import LabelError
 from shipcosim.diagnose.comparison.labels import Labels
 from shipcosim.diagnose.comparison.missing_loads import FORCES, MissingLoad
@@ -102,9 +102,7 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         std = float(fit.std[0])
         if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT or fit.share < TOLD:
             continue
-        because = bool(why) and bool(
-            np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size
-        )
+        because = bool(why) and axis.is_changed(labels.logged.commanded, labels.best.commanded)
         if (
             one.is_balanced and not because
         ):  # a way that is weaker makes the sum of both look reversed
@@ -185,9 +183,7 @@ def _damping(one: AxisGain) -> Iterator[Discrepancy]:
         axis.block,
     )
     support = 0.5 * left.independent * np.log(left.squares / fit.squares)
-    far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(
-        MENTIONED
-    )
+    far = is_beyond(max(damping, 0.01), std, MENTIONED, SURE_OF_GAIN)
     if support > LEAST_SUPPORT and far and damping > max(SURE_OF_GAIN * std, LEAST_DAMPING):
         text = f"{_DAMPING} {axis.name} over inertia {damping:.2f} of the model's"
         yield Discrepancy(

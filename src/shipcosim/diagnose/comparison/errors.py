@@ -12,6 +12,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     SHORTEST_ANSWER,
 )
 from shipcosim.diagnose.inference.predictions import missing, predicted, replayable
+from shipcosim.diagnose.numerics import root_mean_square
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
@@ -78,8 +79,8 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     off = _missed(record, model, seen, rows, counts)
     return {
         "horizon_s": [count * record.step for count in counts],
-        "position_error_m": [float(np.sqrt(np.mean(one**2))) for one in off["position"]],
-        "heading_error_deg": [float(np.sqrt(np.mean(one**2))) for one in off["heading"]],
+        "position_error_m": [root_mean_square(one) for one in off["position"]],
+        "heading_error_deg": [root_mean_square(one) for one in off["heading"]],
     }
 
 

@@ -17,7 +17,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     LEAST_SUPPORT,
     MOST_CHANGES,
 )
-from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
@@ -37,9 +37,7 @@ class LabelError:
     thrusters: tuple[str, ...]
     turns: bool = False
 
-    def undo(
-        self, units: dict[str, tuple[np.ndarray, np.ndarray]]
-    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def undo(self, units: ThrusterSeries) -> ThrusterSeries:
         """What drives the thrusters, put right; the direction of one that does not turn stays."""
         if len(self.thrusters) == 2:
             one, other = self.thrusters
@@ -87,7 +85,7 @@ class LabelHypothesis:
     step: float
     commanded: Commanded
     ahead: dict[str, np.ndarray]
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
 
     @property
     def is_late(self) -> bool:
@@ -115,7 +113,9 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     """
     names = [name for name in model.thrusters if np.any(record.units[name][0])]
     pairs = [
-        pair for pair in combinations(names, 2) if _make(model, pair[0]) == _make(model, pair[1])
+        pair
+        for pair in combinations(names, 2)
+        if make_of(model, pair[0]) == make_of(model, pair[1])
     ]
     singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [
         LabelError((name,)) for name in names
@@ -125,7 +125,7 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     ]
 
 
-def _make(model: ShipModel, name: str) -> object:
+def make_of(model: ShipModel, name: str) -> object:
     """What kind of thruster it is."""
     third_party = model.third_party.get(name)
     return third_party.component.fmu.model_name if third_party else type(model.parts[name])
@@ -180,7 +180,7 @@ def ahead_of(units: Mapping[str, tuple[np.ndarray, np.ndarray]]) -> dict[str, np
 
 
 def driven(
-    units: dict[str, tuple[np.ndarray, np.ndarray]], record: Record, felt: Felt, model: ShipModel
+    units: ThrusterSeries, record: Record, felt: Felt, model: ShipModel
 ) -> tuple[Record, Felt, ShipModel]:
     """A log and its ship with thrusters that are driven otherwise, as `commanded_by` takes them.
 
@@ -209,15 +209,5 @@ def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequenc
     total = 0.0
     for axis in axes:
         if axis.is_driven(commanded):
-            ways = [
-                sum(
-                    (
-                        axis.smoothed(load * (ahead[name] == way))
-                        for name, load in commanded.thrusters.items()
-                    ),
-                    0.0,
-                )
-                for way in (True, False)
-            ]
-            total += axis.both_ways(*map(np.asarray, ways)).support
+            total += axis.both_ways(*axis.by_way(commanded, ahead)).support
     return total

@@ -226,12 +226,8 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
 def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> bool:
     """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
     for axis in axes:
-        total = axis.total(logged.commanded)
-        if (
-            axis.is_driven(logged.commanded)
-            and np.abs(axis.total(best.commanded) - total).max() > 0.1 * axis.size
-        ):
-            fit = axis.compared(total[None])
+        if axis.is_driven(logged.commanded) and axis.is_changed(logged.commanded, best.commanded):
+            fit = axis.compared(axis.total(logged.commanded)[None])
             if (
                 fit.gains[0] < -OPPOSITE * fit.std[0]
                 and fit.support > LEAST_SUPPORT
@@ -245,11 +241,7 @@ def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Ax
     """Largest share of the felt force that a reading explains on an axis where it differs from the logged one."""
     shares = [0.0]
     for axis in axes:
-        differs = (
-            np.abs(axis.total(best.commanded) - axis.total(logged.commanded)).max()
-            > 0.1 * axis.size
-        )
-        if differs and axis.is_driven(best.commanded):
+        if axis.is_changed(logged.commanded, best.commanded) and axis.is_driven(best.commanded):
             shares.append(axis.explained(_each(axis, best.commanded)).share)
     return max(shares)
 

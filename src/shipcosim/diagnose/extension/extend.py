@@ -1,6 +1,5 @@
 """The named causes as part of the system: values in extended.ssv, and in extended.ssp what the system did not have."""
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from shipcosim.diagnose.extension.insertions import add_current, add_force, add_
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
+from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import SystemStructure, read, write_ssv
@@ -55,7 +55,7 @@ class Extension:
 def extend(
     system: str | Path | SystemStructure,
     findings: Iterable[Finding],
-    folder: str | os.PathLike[str],
+    folder: FilePath,
     *,
     log_attributes: Mapping[str, Any] | None = None,
     catalogue: Mapping[str, Cause] | None = None,

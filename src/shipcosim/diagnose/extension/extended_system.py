@@ -1,6 +1,5 @@
 """The system extended by the findings of a diagnosis, with every number that differs from the given one."""
 
-import os
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extend import Extension, extend
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import System, SystemStructure, read_system
 
@@ -56,7 +56,7 @@ def with_findings(
     given: ExtendedSystem,
     findings: Iterable[Finding],
     log: Identification,
-    folder: str | os.PathLike,
+    folder: FilePath,
 ) -> ExtendedSystem:
     """The system extended by findings of the physics; the given one where there are none.
 
@@ -88,7 +88,7 @@ def extended_by(
     findings: Iterable[Finding],
     about: Mapping[str, Any],
     causes: Mapping[str, Cause],
-    folder: str | os.PathLike,
+    folder: FilePath,
 ) -> ExtendedSystem:
     """The same by findings of several logs.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.angles import wrap_series
-from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.log.checks.samples import noise_of, quantum
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
@@ -231,9 +231,7 @@ def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
     return [label for label in labels if all(role in log for role in label.channels)]
 
 
-def finding_of(
-    mislabel: Mislabel, probability: float, segment: tuple[float, float] | None = None
-) -> Finding:
+def finding_of(mislabel: Mislabel, probability: float, segment: Segment | None = None) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
     return Finding(
@@ -272,7 +270,7 @@ def mislabel_in(finding: Finding) -> Mislabel:
 
 
 def undone(
-    log: dict[str, np.ndarray], mislabel: Mislabel, segments: Sequence[tuple[float, float]]
+    log: dict[str, np.ndarray], mislabel: Mislabel, segments: Sequence[Segment]
 ) -> dict[str, np.ndarray]:
     """The log, a dict of arrays by role with `time`, with a mislabel undone in some segments, or throughout.
 

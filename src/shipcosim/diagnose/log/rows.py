@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray
 
+from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.log.thresholds import UNEVEN
 
 
@@ -31,7 +32,7 @@ def usual_distance(time: np.ndarray) -> float:
     return float(np.quantile(spans, 0.95)) if np.median(off) > UNEVEN else step
 
 
-def inside(time: np.ndarray, segments: Sequence[tuple[float, float]]) -> np.ndarray:
+def inside(time: np.ndarray, segments: Sequence[Segment]) -> np.ndarray:
     """Which times are in one of the segments; all where there is none, (n,) array of bool."""
     if not segments:
         return np.ones(len(time), bool)

@@ -13,6 +13,12 @@ from shipcosim.diagnose.log.channels import Channel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table, read_columns
 
+FilePath = str | os.PathLike[str]
+"""A file or a folder."""
+
+LogSource = FilePath | xarray.Dataset
+"""A log: a file, the folder of a run, or a table."""
+
 _SHIP = {
     "north": ("x", "m"),
     "east": ("y", "m"),
@@ -35,9 +41,7 @@ _WAVES = {
 _NEEDED = ("north", "east", "heading")
 
 
-def run_as_log(
-    log: str | os.PathLike | xarray.Dataset, ship: str, thrusters: Collection[str]
-) -> str | os.PathLike | xarray.Dataset:
+def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSource:
     """A log by roles of the table of a run; any other log as it is.
 
     What the instruments of a perfect ship would show: her position, heading and velocity with the waves that she

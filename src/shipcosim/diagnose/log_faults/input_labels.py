@@ -12,7 +12,8 @@ from itertools import combinations
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.comparison.label_hypotheses import make_of
+from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.innovations import inner_products, innovations
@@ -172,7 +173,7 @@ class _Relabelled:
         record = with_inputs_of(self.problem.record, log, self.problem.model)
         return linearised_by_parts(self.problem.motion, record, self.problem.model, [], kept=False)
 
-    def likelihood(self, ends: tuple[int, int], segment: Sequence[tuple[float, float]]) -> float:
+    def likelihood(self, ends: tuple[int, int], segment: Sequence[Segment]) -> float:
         """Log-likelihood with the mislabel undone in a segment [s] between two rows, up to a constant. [nats]"""
         problem = self.problem
         steps = len(self.right.transition)
@@ -196,7 +197,7 @@ def _mislabels(log, model):
     for one, other in combinations(model.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
-        if _make(model, one) == _make(model, other):
+        if make_of(model, one) == make_of(model, other):
             found += [
                 exchanged(group)
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])
@@ -215,14 +216,8 @@ def _mislabels(log, model):
     return found
 
 
-def _make(model, name):
-    """What kind of thruster it is."""
-    third_party = model.third_party.get(name)
-    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
-
-
 def with_label(
-    log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple[float, float]] = ()
+    log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[Segment] = ()
 ) -> xarray.Dataset:
     """A repaired log with a mislabel undone, in segments [s] or everywhere."""
     fixed = undone(arrays_of(log), mislabel, segments)

@@ -204,10 +204,16 @@ def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.nda
 
 def dispersion_of(fit: JointFit) -> float:
     """How much more the parts of logs pull at the columns than by noise, mean square; 1 where the form is right."""
-    pulls = np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
+    pulls = _pulls(fit)
     known = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
     told = np.minimum(known * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT)
     return float((told * pulls**2 / np.maximum(known, 1e-12)).sum() / told.sum())
+
+
+def _pulls(fit: JointFit) -> np.ndarray:
+    """By how much each part of the logs pulls the numbers away from the fit to all parts."""
+    blocks = fit.products.blocks
+    return blocks[:, 1:, 0] - blocks[:, 1:, 1:] @ fit.left
 
 
 def _by_part(fit: JointFit) -> np.ndarray:
@@ -216,8 +222,7 @@ def _by_part(fit: JointFit) -> np.ndarray:
     Where the model's form is right this is at most the posterior's covariance; where it is not, each part of a log, and
     each day, would have other numbers (the sandwich estimator of misspecified models: White 1982).
     """
-    pulls = np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
-    moves = pulls @ fit.covariance
+    moves = _pulls(fit) @ fit.covariance
     return moves.T @ moves
 
 

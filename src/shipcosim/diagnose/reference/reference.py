@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Literal
@@ -13,6 +12,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from shipcosim.diagnose.inference.thresholds import ENOUGH
+from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.diagnose.reference.thresholds import DAY_TO_DAY, NEGLIGIBLE, ORDINARY
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
 from shipcosim.errors import Problem, ShipcosimError
@@ -123,12 +123,12 @@ class Reference(_Strict):
         head = json.dumps(content, indent=2, ensure_ascii=False).removesuffix("\n}")
         return f'{head},\n  "numbers": [\n    {numbers}\n  ],\n  "correlation": [\n    {rows}\n  ]\n}}\n'
 
-    def write(self, path: str | os.PathLike[str]) -> None:
+    def write(self, path: FilePath) -> None:
         """Write the file; it is there completely or not at all."""
         write_file(path, self.as_json().encode())
 
 
-def read_reference(path: str | os.PathLike[str] | Reference) -> Reference:
+def read_reference(path: FilePath | Reference) -> Reference:
     """Read a reference.
 
     Parameters

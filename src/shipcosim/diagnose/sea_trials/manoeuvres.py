@@ -134,7 +134,8 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
         _planned("thrusters stopped at full speed", "change of speed", _FULL, Leg(10.0, 0.0)),
         _planned("crash stop from full speed", "change of speed", _FULL, Leg(6.0, -_FULL)),
     ]
-    return [*found, *_with_bow_thruster(speeds)] if _bow_thrusters(model) else found
+    sideways = (_pushes_sideways(dp_thruster_of(model, name)) for name in model.thrusters)
+    return [*found, *_with_bow_thruster(speeds)] if any(sideways) else found
 
 
 def _with_bow_thruster(speeds):
@@ -151,10 +152,6 @@ def _with_bow_thruster(speeds):
         ):
             legs = Leg(45.0, power, np.radians(angle), bow)
             yield _planned(f"turning circle {how} at {name}", "turning circle", power, legs)
-
-
-def _bow_thrusters(model):
-    return [name for name in model.thrusters if _pushes_sideways(dp_thruster_of(model, name))]
 
 
 def _pushes_sideways(unit):

@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.dynamics import motion_rates
-from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.inputs import Inputs, ThrusterSeries
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
@@ -112,7 +112,7 @@ def steered(
     model: ShipModel,
     changes: Mapping[str, float],
     h: float,
-) -> tuple[np.ndarray, dict[str, tuple[np.ndarray, np.ndarray]]]:
+) -> tuple[np.ndarray, ThrusterSeries]:
     """Runs of a ship whose units follow what pilots order.
 
     Parameters

@@ -1,13 +1,11 @@
 """A study of sea trials: which causes explain one side's circles, and how well they predict the others."""
 
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import combinations
 from typing import Any
 
 import numpy as np
-import xarray
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.experiment.design import ExperimentDesign
@@ -15,6 +13,7 @@ from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.runs import FilePath, LogSource
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -236,10 +235,10 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
 
 
 def study(
-    log: str | os.PathLike | xarray.Dataset,
+    log: LogSource,
     system: System,
-    channels: str | os.PathLike | None = None,
-    causes: str | os.PathLike | None = None,
+    channels: FilePath | None = None,
+    causes: FilePath | None = None,
     progress: Callable[..., None] | None = None,
     *,
     orders: bool = False,
@@ -348,7 +347,7 @@ def studied(
     SeaTrialStudy
     """
     sides = {
-        name: [t for t in trials if _turns(t, side)]
+        name: [t for t in trials if t.kind == "turning circle" and t.side == side]
         for name, side in (("port", -1), ("starboard", 1))
     }
     held_out = {}
@@ -371,10 +370,6 @@ def studied(
     progress("what would tell causes apart")
     separated = separations(whole, [best, *rivals]) if best.hypotheses and rivals else []
     return SeaTrialStudy(whole, held_out, tuple(ranking), after, tuple(separated))
-
-
-def _turns(trial, side):
-    return trial.kind == "turning circle" and trial.side == side
 
 
 def _judged(train, others, model, hypotheses, orders):

@@ -8,10 +8,11 @@ import numpy as np
 import xarray
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.numerics import moving_average
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.clock import own_clock
-from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 
@@ -40,11 +41,11 @@ class SeaTrial:
 
     kind: str
     side: int
-    logged: tuple[float, float]
+    logged: Segment
     steering: float
     time: np.ndarray
     measured: np.ndarray
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
 
     @property
     def name(self) -> str:
@@ -56,7 +57,7 @@ class SeaTrial:
 def sea_trials_of(
     record: Record,
     model: ShipModel,
-    lost: Sequence[tuple[float, float]] = (),
+    lost: Sequence[Segment] = (),
     *,
     orders: bool = False,
 ) -> list[SeaTrial]:

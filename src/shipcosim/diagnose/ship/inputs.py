@@ -50,6 +50,10 @@ class Inputs(NamedTuple):
     wind_from: Arithmetic | None
 
 
+ThrusterSeries = dict[str, tuple[np.ndarray, np.ndarray]]
+"""By thruster its speed, or thrust where that drives it, and its direction. [rev/s or N, rad]"""
+
+
 @dataclass(frozen=True)
 class Record:
     """Measurements and inputs of one log, or of several of the same length with them on the first axis.
@@ -72,7 +76,7 @@ class Record:
 
     time: np.ndarray
     measured: np.ndarray
-    units: dict[str, tuple[np.ndarray, np.ndarray]]
+    units: ThrusterSeries
     wind: tuple[np.ndarray, np.ndarray] | None
     known: np.ndarray
     remarks: tuple[str, ...] = field(default=())

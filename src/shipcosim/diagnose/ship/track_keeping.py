@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping
 import numpy as np
 
 from shipcosim.diagnose.ship.dynamics import motion_rates
-from shipcosim.diagnose.ship.inputs import Inputs, Record
+from shipcosim.diagnose.ship.inputs import Inputs, Record, ThrusterSeries
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.integrate import euler
@@ -36,7 +36,7 @@ def kept_on_track(
     *,
     jolts: np.ndarray | None = None,
     held: Mapping[str, np.ndarray] | None = None,
-) -> tuple[Motion, dict[str, tuple[np.ndarray, np.ndarray]]]:
+) -> tuple[Motion, ThrusterSeries]:
     """Motion and thrusters of ships that a DP controller keeps on a track.
 
     Parameters
@@ -235,9 +235,7 @@ class DpController:
             place += len(own)
         return found
 
-    def speeds(
-        self, told: np.ndarray, record: Record, k: float
-    ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    def speeds(self, told: np.ndarray, record: Record, k: float) -> ThrusterSeries:
         """Speed and direction of each thruster: those of the record, changed by what the controller adds.
 
         The row may be a broken number, for a time between two.

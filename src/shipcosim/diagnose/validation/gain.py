@@ -427,6 +427,12 @@ def _blocks(times):
     return np.unique((times - times[0]) // BLOCK, return_inverse=True)[1]
 
 
+def resampled_sums(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Sums over as many columns as there are, drawn with repetition: (n, draws) array (bootstrap)."""
+    count = values.shape[1]
+    return values @ rng.multinomial(count, np.full(count, 1.0 / count), size=DRAWS).T
+
+
 def _resampled(squares, times, seed):
     """Mean squares of draws of blocks, (models, draws) array."""
     block = _blocks(times)
@@ -434,8 +440,5 @@ def _resampled(squares, times, seed):
     sums = np.stack(
         [np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))]
     )
-    draws = np.random.default_rng(seed).multinomial(
-        blocks, np.full(blocks, 1.0 / blocks), size=DRAWS
-    )
-    drawn = sums @ draws.T
+    drawn = resampled_sums(sums, np.random.default_rng(seed))
     return drawn[:-1] / drawn[-1]

@@ -171,7 +171,11 @@ def _cosimulated(record, model, one, rows, horizon, progress):
         f"{model.vessel}.{key}_start": value
         for key, value in zip(Motion._fields, start, strict=True)
     }
-    signals = [one.signals[role] for role in CHANNELS] if one.signals else _own_signals(model)
+    signals = (
+        [one.signals[role] for role in CHANNELS]
+        if one.signals
+        else [f"{model.vessel}.{name}" for name in Motion._fields]
+    )
     duration = STEP * np.ceil((horizon + lag) / STEP - 1e-6)
     starts = record.time[rows] - lag
     run = replay(
@@ -204,10 +208,6 @@ def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
     names = tuple(Instruments().errors)
     given = {name: number_of(part, name) for name in (*names, "lag") if name in part.fmu.variables}
     return given, given.pop("lag", 0.0)
-
-
-def _own_signals(model: ShipModel) -> list[str]:
-    return [f"{model.vessel}.{name}" for name in Motion._fields]
 
 
 def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
@@ -319,12 +319,12 @@ def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.nda
     """Errors of each prediction of one simulation after some time: distance of the positions, other channels."""
     there = one.sel(time=end, method="nearest")
     at = one["start_time"].values + float(there["time"])
-    off = {role: there[role].values - _between(tracks.measured, role, at) for role in CHANNELS}
+    # The log at these times, linear between rows; NaN where one of them has no value.
+    off = {
+        role: there[role].values
+        - np.interp(at, tracks.measured["time"].values, tracks.measured[role].values)
+        for role in CHANNELS
+    }
     off["heading"] = wrap_series(off["heading"])
     far = np.hypot(off.pop("north"), off.pop("east"))
     return {"position": far} | off
-
-
-def _between(measured: xarray.Dataset, role: str, at: np.ndarray) -> np.ndarray:
-    """A channel of the log at some times, linear between rows; NaN where one of them has no value."""
-    return np.interp(at, measured["time"].values, measured[role].values)

@@ -176,7 +176,7 @@ def _explained(side, segment):
 def _best(sides, blocks, gram, edges):
     """The segment with most evidence, None where there is too little."""
     count = len(edges) - 1
-    match = sum(side.match(columns) for side, columns in zip(sides, blocks, strict=True))
+    match = np.sum([side.match(c) for side, c in zip(sides, blocks, strict=True)], axis=0)
     span = differences(np.arange(count + 1))
     nats, value, _ = _evidence(*sums_of_runs(match, gram))
     nats[

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
     LONGEST_BRIDGE,
@@ -236,7 +237,7 @@ def _togetherness(white):
     return max(1.0, 1.0 + 2.0 * sum(together))
 
 
-def is_clear(motion: Motion, whitener: Filter, segment: tuple[float, float] | None = None) -> bool:
+def is_clear(motion: Motion, whitener: Filter, segment: Segment | None = None) -> bool:
     """Whether the ship moves so much that the noise of its velocity hardly makes slopes on it too small."""
     time = motion.time
     moving = whitener.gains < 1.0

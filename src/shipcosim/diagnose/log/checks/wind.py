@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -153,9 +153,7 @@ def _unit(time, y, x, smooth, wind, slow):
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
 
-def leaps(
-    time: np.ndarray, speed: np.ndarray, segment: tuple[float, float] | None, factor: float
-) -> bool:
+def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: float) -> bool:
     """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log.
 
     Parameters

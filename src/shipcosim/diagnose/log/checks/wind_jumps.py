@@ -67,7 +67,8 @@ def _best_pair(logged, undone):
     """Gain of undoing a mislabel between two rows, less the cost of choosing them, and the first and last row."""
     before, after = _means(logged)
     before_undone, after_undone = _means(undone)
-    scale = _spread(_jump(before, after))
+    # Usual size of jumps, as if they were normal.
+    scale = 1.4826 * np.median(np.abs(_jump(before, after)), axis=0) + 0.02
     begins = _gain(_jump(before, after), _jump(before, after_undone), scale)
     ends = _gain(_jump(before, after), _jump(before_undone, after), scale)
     begins, ends = (np.where(gain > JUMP_GAIN, gain, -np.inf) for gain in (begins, ends))
@@ -91,11 +92,6 @@ def _jump(before, after):
     """Change of speed as a logarithm, and of direction in radians: (n, 2)."""
     speeds = [np.log(np.maximum(np.abs(mean), CALM_WIND)) for mean in (before, after)]
     return np.column_stack([speeds[1] - speeds[0], np.angle(after * np.conj(before))])
-
-
-def _spread(jumps):
-    """Usual size of jumps, as if they were normal."""
-    return 1.4826 * np.median(np.abs(jumps), axis=0) + 0.02
 
 
 def _gain(given, otherwise, scale):
