@@ -315,6 +315,11 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
 
     fmus = library.fmus(path, build=False)
     problems = check_file(file, fmus=fmus)
+    is_readable = not any(problem.severity == "error" for problem in problems)
+    if path.suffix.lower() == ".fmu" and is_readable:
+        from shipcosim.cosim.slaves.validation import validation_problems
+
+        problems += validation_problems(path)
     if any(problem.severity == "error" for problem in problems):
         missing = [
             folder

@@ -128,6 +128,17 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
         raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
 
 
+def error_at(where: str, found: str, remedy: str = "") -> ShipcosimError:
+    """An error of one problem, to be raised; parameters as of `Problem`.
+
+    Examples
+    --------
+    >>> print(error_at("gust.toml, line 3", "stop_time = -1.", "Give a time above 0."))
+    gust.toml, line 3: stop_time = -1. Give a time above 0.
+    """
+    return ShipcosimError(Problem(where, found, remedy))
+
+
 def held_strictly(problems: Iterable[Problem]) -> list[Problem]:
     """The problems, with flaws that have only one meaning as errors.
 
@@ -201,3 +212,25 @@ def it_has(name: str, known: Iterable[str]) -> str:
     "It has: thrust_cmd. Did you mean 'thrust_cmd'?"
     """
     return "It has" + suggestion(name, known).removeprefix("There is")
+
+
+@contextmanager
+def imported(where: str, found: str, extra: str = "sweep") -> Iterator[None]:
+    """For an import of a library that an extra of the package brings.
+
+    Parameters
+    ----------
+    where, found : str
+        As of the problem, where the library is missing.
+    extra : str
+        That brings it.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is missing, with what to install.
+    """
+    try:
+        yield
+    except ImportError:
+        raise error_at(where, found, f"Install it: pip install 'shipcosim[{extra}]'.") from None

@@ -21,6 +21,10 @@ TIMEOUT = 60.0
 """How long a component in its own process may take for an answer, if nothing else is said. [s]"""
 
 
+CountProgress = Callable[[int, int], None]
+"""Is called with how many are done, and of how many."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RunOptions:
     """How a run is carried out.
@@ -64,7 +68,7 @@ class RunOptions:
 
     engine: str = "fmpy"
     inputs: xarray.Dataset | None = None
-    progress: Callable[[int, int], None] | None = None
+    progress: CountProgress | None = None
     order: str = "jacobi"
     start_time: float = 0.0
     until: float | None = None
@@ -91,7 +95,7 @@ class RunKeywords(TypedDict, total=False):
 
     engine: str
     inputs: xarray.Dataset | None
-    progress: Callable[[int, int], None] | None
+    progress: CountProgress | None
     order: str
     until: float | str | None
     resume: Snapshot | str | os.PathLike[str] | None

@@ -18,6 +18,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 import numpy as np
 
@@ -45,6 +46,9 @@ LARGEST_TABLE = 8 << 30
 SMALL = 64 << 20
 MOST_PACKED = 100
 """A packed file may unpack to so many bytes, or to so many times its size."""
+
+OWN_NAME = "own_name"
+"""Attribute of a variable whose name NetCDF cannot have."""
 
 _HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
 
@@ -265,7 +269,14 @@ def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float
 
 
 def _netcdf(table: xarray.Dataset) -> bytes:
-    return bytes(table.to_netcdf(engine="h5netcdf"))
+    # HDF5 separates groups by slashes and takes dots for places; such names stand in an attribute.
+    table = table.copy()
+    names = {}
+    for name in table.data_vars:
+        if "/" in str(name) or not str(name).strip("."):
+            names[name] = quote(str(name), safe="").replace(".", "%2E")
+            table[name].attrs[OWN_NAME] = str(name)
+    return bytes(table.rename(names).to_netcdf(engine="h5netcdf"))
 
 
 def _csv(table: xarray.Dataset) -> bytes:
@@ -298,7 +309,13 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     try:
         _check_declared(path)
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as table:
-            return table.load()
+            table = table.load()
+        own = {
+            name: variable.attrs.pop(OWN_NAME)
+            for name, variable in table.variables.items()
+            if OWN_NAME in variable.attrs
+        }
+        return table.rename(own)
     except (
         Exception
     ) as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too

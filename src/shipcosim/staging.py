@@ -9,13 +9,13 @@ from __future__ import annotations
 import os
 import re
 import sys
-import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.temporary import temporary_folder
 
 
 def check_targets(folder: Path | None, file: Path | None = None) -> None:
@@ -78,7 +78,7 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
     was_there = folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as name:
+        with temporary_folder(folder, unfinished=True) as name:
             stage = Path(name)
             try:
                 yield stage

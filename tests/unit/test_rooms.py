@@ -9,7 +9,8 @@ MAY_IMPORT = {
     "errors": set(),
     "units": set(),
     "angles": set(),
-    "staging": {"errors"},
+    "temporary": set(),
+    "staging": {"errors", "temporary"},
     "models": {"angles"},
     "snapshot": {"errors", "series", "scenario", "ssp"},
     "options": {"errors", "snapshot"},
@@ -18,11 +19,12 @@ MAY_IMPORT = {
     "fmi": {"models", "errors", "units"},
     "interfaces": {"fmi", "models", "angles"},
     "library": {"fmi", "errors"},
-    "ssp": {"library", "series", "errors", "units"},
+    "ssp": {"library", "series", "errors", "temporary", "units"},
     "scenario": {"library", "series", "ssp", "errors", "units", "angles"},
     "learn": {"library", "angles", "models", "series", "ssp", "scenario", "cosim"},
-    "native": {"library", "fmi", "errors"},
+    "native": {"library", "fmi", "errors", "temporary"},
     "cosim": {
+        "temporary",
         "library",
         "series",
         "ssp",
@@ -35,6 +37,7 @@ MAY_IMPORT = {
         "native",
     },
     "diagnose": {
+        "temporary",
         "library",
         "dialects",
         "errors",
@@ -50,6 +53,7 @@ MAY_IMPORT = {
     "ships": {"errors", "units", "models", "ssp"},
     "capability": {"library", "errors", "angles", "models", "ships", "ssp"},
     "sweep": {
+        "temporary",
         "library",
         "errors",
         "options",
@@ -90,6 +94,7 @@ MAY_IMPORT = {
         "sweep",
     },
     "results": {
+        "temporary",
         "errors",
         "options",
         "staging",
@@ -103,6 +108,7 @@ MAY_IMPORT = {
         "sweep",
     },
     "calls": {
+        "temporary",
         "errors",
         "options",
         "staging",
@@ -118,6 +124,7 @@ MAY_IMPORT = {
         "results",
     },
     "cli": {
+        "temporary",
         "errors",
         "staging",
         "units",
@@ -150,6 +157,7 @@ ONLY_DOOR = {
     "platformdirs": {"library"},
     "jinja2": {"report.theme"},
     "markupsafe": {"report.theme"},
+    "matplotlib": {"report.notebook"},
     "typer": {"cli"},
     "scipy": {"sweep"},  # 143 MB: an extra
     "SALib": {"sweep"},

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from shipcosim import cosim, library
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
 from shipcosim.scenario import Scenario, check_files, check_times
@@ -56,9 +56,7 @@ def named(argument: str) -> str:
 def find(kind: str, given: Any, argument: str = "") -> Path:
     """Path of a file or name, as `library.find`; errors name the argument."""
     if not isinstance(given, (str, os.PathLike)):
-        raise ShipcosimError(
-            Problem(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them.")
-        )
+        raise error_at(kind, f"{given!r:.60} is neither a path nor a name.", "Give one of them.")
     return library.find(kind, given, named(argument) if argument else "")
 
 
@@ -72,9 +70,7 @@ def listed(given: AnyPath | Iterable[AnyPath] | None) -> list[AnyPath]:
 def mapping(argument: str, given: Any) -> dict[str, Any]:
     """An argument that is a mapping, as a dict."""
     if given is not None and not isinstance(given, Mapping):
-        raise ShipcosimError(
-            Problem("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.')
-        )
+        raise error_at("", f"{argument} = {given!r:.60}.", 'Give a dict: {"vessel.mass": 5e5}.')
     return dict(given or {})
 
 
@@ -148,9 +144,7 @@ class Reading:
         if isinstance(given, System):
             if swapped:
                 found = "A system that is read keeps its FMUs."
-                raise ShipcosimError(
-                    Problem("components", found, "Give its path, its name or a SystemStructure.")
-                )
+                raise error_at("components", found, "Give its path, its name or a SystemStructure.")
             return given
         if isinstance(given, SystemStructure):
             return given.checked(parameters, swapped)
@@ -197,7 +191,7 @@ def is_scenario(given: AnyPath) -> bool:
     systems = library.names("system")
     if text not in scenarios and text not in systems:
         remedy = suggestion(text, {*scenarios, *systems})
-        raise ShipcosimError(Problem(text, "There is no such scenario or system.", remedy))
+        raise error_at(text, "There is no such scenario or system.", remedy)
     return text in scenarios
 
 
@@ -370,9 +364,7 @@ def source_of(
     if hasattr(log, "data_vars"):
         return log, channels
     if not isinstance(log, (str, os.PathLike)):
-        raise ShipcosimError(
-            Problem("log", f"{log!r:.60} is neither a path nor a name.", "Give one of them.")
-        )
+        raise error_at("log", f"{log!r:.60} is neither a path nor a name.", "Give one of them.")
     return path_of_log(log), channels
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar, cast
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.options import RunKeywords
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -49,7 +49,7 @@ def with_known_keywords(function: Function) -> Function:
         except TypeError as error:
             text = str(error)
             remedy = f"Its form is {function.__name__}({', '.join(known)})."
-            raise ShipcosimError(Problem(where, f"{text[:1].upper()}{text[1:]}.", remedy)) from None
+            raise error_at(where, f"{text[:1].upper()}{text[1:]}.", remedy) from None
         return function(*arguments, **keywords)
 
     return cast(Function, call)

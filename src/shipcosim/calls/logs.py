@@ -22,7 +22,7 @@ from shipcosim.calls.arguments import (
     values_of_sets,
 )
 from shipcosim.calls.keywords import with_known_keywords
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, error_at
 from shipcosim.results.diagnosis import DiagnosisOfLog, DiagnosisOfLogs
 from shipcosim.results.log import Log
 from shipcosim.results.shown import parts_of
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
     from shipcosim.diagnose.pipeline import Progress
     from shipcosim.diagnose.reference.reference import Reference
+    from shipcosim.options import CountProgress
     from shipcosim.results.run import Run
 
     AnyLog = AnyPath | xarray.Dataset | Log | Run
@@ -180,7 +181,7 @@ def replay(
     *,
     parameters: Sequence[AnyPath] = (),
     horizon: float | str | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
     out: AnyPath | None = None,
     force: bool = False,
 ) -> Replay:
@@ -265,7 +266,7 @@ def _extended_from(system: System, given: str) -> str:
     """Name of the system that was extended, where it is one of the project's."""
     if library.named("system", system.name) is None:
         found = f"it extends a system '{system.name}', which has no name here."
-        raise ShipcosimError(Problem(given, found, f"Say which one it was: {named('before')}."))
+        raise error_at(given, found, f"Say which one it was: {named('before')}.")
     return system.name
 
 

@@ -29,7 +29,7 @@ from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.cosim import Interrupted, RunError, Snapshot, interpolated, write_snapshot
 from shipcosim.cosim import simulate as simulate_system
 from shipcosim.cosim.simulate import clock_start
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
 from shipcosim.scenario import (
@@ -434,9 +434,7 @@ def system_for(
 ) -> System:
     """The checked system that is given, or the scenario's, with the scenario's parameter sets and FMUs."""
     if system is None and scenario is None:
-        raise ShipcosimError(
-            Problem("simulate", "system is missing.", "Give a system or a scenario.")
-        )
+        raise error_at("simulate", "system is missing.", "Give a system or a scenario.")
     if scenario is None or isinstance(system, System):
         assert system is not None
         return Reading(parameters=parameters, components=components, strict=strict).system(system)
@@ -456,12 +454,10 @@ def fed_by(
     if table is None:
         if interpolate or max_gap is not None:
             found = "There is no table that this could be about."
-            raise ShipcosimError(
-                Problem(
-                    f"{named('interpolate')}, {named('max_gap')}",
-                    found,
-                    f"Give one as {named('inputs')}.",
-                )
+            raise error_at(
+                f"{named('interpolate')}, {named('max_gap')}",
+                found,
+                f"Give one as {named('inputs')}.",
             )
         return None
     longest = in_seconds({"max_gap": max_gap}, ["max_gap"])["max_gap"]
@@ -483,9 +479,7 @@ def options_of(given: Mapping[str, Any]) -> RunOptions:
         If a time is none, or a timeout is given for components that are not isolated.
     """
     if given.get("timeout") is not None and not given.get("isolate"):
-        raise ShipcosimError(
-            Problem(named("timeout"), "Without isolate there is no limit to a component's time.")
-        )
+        raise error_at(named("timeout"), "Without isolate there is no limit to a component's time.")
     return RunOptions(**in_seconds(given, ("start_time", "until", "timeout")))
 
 

@@ -12,7 +12,8 @@ from typing import Any
 from shipcosim.calls.arguments import AnyPath, find, mapping
 from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.runs import PreparedRun, prepare_run
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
+from shipcosim.options import CountProgress
 from shipcosim.results.run import Run
 from shipcosim.results.shown import parts_of
 from shipcosim.results.study import StudyResult
@@ -65,9 +66,7 @@ class PlannedStudy:
         """
         if not 0 <= number < len(self.plan):
             remedy = f"Runs are numbered from 0 to {len(self.plan) - 1}."
-            raise ShipcosimError(
-                Problem(self.plan.study.name, f"There is no run {number}.", remedy)
-            )
+            raise error_at(self.plan.study.name, f"There is no run {number}.", remedy)
         values = [f"{name} {value}" for name, value in self.plan.run(number).columns.items()]
         changed = [f"run {number} of the study {self.plan.study.name}", *values]
         return prepare_run(self.plan.alone(number), changed=changed, engine=self.engine)
@@ -113,7 +112,7 @@ def sweep(
     engine: str = "native",
     set: Mapping[str, object] | None = None,
     at_most: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
     force: bool = False,
 ) -> StudyResult:
     """Run a study: a scenario many times, with other weather, events, parameters.

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from shipcosim import library
@@ -25,8 +24,8 @@ from shipcosim.calls.arguments import (
     without_none,
 )
 from shipcosim.calls.keywords import with_known_keywords
-from shipcosim.errors import Problem, ShipcosimError, held_strictly
-from shipcosim.options import RunOptions
+from shipcosim.errors import error_at, held_strictly
+from shipcosim.options import CountProgress, RunOptions
 from shipcosim.results.check import CheckedFiles
 from shipcosim.results.shown import parts_of
 from shipcosim.results.studies import CapabilityOfShip, EngineComparison
@@ -34,6 +33,7 @@ from shipcosim.scenario import Scenario
 from shipcosim.ssp import System, SystemStructure, osp_file, pack
 from shipcosim.ssp import read as read_structure
 from shipcosim.staging import check_targets
+from shipcosim.temporary import temporary_folder
 
 SYSTEM_OF_CAPABILITY = "gunnerus_dp"
 """Whose capability is computed where no system is given."""
@@ -138,7 +138,7 @@ def compare(
     tolerance: float = 1e-9,
     as_read: bool = False,
     strict: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> EngineComparison:
     """Run on every engine that is installed, and on ours with half the step; by how much does each signal differ?
 
@@ -220,25 +220,21 @@ def _as_read(
     from shipcosim.ssp.portability.as_interpreted import taken_by, told_set
 
     if not isinstance(given, (str, os.PathLike)):
-        raise ShipcosimError(
-            Problem("as_read", "There is no file that a tool could read.", "Give the path of one.")
+        raise error_at(
+            "as_read", "There is no file that a tool could read.", "Give the path of one."
         )
     name = library.find_any(os.fspath(given))
     path = Path(name)
     fmus = library.fmus(name)
     if parameters:
-        raise ShipcosimError(
-            Problem(named("parameters"), "A tool that reads the file itself does not know them.")
-        )
+        raise error_at(named("parameters"), "A tool that reads the file itself does not know them.")
     if system.swapped:
         found = f"A tool that reads the file itself runs the FMU that it names for {', '.join(system.swapped)}."
-        raise ShipcosimError(
-            Problem(name, found, f"Compare FMUs in place of others without {named('as_read')}.")
-        )
+        raise error_at(name, found, f"Compare FMUs in place of others without {named('as_read')}.")
     if system.experiment.start_time:
         found = f"The system starts at {system.experiment.start_time:g} s, but a comparison starts at 0."
-        raise ShipcosimError(Problem(name, found, "Let it start at 0."))
-    with TemporaryDirectory(prefix="shipcosim-") as folder:
+        raise error_at(name, found, "Let it start at 0.")
+    with temporary_folder() as folder:
         if structure := osp_file(path):
             yield {"readers": readers(structure.resolve(), scenario)}
             return
@@ -251,7 +247,7 @@ def _as_read(
             remedy = (
                 "Give an .ssp, a folder with a SystemStructure.ssd, or an OspSystemStructure.xml."
             )
-            raise ShipcosimError(Problem(name, "The tools cannot read this themselves.", remedy))
+            raise error_at(name, "The tools cannot read this themselves.", remedy)
         yield {
             "readers": readers(packed, scenario, set_name=told_set(name, fmus=fmus)),
             "taken": partial(taken_by, path=name, fmus=fmus),

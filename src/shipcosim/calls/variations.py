@@ -19,7 +19,7 @@ from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.calls.runs import system_for
 from shipcosim.cosim import Variation
 from shipcosim.cosim import simulate_many as run_variations
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.options import RunOptions
 from shipcosim.results.signals import chosen
 from shipcosim.scenario import Scenario
@@ -28,6 +28,8 @@ from shipcosim.ssp import System, with_values
 if TYPE_CHECKING:
     import pandas
     import xarray
+
+    from shipcosim.options import CountProgress
 
 
 @with_known_keywords
@@ -46,7 +48,7 @@ def simulate_many(
     components: Mapping[str, AnyPath] | None = None,
     events: Iterable[Mapping[str, object]] = (),
     engine: str = "native",
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> xarray.Dataset:
     """Run many variations of one run, on all cores.
 
@@ -94,9 +96,7 @@ def simulate_many(
     """
     if engine not in ("native", "fmpy"):
         found = f"engine = {engine!r}."
-        raise ShipcosimError(
-            Problem("simulate_many()", found, "Variations are run by 'native' or 'fmpy'.")
-        )
+        raise error_at("simulate_many()", found, "Variations are run by 'native' or 'fmpy'.")
     if scenario is not None:
         scenario = read_scenario(scenario)
     ship = system_for(system, scenario, components=components)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
 from shipcosim import library
 from shipcosim.capability.vessel import Vessel, read_vessel
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 from shipcosim.ships import read_ship
-from shipcosim.ssp import osp_file, read, read_system
+from shipcosim.ssp import AnyPath, osp_file, read, read_system
 
 
 def vessel_of(
-    system: str | os.PathLike[str],
-    parameters: Sequence[str | os.PathLike[str]] = (),
+    system: AnyPath,
+    parameters: Sequence[AnyPath] = (),
     ship: str | None = None,
 ) -> Vessel:
     """The vessel of a system whose capability is asked for.
@@ -75,9 +74,7 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
             return folder
     known = [file.parent.name for file in sorted(ships.glob("*/ship.toml"))]
     found = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
-    raise ShipcosimError(
-        Problem("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
-    )
+    raise error_at("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
 
 
 def _ships(system: Path) -> Path:

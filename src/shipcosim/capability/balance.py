@@ -55,7 +55,13 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
     best = np.zeros(len(loads))
     # Newton and newton metres differ in size; scaled to one size they suit the tolerance of the
     # linear programme.
-    scale = _scale(actuators)
+    # Force: the sum of the largest thrusts. Moment: this force on the longest lever, at least 1 m.
+    force = sum(
+        max((float(np.abs(piece).max(initial=0.0)) for piece in a.pieces), default=0.0)
+        for a in actuators
+    )
+    lever = max((float(np.hypot(a.x, a.y)) for a in actuators), default=0.0)
+    scale = np.array([force, force, force * max(lever, 1.0)]) if force > 0.0 else None
     if not len(loads) or scale is None:
         return best
     left = np.stack([a.left for a in actuators], axis=1)
@@ -65,17 +71,6 @@ def largest_share(actuators: Sequence[Actuator], loads: NDArray) -> NDArray:
         sets = [_columns(a, piece) / scale for a, piece in zip(actuators, choice, strict=True)]
         best = np.maximum(best, np.minimum(largest_multiple(sets, left, -loads / scale), MOST))
     return best
-
-
-def _scale(actuators: Sequence[Actuator]) -> NDArray | None:
-    """Sizes of force and moment that make them of one size; None where there is no thrust."""
-    # Force: the sum of the largest thrusts. Moment: this force on the longest lever, at least 1 m.
-    force = sum(
-        max((float(np.abs(piece).max(initial=0.0)) for piece in a.pieces), default=0.0)
-        for a in actuators
-    )
-    lever = max((float(np.hypot(a.x, a.y)) for a in actuators), default=0.0)
-    return np.array([force, force, force * max(lever, 1.0)]) if force > 0.0 else None
 
 
 def _columns(actuator: Actuator, corners: NDArray) -> NDArray:

@@ -18,11 +18,11 @@ from shipcosim.capability.thrust import (
     Thruster,
     nominal_thrust,
 )
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import DriftParameters
-from shipcosim.ships import Ship
+from shipcosim.ships import Quantity, Ship
 from shipcosim.ssp import Component, System
 
 Kind = TypeVar("Kind")
@@ -50,17 +50,6 @@ class Simulated:
 
 
 @dataclass(frozen=True)
-class Particular:
-    """A number that stands in a file of the ship, for the reader: its file, meaning, value, unit and origin."""
-
-    file: str
-    description: str
-    value: Any
-    unit: str
-    origin: str
-
-
-@dataclass(frozen=True)
 class Vessel:
     """A ship, as Level 1 and as the simulator have her.
 
@@ -72,8 +61,8 @@ class Vessel:
     thrusters : tuple of Thruster
         With their nominal thrust.
     simulated : Simulated
-    particulars : tuple of Particular
-        All that was read from the files of the ship.
+    particulars : mapping of str to mapping of str to Quantity
+        All that was read from the files of the ship, by file and name.
     buses : mapping of str to tuple of str
         Names of the thrusters that each bus of the switchboard feeds; empty where the system has none.
     """
@@ -84,7 +73,7 @@ class Vessel:
     hull: Hull
     thrusters: tuple[Thruster, ...]
     simulated: Simulated
-    particulars: tuple[Particular, ...]
+    particulars: Mapping[str, Mapping[str, Quantity]]
     buses: Mapping[str, tuple[str, ...]]
 
 
@@ -117,10 +106,8 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     if left_out := [
         f"{part.name}.{name}" for part in (body, *units.values()) for name in part.left_out
     ]:
-        raise ShipcosimError(
-            Problem(
-                system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
-            )
+        raise error_at(
+            system.file, f"nothing says {', '.join(left_out)}.", "Give a set with --parameters."
         )
     # All files of the ship are read before anything is checked, so that all errors come together.
     said = ship.parameter_set(asked)
@@ -140,16 +127,11 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
         _thruster(unit, ThrusterParticulars(**values[_file(name)]), hull)
         for name, unit in units.items()
     ]
-    listed = [
-        Particular(f, q.description, q.value, q.unit, q.origin)
-        for f, e in said.items()
-        for q in e.values()
-    ]
     # The second method needs the simulator's own models and limits.
     simulated = _simulated(body, units)
     buses = _buses(system, list(units))
     return Vessel(
-        ship.name, ship.description, system.name, hull, tuple(made), simulated, tuple(listed), buses
+        ship.name, ship.description, system.name, hull, tuple(made), simulated, said, buses
     )
 
 
@@ -172,7 +154,7 @@ def _vessel_of(system: System) -> Component:
             else f"{len(found)} vessels, {', '.join(c.name for c in found)},"
         )
         remedy = "It needs one whose FMU has the parameters of fmus/vessel, with the forces of thrusters connected to it."
-        raise ShipcosimError(Problem(system.file, f"{what} found.", remedy))
+        raise error_at(system.file, f"{what} found.", remedy)
     return found[0]
 
 
@@ -184,7 +166,7 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
     found = {name: part for name, part in parts.items() if part.fmu.variables.keys() >= _THRUSTER}
     if not found:
         remedy = "It needs components with the parameters of fmus/azimuth_thruster or fmus/tunnel_thruster."
-        raise ShipcosimError(Problem(system.file, f"no thruster is connected to {vessel}.", remedy))
+        raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)
     return found
 
 

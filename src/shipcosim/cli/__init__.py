@@ -8,6 +8,7 @@ import io
 import sys
 
 from shipcosim.cli.app import app
+from shipcosim.cli.exit_guard import guard_exit, release_exit
 
 
 def main() -> None:
@@ -15,7 +16,16 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a console that knows no '≥' shows '?'
-    app(prog_name="shipcosim")
+    guard_exit()
+    code = 1
+    try:
+        app(prog_name="shipcosim")
+        code = 0
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else int(end.code is not None)
+        raise
+    finally:
+        release_exit(code)
 
 
 __all__ = ["app", "main"]

@@ -94,7 +94,9 @@ def _row(signal: Signal, others: Sequence[str]) -> list[str]:
         if len(signal.agreeing) == 1
         else " | ".join(" = ".join(group) for group in signal.agreeing)
     )
-    return [*cells, f"{signal.step.largest:.1e}", f"{signal.step.relative:.1e}", groups]
+    step = signal.step
+    by_half = ["not tried", ""] if step is None else [f"{step.largest:.1e}", f"{step.relative:.1e}"]
+    return [*cells, *by_half, groups]
 
 
 def _verdict(comparison: Comparison) -> tuple[Text, Text]:

@@ -196,5 +196,6 @@ def print_report(checked: CheckedFiles, as_json: bool) -> None:
         elif remarks:
             said = f"no error, {remarks} remark{'s' * (remarks > 1)}"
         else:
-            said = "nothing wrong"
+            is_fmu = file.lower().endswith(".fmu")
+            said = "nothing wrong" + is_fmu * " in its description; its binaries were not loaded"
         console.print(Text(f"{file}: {said}"))

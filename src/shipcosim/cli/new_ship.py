@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import shutil
 import sys
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ from shipcosim.cli.console import print_problems, shown_path
 from shipcosim.cli.terminal import say
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.writing import LAYOUTS, Answers, ship_text, thruster_from, usual
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     from shipcosim.ships import Described
@@ -143,7 +143,7 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
     if errors := [problem for problem in found if problem.severity == "error"]:
         raise ShipcosimError(errors)
     named = _renamed(ship, name, target)
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         stage = Path(folder)
         systems = make_systems(ship if named is None else named, stage / "ssp", library.fmus())
         files = {f"ssp/{path.name}": path for path in systems}
@@ -190,11 +190,15 @@ def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
     written = []
     for name, made in files.items():
         path = project / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if made.is_dir():
-            shutil.copytree(made, path, dirs_exist_ok=True)
-        else:
-            shutil.copyfile(made, path)
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if made.is_dir():
+                shutil.copytree(made, path, dirs_exist_ok=True)
+            else:
+                shutil.copyfile(made, path)
+        except OSError as error:
+            found = f"cannot be written: {error.strerror or error}."
+            raise ShipcosimError(Problem(str(path), found)) from None
         written.append(path)
     return written
 

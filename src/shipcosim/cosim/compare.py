@@ -39,8 +39,8 @@ class Signal:
         Largest minus smallest value in our run.
     engines : dict of str to Difference
         Of each other engine that has the signal, from ours.
-    step : Difference
-        Of our run with half the step from that with the whole one.
+    step : Difference or None
+        Of our run with half of all steps from that with the whole ones; None where the system does not run with half.
     agreeing : list of list of str
         Engines that agree with each other; ours is in the first of these groups.
     causes : dict of str to list of str
@@ -51,7 +51,7 @@ class Signal:
     unit: str
     range: float
     engines: Mapping[str, Difference]
-    step: Difference
+    step: Difference | None
     agreeing: list[list[str]] = field(default_factory=list)
     causes: Mapping[str, list[str]] = field(default_factory=dict)
 
@@ -136,7 +136,7 @@ def compare(
     tables = {}
     # The change with half the step estimates the error that the step size causes. A difference
     # between engines below it is no fault of an engine.
-    half = runs.run(OURS, halved(scenario), weight=2)
+    half = runs.run_halved(scenario)
     seconds = {OURS: runs.seconds[0]}
     failed = []
     for name in names:
@@ -170,7 +170,10 @@ def compare(
         remarks[name] = [remarks[name][0], *found] if found else remarks[name]
         signals = [_with_cause(signal, name, causes) for signal in signals]
     # The worst signal first, then the one with the largest step-size error.
-    signals.sort(key=lambda signal: (signal.worst, signal.step.relative), reverse=True)
+    signals.sort(
+        key=lambda signal: (signal.worst, signal.step.relative if signal.step else 0.0),
+        reverse=True,
+    )
     return Comparison(signals, seconds, left_out, remarks, tolerance, tuple(failed))
 
 
@@ -207,10 +210,16 @@ def _explained_by_reading(host, taken, ours, theirs, scenario, tolerance):
     return remarks, causes
 
 
-def halved(scenario: Scenario) -> Scenario:
-    """The scenario with half the step and a row at every whole step."""
+def halved(system: System, scenario: Scenario) -> tuple[System, Scenario]:
+    """System and scenario with half of all steps, those of components' own too, and a row at every whole step."""
     step = scenario.step_size
-    return scenario.model_copy(update={"step_size": step / 2.0, "output_interval": step})
+    components = {
+        name: replace(one, step_size=one.step_size / 2.0) if one.step_size else one
+        for name, one in system.components.items()
+    }
+    return replace(system, components=components), scenario.model_copy(
+        update={"step_size": step / 2.0, "output_interval": step}
+    )
 
 
 class _Runs:
@@ -222,6 +231,17 @@ class _Runs:
         self.n_parts = n_parts
         self.seconds = []
         self._done = 0
+
+    def run_halved(self, scenario):
+        """Our run with half of all steps; None where the system does not run so."""
+        whole = self.system
+        self.system, scenario = halved(whole, scenario)
+        try:
+            return self.run(OURS, scenario, weight=2)
+        except ShipcosimError:
+            return None
+        finally:
+            self.system = whole
 
     def run(self, engine, scenario, weight=1, reader=None):
         def report(done, total):
@@ -247,7 +267,7 @@ def _signal(name, ours, tables, half, tolerance):
     spread = float(np.ptp(values)) if len(values) else 0.0
     having = {engine: table for engine, table in tables.items() if name in table}
     engines = {engine: difference(name, ours, table, spread) for engine, table in having.items()}
-    step = difference(name, ours, half, spread)
+    step = None if half is None else difference(name, ours, half, spread)
     groups = _groups(name, {OURS: ours} | having, tolerance)
     return Signal(str(name), ours[name].attrs.get("units", ""), spread, engines, step, groups)
 

@@ -11,7 +11,7 @@ import shipcosim
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
-from shipcosim.diagnose.log.runs import FilePath, LogSource
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import (
     AnySystem,
@@ -33,8 +33,8 @@ from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference,
 from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.ssp import System
+from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.ssp import AnyPath, System
 
 READING = "are the logs right?"
 
@@ -105,11 +105,11 @@ def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
 def calibrate(
     logs: Sequence[LogSource],
     system: AnySystem,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: FilePath | None = None,
+    out: AnyPath | None = None,
 ) -> CalibratedShip:
     """Fit a ship's numbers to logs in which she is known to be well.
 
@@ -200,7 +200,7 @@ def _check_usable(found: dict[str, Identification]) -> None:
 def log_names(logs: Sequence[LogSource]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
-        raise ShipcosimError(Problem("logs", "There are none.", "Give at least one log."))
+        raise error_at("logs", "There are none.", "Give at least one log.")
     stems = [_stem(log, k) for k, log in enumerate(logs, start=1)]
     return [
         stem if stems.count(stem) == 1 else f"{stem}-{k}" for k, stem in enumerate(stems, start=1)
@@ -216,8 +216,8 @@ def _stem(log, number):
 def problems_of(
     logs: Sequence[LogSource],
     system: System,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
     reference: Reference | None = None,

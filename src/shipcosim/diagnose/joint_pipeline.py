@@ -30,8 +30,7 @@ from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-from shipcosim.diagnose.inference.fitting import IdentificationProblem
-from shipcosim.diagnose.log.runs import FilePath, LogSource
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
 from shipcosim.diagnose.pipeline import (
     AnySystem,
@@ -65,7 +64,7 @@ from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import with_thrust
-from shipcosim.ssp import System
+from shipcosim.ssp import AnyPath, System
 
 
 def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
@@ -84,12 +83,12 @@ def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
 def diagnose_jointly(
     logs: Sequence[LogSource],
     system: AnySystem,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: FilePath | None = None,
-    reference: FilePath | Reference | None = None,
+    out: AnyPath | None = None,
+    reference: AnyPath | Reference | None = None,
 ) -> JointDiagnosis:
     """Diagnose several logs of one ship together: what they have in common, the system with it, what that gains.
 
@@ -163,8 +162,8 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
 def find_common_causes(
     logs: Sequence[LogSource],
     system: System,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> JointDiagnosis:
@@ -261,13 +260,20 @@ def _together(
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
     say("all logs together")
-    verdict = judged_jointly(
-        SeveralLogs(_of_one_form({name: one.problem for name, one in about.items()}))
+    # The problems of a ship whose form may differ by one scale: that of the log that says most of it.
+    problems = {name: one.problem for name, one in about.items()}
+    widest = max(problem.model.form_scale for problem in problems.values())
+    of_one_form = {
+        name: problem
+        if problem.model.form_scale == widest or problem.model.directions
+        else of_scale(problem, widest)
+        for name, problem in problems.items()
+    }
+    verdict = judged_jointly(SeveralLogs(of_one_form))
+    # Whether a common ratio is named: where it is gross, or where no cause explains the logs.
+    has_ratio = ratios.common is not None and ratios.common.differs(
+        GROSS if verdict.judgement.verdict != "unknown" else PLAIN
     )
-
-    # A common ratio is named where it is gross, or where no cause explains the logs.
-    least = GROSS if verdict.judgement.verdict != "unknown" else PLAIN
-    has_ratio = ratios.common is not None and ratios.common.differs(least)
     basis = JointBasis(verdict, ratios, has_ratio)
     said = replace(
         found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()}
@@ -302,17 +308,6 @@ def _about_common(
     if ratio is not None:
         read = replace(read, ship=with_thrust(ship, ratio.ratio, ratio.std))
     return with_learnt_form(corrected(problem_of(read)))
-
-
-def _of_one_form(problems: dict[str, IdentificationProblem]) -> dict[str, IdentificationProblem]:
-    """The problems of a ship whose form may differ by one scale: that of the log that says most of it."""
-    widest = max(problem.model.form_scale for problem in problems.values())
-    return {
-        name: problem
-        if problem.model.form_scale == widest or problem.model.directions
-        else of_scale(problem, widest)
-        for name, problem in problems.items()
-    }
 
 
 def _stated(found: JointDiagnosis) -> JointDiagnosis:

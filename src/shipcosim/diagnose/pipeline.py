@@ -27,7 +27,6 @@ From the verdict to the gain, `diagnose`:
     completed          Diagnosis       errors, gain, and all that the page shows
 """
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -43,7 +42,7 @@ from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_crude
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.runs import FilePath, LogSource, run_as_log
+from shipcosim.diagnose.log.runs import LogSource, run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
@@ -54,9 +53,10 @@ from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
-from shipcosim.ssp import System, SystemStructure, read
+from shipcosim.ssp import AnyPath, System, SystemStructure, read
+from shipcosim.temporary import temporary_folder
 
-AnySystem = FilePath | SystemStructure | System
+AnySystem = AnyPath | SystemStructure | System
 """A system in whichever form."""
 
 Progress = Callable[..., None]
@@ -78,12 +78,12 @@ of half an hour, on one core. [s]"""
 def diagnose(
     log: LogSource,
     system: AnySystem,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     *,
-    out: FilePath | None = None,
-    reference: FilePath | Reference | None = None,
+    out: AnyPath | None = None,
+    reference: AnyPath | Reference | None = None,
 ) -> Diagnosis:
     """Diagnose a log: what the simulation gets wrong, by which causes, the system with them, and what that gains.
 
@@ -132,15 +132,15 @@ def diagnose(
 
 
 def prepared_system(
-    system: AnySystem, reference: FilePath | Reference | None, out: FilePath | None
-) -> tuple[ExtendedSystem, Reference | None, FilePath, object]:
+    system: AnySystem, reference: AnyPath | Reference | None, out: AnyPath | None
+) -> tuple[ExtendedSystem, Reference | None, AnyPath, object]:
     """A system with the numbers of a reference, that reference, and a folder for what is written.
 
     The last entry keeps a temporary folder alive; None where `out` is given.
     """
     folder = None
     if out is None:
-        folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+        folder = temporary_folder()
         out = folder.name
     given = given_system(system)
     if reference is not None:
@@ -160,8 +160,8 @@ def given_system(system: AnySystem) -> ExtendedSystem:
 def find_causes(
     log: LogSource,
     system: System,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Progress | None = None,
     reference: Reference | None = None,
 ) -> Diagnosis:
@@ -215,8 +215,8 @@ def causes_in(
 def read_measurements(
     log: LogSource,
     system: System,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     reference: Reference | None = None,
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""

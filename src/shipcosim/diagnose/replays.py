@@ -1,18 +1,18 @@
 """A log as a system replays it, and as the system extended by a diagnosis does: `replay_log`."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from shipcosim.diagnose.checked_log import checked
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.remarks import handled
-from shipcosim.diagnose.log.runs import FilePath, LogSource
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.tracks import Tracks, fitting_horizon, tracks_by_systems
-from shipcosim.ssp import System
+from shipcosim.options import CountProgress
+from shipcosim.ssp import AnyPath, System
 
 _SHOWN = dict(zip(CHANNELS, ("x", "y", "psi", "u", "v", "r"), strict=True))
 
@@ -38,10 +38,10 @@ class LogReplay:
 def replay_log(
     log: LogSource,
     systems: dict[str, System],
-    channels: FilePath | None = None,
+    channels: AnyPath | None = None,
     *,
     horizon: float | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> LogReplay:
     """Predict a log piece by piece with some systems.
 

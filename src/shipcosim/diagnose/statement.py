@@ -5,7 +5,7 @@ from pathlib import Path
 
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
 from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
-from shipcosim.diagnose.explanation.summary import LoadForm, evidence_of, load_form
+from shipcosim.diagnose.explanation.summary import evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.log.remarks import handled
@@ -39,6 +39,9 @@ def stated(log: JudgedLog) -> Diagnosis:
     rivals = (
         judgement.rivals if not found.ship.third_party else ()
     )  # with those no manoeuvre can be prescribed
+    # How far the form of the ship's loads differs from the model's, with what that hides.
+    form = load_form(log)
+    form_of = replace(form, hides=hidden_by_form(log)) if form else None
     return Diagnosis(
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
         (
@@ -51,7 +54,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors,
         discrepancies=comparison.told(judgement.verdict),
-        form=_form_of(log),
+        form=form_of,
         obstacles=comparison.obstacles,
         remarks=comparison.remarks,
         basis=log,
@@ -72,12 +75,6 @@ def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
     if not found.has_crude or crude is None or crude.errors is None:
         return None
     return crude.errors.as_gain()
-
-
-def _form_of(log: JudgedLog) -> LoadForm | None:
-    """How far the form of the ship's loads differs from the model's, with what that hides."""
-    form = load_form(log)
-    return replace(form, hides=hidden_by_form(log)) if form else None
 
 
 def completed(

@@ -14,6 +14,8 @@ from shipcosim.models.ship.mast import MastParameters, wind_from_mast
 
 HORIZONS = (10.0, 30.0, 60.0)  # s, as the outputs are named
 NO_LOAD = 1.0  # N and N.m, below which no thruster is told to give anything
+FARTHEST = 1e7  # m and rad, beyond which a prediction has diverged
+SHOWN = ("x", "y", "psi", "position_region", "heading_region")
 NO_GOAL = 1e9  # m, where no reference model goes: nobody says where she goes to
 
 
@@ -145,6 +147,7 @@ class MotionPredictor(Fmu):
         known = self._known()
         self.state = self.begin(known)
         self.errors = (0.0, 0.0)
+        self.has_diverged = False
         self.lost_for = -1.0
         self.awaited = ((inf, known.ship),) * (ceil(FORESIGHT / self.prediction_period) + 1)
         self._show(known, self.start_time)
@@ -155,9 +158,13 @@ class MotionPredictor(Fmu):
             known = self._known()
             since = (due - self.made) * self.prediction_period
             self.made = due
-            self.state = self.follow(self.state, known, since)
-            self._judge_itself(known, since, t)
-            self._show(known, t)
+            try:
+                self.state = self.follow(self.state, known, since)
+                self._judge_itself(known, since, t)
+            except (ArithmeticError, ValueError) as error:
+                self._show_nothing(known, t, error)
+            else:
+                self._show(known, t)
 
     def _judge_itself(self, known, since, t):
         """Compare what was foreseen for now with what is known now, and count the time without thrust."""
@@ -205,14 +212,38 @@ class MotionPredictor(Fmu):
         return known._replace(desired=desired, goal=goal, wave_frequency=self.wave_frequency_hat)
 
     def _show(self, known, t):
-        self.predicted_at = t
-        motions, positions, headings, self.learned = self.predict(self.state, known)
-        self.awaited = (*self.awaited[1:], (t + FORESIGHT, motions[0]))
+        # Numbers of Python raise where a prediction diverges; arrays and C go on with NaN.
+        try:
+            motions, positions, headings, learned = self.predict(self.state, known)
+        except (ArithmeticError, ValueError) as error:
+            self._show_nothing(known, t, error)
+            return
+        is_sound = True
+        for motion in motions:
+            for value in motion[:3]:
+                is_sound = is_sound & (abs(value) < FARTHEST)
+        foreseen = Motion(
+            *(where(is_sound, *pair) for pair in zip(motions[0], known.ship, strict=True))
+        )
+        self.awaited = (*self.awaited[1:], (where(is_sound, t + FORESIGHT, inf), foreseen))
         wider, wider_heading = widening(self.errors, self.lost_for, regions=self.regions)
-        positions = [wider * one for one in positions]
-        headings = [wider_heading * one for one in headings]
-        self.x_10, self.y_10, self.psi_10 = motions[0][:3]
-        self.x_30, self.y_30, self.psi_30 = motions[1][:3]
-        self.x_60, self.y_60, self.psi_60 = motions[2][:3]
-        self.position_region_10, self.position_region_30, self.position_region_60 = positions
-        self.heading_region_10, self.heading_region_30, self.heading_region_60 = headings
+        # What has diverged is not shown: the prediction before it stays, with its time.
+        self.predicted_at = where(is_sound, t, self.predicted_at)
+        self.learned = where(is_sound, learned, self.learned)
+        for horizon, motion, position, heading in zip(
+            HORIZONS, motions, positions, headings, strict=True
+        ):
+            shown = (*motion[:3], wider * position, wider_heading * heading)
+            for name, value in zip(SHOWN, shown, strict=True):
+                output = f"{name}_{horizon:.0f}"
+                setattr(self, output, where(is_sound, value, getattr(self, output)))
+
+    def _show_nothing(self, known, t, error):
+        """Keep the prediction before, and begin anew: what is known of the surroundings may be no number either."""
+        if not self.has_diverged:
+            self.log(
+                f"the prediction at t = {t:.9g} s diverges ({error}): none is shown", "warning"
+            )
+        self.has_diverged = True
+        self.state = self.begin(known)
+        self.awaited = (*self.awaited[1:], (inf, known.ship))

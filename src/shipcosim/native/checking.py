@@ -89,14 +89,19 @@ def _give_inputs(fmu, compiled, random):
             continue
         value = getattr(compiled.fmu, variable.name)
         if variable.type == "Real":
-            low, high = variable.bounds
             # 10 % of the start value, or 0.1 where it is small: large enough to move the state,
             # small enough to stay in the model's range. The declared bounds are kept.
             drawn = value + 0.1 * random.standard_normal() * max(abs(value), 1.0)
-            setattr(fmu, variable.name, float(min(max(drawn, low), high)))
+            setattr(fmu, variable.name, within_bounds(variable, drawn))
         elif variable.type == "Boolean":
             # One flag in ten is inverted, so that most steps run as the system does.
             setattr(fmu, variable.name, bool(value) ^ bool(random.random() < 0.1))
+
+
+def within_bounds(variable: Any, value: float) -> float:
+    """The value, moved into the declared bounds of a variable."""
+    low, high = variable.bounds
+    return float(min(max(value, low), high))
 
 
 def _compare(compiled, shape, number):

@@ -9,13 +9,13 @@ import os
 import subprocess
 import sys
 import sysconfig
-import tempfile
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.library import cache
+from shipcosim.temporary import temporary_folder
 
 OPTIONS = ("-shared", "-O1", "-g0", "-s", "-fPIC", "-std=c11", "-fvisibility=hidden")
 EXACT = "-ffp-contract=off"  # no fused operations: what Python computes, to the last bit
@@ -37,9 +37,7 @@ def check_installed() -> None:
     """
     if not is_installed():
         found = "It compiles the models, and there is no compiler."
-        raise ShipcosimError(
-            Problem("engine 'native'", found, "Install it: pip install 'shipcosim[native]'.")
-        )
+        raise error_at("engine 'native'", found, "Install it: pip install 'shipcosim[native]'.")
 
 
 def libraries(sources: Iterable[str]) -> list[ctypes.CDLL]:
@@ -74,17 +72,35 @@ _LOADED: dict[str, ctypes.CDLL] = {}
 """Libraries that this process has loaded, which keeps them anyway."""
 
 
+def keep_digest(made: Path, path: Path) -> None:
+    """Write the digest of a file that will lie at a path beside it."""
+    digest = hashlib.sha256(made.read_bytes()).hexdigest()
+    beside = path.with_name(f"{path.name}.sha256")
+    part = made.with_name(f"{made.name}.sha256")
+    part.write_text(digest)
+    os.replace(part, beside)
+
+
+def is_intact(path: Path) -> bool:
+    """Whether a file of the cache is there as it was written: a cut one would end the process when it is loaded."""
+    try:
+        digest = path.with_name(f"{path.name}.sha256").read_text()
+        return digest == hashlib.sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        return False
+
+
 def _compiled(source: str) -> Path:
     # The cached file belongs to source, options and platform: a change of one gives another name.
     key = repr((source, OPTIONS, EXACT, sysconfig.get_platform()))
     path = cache() / "native" / f"{hashlib.sha256(key.encode()).hexdigest()[:32]}{SUFFIX}"
-    if path.is_file():
+    if is_intact(path):
         return path
     check_installed()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         # Compile into a temporary folder, then rename: another process never sees half a file.
-        with tempfile.TemporaryDirectory(dir=path.parent) as folder:
+        with temporary_folder(path.parent) as folder:
             text = Path(folder, "step.c")
             made = Path(folder, path.name)
             text.write_text(source, encoding="utf-8")
@@ -102,8 +118,9 @@ def _compiled(source: str) -> Path:
             ]
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode:
-                raise ShipcosimError(Problem("compiler", f"fails: {done.stderr.strip()[:1000]}"))
+                raise error_at("compiler", f"fails: {done.stderr.strip()[:1000]}")
+            keep_digest(made, path)
             os.replace(made, path)
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
+        raise error_at(str(path), f"cannot be written: {error.strerror}.") from None
     return path

@@ -109,7 +109,7 @@ class Flat:
             isinstance(value, NUMBERS) and not (fixed and kind_of(value) == "b")
         ):
             self._number(path, value)
-        elif isinstance(value, WHOLE) or isinstance(value, STRUCTURE):
+        elif isinstance(value, (WHOLE, STRUCTURE)):
             self.structure.append((path, value))
         elif isinstance(value, np.ndarray) and value.dtype.kind in "fibO":
             # The shape is structure, the elements are numbers.

@@ -232,13 +232,12 @@ class Writer:
         # After a failed call the arguments must not look valid: NaN forces the next call.
         again = f"k[{first}] = NAN; " if arguments else ""
         where = f"k + {first}, k + {self.results[number]}"
-        for line in self._calling(number, where, again):
-            self._put(depth + 1, line)
+        self._put_call(number, where, again, depth + 1)
         self._put(depth, "}")
 
-    def _calling(self, number: int, where: str, again: str) -> list[str]:
-        """Call a function with a cached result, and give up where it fails."""
-        return [f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}"]
+    def _put_call(self, number: int, where: str, again: str, depth: int):
+        """Write a call with its place for arguments and results; `again` follows where it fails."""
+        self._put(depth, f"if (call(host, {number}, {where})) {{ {again}return {GIVEN_UP}; }}")
 
     def _loop(self, loop: RecordedLoop, number, depth):
         # Carried values that nobody reads need no variable.
@@ -317,7 +316,7 @@ def _used(step: Step) -> set[int]:
 
     # Roots: guards, conditions, and the results or error texts at the ends of all ways.
     def note(block: Block):
-        due.extend(symbol for symbol in block.values if symbol.op in ("guard",))
+        due.extend(symbol for symbol in block.values if symbol.op == "guard")
         if block.condition is not None:
             due.append(block.condition)
             note(_of(block.yes))

@@ -90,8 +90,6 @@ class CheckedFiles(Result):
             outcome=Outcome("failed", "FAIL", f"{said}.")
             if errors
             else Outcome("passed", "PASS", f"{said}."),
-            links=(),
-            data=(),
             blocks=(
                 *(
                     Block(name, lines=tuple(map(str, worth_showing(found))))

@@ -2,44 +2,27 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.results.shown import HtmlPage, Picture, SavedResult
-from shipcosim.series import write_json
 
 if TYPE_CHECKING:
     from shipcosim.report.notebook.card import Card
 
 
-class _DiagnosisResult(SavedResult):
-    """A diagnosis that can be written as the command writes it; the extended system is in `extension`."""
-
-    as_json: Callable[[], dict[str, Any]]
-
-    @abstractmethod
-    def page(self) -> HtmlPage:
-        """Its page."""
-
-    def write(self, stage: Path) -> None:
-        """Write diagnosis.json and report.html into a folder that is there."""
-        write_json(self.as_json(), stage / "diagnosis.json")
-        self.page().save(stage / "report.html")
-
-
 @dataclass(frozen=True, repr=False, eq=False)
-class DiagnosisOfLog(_DiagnosisResult, Diagnosis):
+class DiagnosisOfLog(SavedResult, Diagnosis):
     """What `shipcosim.diagnose` gives back of one log: a `Diagnosis` with a card, its page and its track.
 
     To start with: ``.verdict``, ``.findings``, ``.gain``, ``.extended`` (the system with the causes in it, which
     `shipcosim.simulate` runs; None where nothing was put in), ``.as_json()``.
     """
+
+    json_name = "diagnosis.json"
 
     def track(self) -> Picture:
         """The log beside predictions of it, each from the measured state, before and after the causes went in.
@@ -53,9 +36,7 @@ class DiagnosisOfLog(_DiagnosisResult, Diagnosis):
 
         if self.tracks is None:
             found = "There are no predictions of this log to draw."
-            raise ShipcosimError(
-                Problem(self._name, found, "`shipcosim.read_log(...).track()` draws the log.")
-            )
+            raise error_at(self._name, found, "`shipcosim.read_log(...).track()` draws the log.")
         return Picture(f"track of {self._name}", tracks_svg(self.tracks, f"track of {self._name}"))
 
     def page(self) -> HtmlPage:
@@ -75,8 +56,10 @@ class DiagnosisOfLog(_DiagnosisResult, Diagnosis):
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class DiagnosisOfLogs(_DiagnosisResult, JointDiagnosis):
+class DiagnosisOfLogs(SavedResult, JointDiagnosis):
     """What `shipcosim.diagnose` gives back of several logs: a `JointDiagnosis` with a card and its page."""
+
+    json_name = "diagnosis.json"
 
     def page(self) -> HtmlPage:
         """The page of the diagnosis, as `shipcosim diagnose` writes it."""

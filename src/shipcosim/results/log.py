@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.results.shown import LikeTable, Picture
 from shipcosim.results.signals import chosen
 
@@ -16,6 +15,7 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.diagnose.finding import Finding
+    from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -36,8 +36,8 @@ class Log(LikeTable):
 
     name: str
     table: xarray.Dataset
-    source: str | os.PathLike[str] | xarray.Dataset
-    channels: str | os.PathLike[str] | None = None
+    source: AnyPath | xarray.Dataset
+    channels: AnyPath | None = None
 
     @cached_property
     def remarks(self) -> tuple[str, ...]:
@@ -69,13 +69,13 @@ class Log(LikeTable):
         ShipcosimError
             If there is no such channel.
         """
-        from shipcosim.report.notebook.curves import panels_of, panels_svg
+        from shipcosim.report.notebook.figures import panels_svg
         from shipcosim.report.theme.display import display_table
 
         shown = display_table(self.table)
         names = chosen(map(str, shown.data_vars), channels or ["*"])
         title = f"{', '.join(channels) or 'channels'} of {self.name}"
-        return Picture(title, panels_svg(panels_of(shown, names), title))
+        return Picture(title, panels_svg(shown, names, title))
 
     def track(self) -> Picture:
         """The way of the ship on a chart, north up; the ship is not to scale.
@@ -85,15 +85,15 @@ class Log(LikeTable):
         ShipcosimError
             If the log has no position.
         """
-        from shipcosim.report.notebook.chart import Path, chart_svg
+        from shipcosim.report.notebook.figures import Path, track_svg
 
         if not {"north", "east"} <= set(self.table):
-            raise ShipcosimError(
-                Problem(self.name, "The log has no position.", "`.plot(...)` draws any channels.")
+            raise error_at(
+                self.name, "The log has no position.", "`.plot(...)` draws any channels."
             )
         heading = self.table["heading"].values if "heading" in self.table else None
         path = Path("measured", self.table["north"].values, self.table["east"].values, heading)
-        return Picture(f"track of {self.name}", chart_svg([path], f"track of {self.name}"))
+        return Picture(f"track of {self.name}", track_svg([path], f"track of {self.name}"))
 
     def to_pandas(self) -> pandas.DataFrame:
         """The table as a DataFrame over time; units are in ``.table[name].attrs["units"]``."""
@@ -108,5 +108,6 @@ class Log(LikeTable):
         from shipcosim.report.notebook.card import card_html
         from shipcosim.report.notebook.log_card import log_card
 
-        picture = self.track().svg if {"north", "east"} <= set(self.table) else ""
-        return card_html(log_card(self.name, self.table, self.faults, self.remarks, picture))
+        has_position = {"north", "east"} <= set(self.table)
+        draw = (lambda: self.track().svg) if has_position else None
+        return card_html(log_card(self.name, self.table, self.faults, self.remarks, draw))

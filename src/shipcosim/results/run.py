@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, error_at
 from shipcosim.results.shown import HtmlPage, LikeTable, Picture, Result
 from shipcosim.results.signals import chosen
 from shipcosim.staging import staged
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 
     from shipcosim.report.notebook.card import Card
     from shipcosim.scenario import Expectation, Scenario, Verdict
-    from shipcosim.ssp import System
+    from shipcosim.ssp import AnyPath, System
 
 
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
@@ -98,7 +97,7 @@ class Run(LikeTable, Result):
         ShipcosimError
             If there is no such signal.
         """
-        from shipcosim.report.notebook.curves import panels_of, panels_svg
+        from shipcosim.report.notebook.figures import panels_svg
         from shipcosim.report.run.roles import find_roles
         from shipcosim.report.theme.display import display_table
 
@@ -113,14 +112,10 @@ class Run(LikeTable, Result):
         drawn = [name for name in names if name in shown]
         if not drawn:
             found = f"{', '.join(names)}: no signal among these is a number over time."
-            raise ShipcosimError(Problem(self.name, found, "Only those can be drawn."))
+            raise error_at(self.name, found, "Only those can be drawn.")
         title = f"{', '.join(signals) or 'signals'} of {self.name}"
-        return Picture(
-            title,
-            panels_svg(
-                panels_of(shown, drawn), title, sorted({e.time for e in self.scenario.events})
-            ),
-        )
+        events = sorted({event.time for event in self.scenario.events})
+        return Picture(title, panels_svg(shown, drawn, title, events))
 
     def track(self) -> Picture:
         """The way of the ship on a chart, north up, with where she was to be.
@@ -135,8 +130,8 @@ class Run(LikeTable, Result):
         svg = run_track(self.table, self.expectations, f"track of {self.name}")
         if svg is None:
             remedy = "`.plot(...)` draws any signals."
-            raise ShipcosimError(
-                Problem(self.name, "Nothing here is a ship, with x, y and psi over time.", remedy)
+            raise error_at(
+                self.name, "Nothing here is a ship, with x, y and psi over time.", remedy
             )
         return Picture(f"track of {self.name}", svg)
 
@@ -149,7 +144,7 @@ class Run(LikeTable, Result):
         )
         return HtmlPage(self.name, page)
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+    def save(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write result.nc, result.csv, report.html and, where something predicts, predictions.csv; returns the folder.
 
         Parameters
@@ -172,7 +167,7 @@ class Run(LikeTable, Result):
                 write_predictions(predictions, stage / PREDICTIONS)
         return Path(folder)
 
-    def save_part(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+    def save_part(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write result-partial.nc, .csv and .html of a run that did not get to its end; returns the folder.
 
         Parameters and errors as for `save`.

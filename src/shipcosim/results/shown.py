@@ -7,18 +7,19 @@ import os
 import tempfile
 import webbrowser
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.series import write_file
+from shipcosim.series import write_file, write_json
 from shipcosim.staging import staged
 
 if TYPE_CHECKING:
     import xarray
 
     from shipcosim.report.notebook.card import Card
+    from shipcosim.ssp import AnyPath
 
 
 HEIGHT = 820  # px, of a page within a notebook
@@ -44,7 +45,7 @@ class HtmlPage:
     title: str
     html: str = field(repr=False)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: AnyPath) -> Path:
         """Write the page to a file; it is there completely or not at all.
 
         Raises
@@ -92,7 +93,7 @@ class Picture:
     name: str
     svg: str = field(repr=False)
 
-    def save(self, path: str | os.PathLike[str]) -> Path:
+    def save(self, path: AnyPath) -> Path:
         """Write the picture to an .svg file; errors as for `HtmlPage.save`."""
         write_file(path, self.svg.encode())
         return Path(path)
@@ -124,11 +125,20 @@ class Result(ABC):
 class SavedResult(Result):
     """A result whose files can be written, as its command writes them."""
 
-    @abstractmethod
-    def write(self, stage: Path) -> None:
-        """Write the files of `save` into a folder that is there."""
+    json_name = ""
+    """File that gets `as_json`; none if empty."""
 
-    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+    @abstractmethod
+    def page(self) -> HtmlPage:
+        """Its page."""
+
+    def write(self, stage: Path) -> None:
+        """Write the files of `save` into a folder that is there: the page, and the JSON file where there is one."""
+        if self.json_name:
+            write_json(self.as_json(), stage / self.json_name)  # pyright: ignore[reportAttributeAccessIssue]
+        self.page().save(stage / "report.html")
+
+    def save(self, folder: AnyPath, *, force: bool = False) -> Path:
         """Write the files that the command of the same name leaves; returns the folder.
 
         Parameters
@@ -174,11 +184,3 @@ class LikeTable:
 def parts_of(found: Any) -> dict[str, Any]:
     """Fields of a record by name, to make a result of it."""
     return {one.name: getattr(found, one.name) for one in fields(found)}
-
-
-def page_of(title: str, write: Callable[[Path], object]) -> HtmlPage:
-    """A page from a function that writes it to a path."""
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
-        path = Path(folder) / "page.html"
-        write(path)
-        return HtmlPage(title, path.read_text(encoding="utf-8"))

@@ -14,8 +14,8 @@ from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.errors import Problem
-from shipcosim.results.shown import HtmlPage, Picture, Result, SavedResult, page_of
-from shipcosim.series import write_file, write_json, write_table
+from shipcosim.results.shown import HtmlPage, Picture, Result, SavedResult
+from shipcosim.series import write_file, write_table
 
 if TYPE_CHECKING:
     import pandas
@@ -45,7 +45,10 @@ class EngineComparison(Result, Comparison):
         rows = [
             {"unit": one.unit, "range": one.range}
             | {engine: difference.largest for engine, difference in one.engines.items()}
-            | {"of range": one.worst, "half the step": one.step.largest}
+            | {
+                "of range": one.worst,
+                "half the step": one.step.largest if one.step else "not tried",
+            }
             for one in self.signals
         ]
         return pandas.DataFrame(
@@ -73,13 +76,11 @@ class Replay(SavedResult, LogReplay):
 
     def page(self) -> HtmlPage:
         """The page of the replay, as `shipcosim replay` writes it."""
-        from shipcosim.report.diagnosis.replay_page import write_replay
+        from shipcosim.report.diagnosis.replay_page import render
 
         facts = dict(zip(self.tracks.predicted, self.systems, strict=False))
         facts |= {"Predictions": f"{self.tracks.horizon:.0f} s"}
-        return page_of(
-            f"Replay of {self.name}", lambda path: write_replay(self, path, self.name, facts)
-        )
+        return HtmlPage(f"Replay of {self.name}", render(self, self.name, facts))
 
     def to_pandas(self) -> pandas.DataFrame:
         """Root mean square errors by simulation and time since the start of a prediction."""
@@ -90,13 +91,13 @@ class Replay(SavedResult, LogReplay):
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import replay_card
 
-        return replay_card(self, self.name, self.track().svg)
+        return replay_card(self, self.name, lambda: self.track().svg)
 
     def write(self, stage: Path) -> None:
         """Write report.html, errors.csv and replay.nc into a folder that is there."""
         self.to_pandas().reset_index().to_csv(stage / "errors.csv", index=False)
         series_of(self.tracks).to_netcdf(stage / "replay.nc", engine="h5netcdf")
-        self.page().save(stage / "report.html")
+        super().write(stage)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -105,15 +106,9 @@ class Calibration(SavedResult, CalibratedShip):
 
     def page(self) -> HtmlPage:
         """The page of the calibration, as `shipcosim calibrate` writes it."""
-        from shipcosim.report.calibration.page import write_calibration
+        from shipcosim.report.calibration.page import render
 
-        return page_of(
-            f"Calibration of {self.reference.system}", lambda path: write_calibration(self, path)
-        )
-
-    def write(self, stage: Path) -> None:
-        """Write the page into a folder that is there."""
-        self.page().save(stage / "report.html")
+        return HtmlPage(f"Calibration of {self.reference.system}", render(self))
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import calibration_card
@@ -141,11 +136,9 @@ class CapabilityOfShip(SavedResult, Capability):
 
     def page(self) -> HtmlPage:
         """The page of the capability, as `shipcosim capability` writes it."""
-        from shipcosim.report.capability.page import write_capability
+        from shipcosim.report.capability.page import render
 
-        return page_of(
-            f"Capability of {self.vessel.name}", lambda path: write_capability(self, path)
-        )
+        return HtmlPage(f"Capability of {self.vessel.name}", render(self))
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row a direction that the weather comes from [deg], a column a case: DP capability numbers."""
@@ -157,7 +150,7 @@ class CapabilityOfShip(SavedResult, Capability):
         """Write report.html, capability.csv and capability.nc into a folder that is there."""
         write_file(stage / "capability.csv", numbers_table(self).encode())
         write_table(self.table, stage / "capability.nc")
-        self.page().save(stage / "report.html")
+        super().write(stage)
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import capability_card
@@ -172,21 +165,15 @@ class SeaTrials(SavedResult, SeaTrialStudy):
     name: str = "log"
     system: str = ""
     orders: bool = False
-
-    def write(self, stage: Path) -> None:
-        """Write sea_trials.json and report.html into a folder that is there."""
-        write_json(self.as_json(), stage / "sea_trials.json")
-        self.page().save(stage / "report.html")
+    json_name = "sea_trials.json"
 
     def page(self) -> HtmlPage:
         """The page of the trials, as `shipcosim sea-trials` writes it."""
-        from shipcosim.report.sea_trials.page import write_sea_trials
+        from shipcosim.report.sea_trials.page import render
 
         thrusters = "orders" if self.orders else "feedback"
         facts = {"Log": self.name, "System": self.system, "Thrusters": thrusters}
-        return page_of(
-            f"Sea trials of {self.name}", lambda path: write_sea_trials(self, path, facts)
-        )
+        return HtmlPage(f"Sea trials of {self.name}", render(self, facts))
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.study_cards import sea_trials_card

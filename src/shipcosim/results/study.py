@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from shipcosim.results.shown import HtmlPage, Result, page_of
+from shipcosim.results.shown import HtmlPage, Result
 from shipcosim.sweep import Swept
 
 if TYPE_CHECKING:
@@ -46,11 +46,9 @@ class StudyResult(Result, Swept):
 
     def page(self) -> HtmlPage:
         """The page of the study, as `shipcosim sweep` writes it."""
-        from shipcosim.report.study import write_study
+        from shipcosim.report.study import render
 
-        return page_of(
-            f"Study {self.plan.study.name}", lambda path: write_study(self._tables(), path)
-        )
+        return HtmlPage(f"Study {self.plan.study.name}", render(self._tables()))
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.sweep_card import sweep_card

@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.errors import Problem
 from shipcosim.models.allocation.fixed_angles import UNITS
 from shipcosim.ships.described import Described
-from shipcosim.ships.entries import Entry
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates import control
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.file import number
@@ -75,7 +75,7 @@ def mass_matrix(ship: Described) -> np.ndarray:
     )
 
 
-def dp_entries(ship: Described) -> dict[str, dict[str, Entry]]:
+def dp_entries(ship: Described) -> dict[str, dict[str, Quantity]]:
     """Parameters of sensors, reference, controller and allocator.
 
     Parameters
@@ -85,7 +85,7 @@ def dp_entries(ship: Described) -> dict[str, dict[str, Entry]]:
 
     Returns
     -------
-    dict of dict of Entry
+    dict of dict of Quantity
         By component and parameter.
     """
     # Loop and components; the file's own values come before the rule.

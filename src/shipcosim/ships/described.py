@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.ships.entries import Entry
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.file import KINDS, ShipFile
 from shipcosim.ships.thrusters import ShipThruster, units_of_ship
@@ -35,7 +35,7 @@ class Described:
         What it says.
     form : HullDimensions
         Her main particulars.
-    vessel : dict of str to Entry
+    vessel : dict of str to Quantity
         Parameters of her hull, given or estimated.
     units : list of ShipThruster
         Her thrusters.
@@ -45,11 +45,11 @@ class Described:
     path: Path
     file: ShipFile
     form: HullDimensions
-    vessel: dict[str, Entry]
+    vessel: dict[str, Quantity]
     units: list[ShipThruster]
 
     @property
-    def entries(self) -> dict[str, dict[str, Entry]]:
+    def entries(self) -> dict[str, dict[str, Quantity]]:
         """Parameters by component."""
         return {"vessel": self.vessel} | {unit.name: unit.entries for unit in self.units}
 
@@ -142,16 +142,12 @@ def _text(path: Path) -> str:
     try:
         text = path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror}.")) from None
+        raise error_at(str(path), f"cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError:
-        raise ShipcosimError(
-            Problem(str(path), "is not UTF-8 text.", "Save the file in UTF-8.")
-        ) from None
+        raise error_at(str(path), "is not UTF-8 text.", "Save the file in UTF-8.") from None
     if len(text) > LONGEST:
-        raise ShipcosimError(
-            Problem(
-                str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."
-            )
+        raise error_at(
+            str(path), f"has {len(text)} characters.", f"A ship file has at most {LONGEST}."
         )
     return text
 
@@ -164,8 +160,8 @@ def _toml(text: str, path: Path) -> dict[str, Any]:
         line = re.search(r" \(at line (\d+), column \d+\)", str(error))
         where = f"{path}, line {line[1]}" if line else str(path)
         said = str(error).replace(line[0], "") if line else "brackets are nested too deep"
-        raise ShipcosimError(
-            Problem(where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes.")
+        raise error_at(
+            where, f"is no TOML: {said}.", "A key, =, a value; texts in quotes."
         ) from None
 
 

@@ -8,21 +8,41 @@ from typing import Any, NamedTuple
 from shipcosim.errors import Problem
 
 
-class Entry(NamedTuple):
-    """A parameter as a file says it: value, unit, tolerance, origin, columns of a table, file and name, uncertainty,
-    and whether it is said of another component that this one is like."""
+class Quantity(NamedTuple):
+    """A parameter of a ship, as a file says it, a formula estimates it, or the model's default has it.
+
+    Attributes
+    ----------
+    value : float, int, bool or str
+        Value; a table is a str, rows by ";", columns by blanks.
+    unit, origin : str
+        FMI's spelling of the unit, where the number comes from.
+    tolerance : float
+        Standard deviation within which it counts as known, in its unit; 0 where nobody says.
+    columns : tuple of str
+        Name and unit of each, of a table.
+    where : str
+        File and name, for messages.
+    uncertainty : tuple of two floats, or empty
+        Least and largest value that one source or another has, in its unit. The diagnosis takes no notice of it.
+    inherited : bool
+        It is said of another component that this one is like.
+    description : str
+        What it is, one line, as the model declares it.
+    """
 
     value: Any
     unit: str
     tolerance: float
     origin: str
-    columns: tuple[str, ...]
-    where: str
+    columns: tuple[str, ...] = ()
+    where: str = ""
     uncertainty: tuple[float, ...] = ()
     inherited: bool = False
+    description: str = ""
 
 
-def table_entry(file: Path, where: str, problems: list[Problem]) -> Entry | None:
+def table_entry(file: Path, where: str, problems: list[Problem]) -> Quantity | None:
     """Read a table as text: comments with the source, a header with units, rows of numbers."""
     if not file.is_file():
         problems.append(Problem(where, f"there is no file {file}."))
@@ -56,7 +76,7 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Entry | None
                 Problem(f"{file}, row {number}", f"{row}.", f"A row has {len(header)} numbers.")
             )
     text = "; ".join(" ".join(cell.strip() for cell in row) for row in rows)
-    return Entry(text, "1", 0.0, source, tuple(cell.strip() for cell in header), str(file))
+    return Quantity(text, "1", 0.0, source, tuple(cell.strip() for cell in header), str(file))
 
 
 def _is_number_text(cell: str) -> bool:

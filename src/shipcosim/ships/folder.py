@@ -9,39 +9,16 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, dataclass, fields
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.ships.described import describe
-from shipcosim.ships.entries import Entry, table_entry
+from shipcosim.ships.entries import Quantity, table_entry
 from shipcosim.ships.file import ShipFile
 
 Kind = TypeVar("Kind")
 _SHIP_KEYS = {"description": str, "source": str, "based_on": list, "systems": list}
 _SECTIONS = set(ShipFile.model_fields) - set(_SHIP_KEYS)
-
-
-class Quantity(NamedTuple):
-    """A parameter of a ship.
-
-    Attributes
-    ----------
-    value : float, int, bool or str
-        Value; a table is a str, rows by ";", columns by blanks.
-    unit, description, origin : str
-        FMI's spelling of the unit, one line of text, where the number comes from.
-    tolerance : float
-        Standard deviation within which it counts as known, in its unit; 0 where nobody says.
-    uncertainty : tuple of two floats, or empty
-        Least and largest value that one source or another has, in its unit. The diagnosis takes no notice of it.
-    """
-
-    value: Any
-    unit: str
-    description: str
-    origin: str
-    tolerance: float
-    uncertainty: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -55,7 +32,7 @@ class Ship:
     folder : Path
     systems : tuple of str
         Systems in ``ssp/`` that have a parameter set of her.
-    entries : mapping of str to mapping of str to Entry
+    entries : mapping of str to mapping of str to Quantity
         What the files say, by component and parameter.
     """
 
@@ -63,7 +40,7 @@ class Ship:
     description: str
     folder: Path
     systems: tuple[str, ...]
-    entries: Mapping[str, Mapping[str, Entry]]
+    entries: Mapping[str, Mapping[str, Quantity]]
 
     def parameter_set(
         self, components: Mapping[str, Iterable[type]]
@@ -198,7 +175,7 @@ def read_ship(folder: str | Path) -> Ship:
     return Ship(folder.name, about[-1].get("description", ""), folder, tuple(systems), entries)
 
 
-def _described(folder: Path, problems: list[Problem]) -> dict[str, dict[str, Entry]]:
+def _described(folder: Path, problems: list[Problem]) -> dict[str, dict[str, Quantity]]:
     """Entries of a ship file with particulars, by component; empty without particulars."""
     file = folder / "ship.toml"
     if not {"particulars", "thrusters"} & set(_toml(file, []) if file.is_file() else ()):
@@ -285,7 +262,7 @@ def _read(file: Path, problems: list[Problem]) -> dict[str, Any]:
     return {"like": like} | {name: entry for name, entry in found.items() if entry is not None}
 
 
-def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry | None:
+def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Quantity | None:
     """An entry of a file: a value, or a table in a CSV file."""
     where = f"{file}: {name}"
     is_table = isinstance(said, dict) and "table" in said
@@ -296,7 +273,7 @@ def _entry(file: Path, name: str, said: Any, problems: list[Problem]) -> Entry |
     if is_table:
         return table_entry(file.parent / said["table"], where, problems)
     uncertainty = tuple(map(float, said.get("uncertainty", ())))
-    return Entry(
+    return Quantity(
         said["value"],
         said["unit"],
         float(said.get("tolerance", 0.0)),
@@ -323,7 +300,7 @@ def _wrong_keys(said: Any, keys: Mapping[str, Any]) -> list[str]:
 
 def _entries(
     name: str, files: Mapping[str, list], above: tuple[str, ...], problems: list[Problem]
-) -> dict[str, Entry]:
+) -> dict[str, Quantity]:
     """Entries of a component: its own, over those of the components that it is like."""
     layers = files.get(name, [])
     found = {}
@@ -353,12 +330,16 @@ def _entries(
     return found
 
 
-def _quantity(field: Field, entry: Entry | None, problems: list[Problem]) -> Quantity:
+def _quantity(field: Field, entry: Quantity | None, problems: list[Problem]) -> Quantity:
     about = field.metadata
     # No entry: the default of the model.
     if entry is None:
         return Quantity(
-            field.default, about["unit"], about["description"], about["origin"], about["tolerance"]
+            field.default,
+            about["unit"],
+            about["tolerance"],
+            about["origin"],
+            description=about["description"],
         )
     # Whole numbers are fine for a float.
     value = (
@@ -368,11 +349,16 @@ def _quantity(field: Field, entry: Entry | None, problems: list[Problem]) -> Qua
     if found:
         problems.append(Problem(entry.where, found, remedy))
     return Quantity(
-        value, about["unit"], about["description"], entry.origin, entry.tolerance, entry.uncertainty
+        value,
+        about["unit"],
+        entry.tolerance,
+        entry.origin,
+        uncertainty=entry.uncertainty,
+        description=about["description"],
     )
 
 
-def _wrong(value: Any, entry: Entry, about: Mapping[str, Any]) -> tuple[str, str]:
+def _wrong(value: Any, entry: Quantity, about: Mapping[str, Any]) -> tuple[str, str]:
     """Problem of a value and its remedy; both empty where it is right."""
     kind = about["kind"]
     low = about["minimum"]

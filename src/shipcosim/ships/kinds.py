@@ -1,6 +1,8 @@
 """Parameter classes of each FMU of a ship, and the FMU of each kind of thruster."""
 
+from collections.abc import Mapping
 from dataclasses import fields
+from typing import Any
 
 from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
 from shipcosim.models.control.observer import DpShip, ObserverParameters
@@ -48,20 +50,10 @@ FMU_OF = {
 """Kind of thruster: the FMU that it is."""
 
 
-def units_of(fmu: str) -> dict[str, str]:
-    """Units of an FMU's parameters by name."""
+def metadata_of(fmu: str) -> dict[str, Mapping[str, Any]]:
+    """Unit, columns and the like of an FMU's parameters by name, as `models.core.parameters` declares them."""
     return {
-        field.name: field.metadata["unit"]
-        for kind in PARAMETERS[fmu]
-        for field in fields(kind)
-        if field.init
-    }
-
-
-def columns_of(fmu: str) -> dict[str, tuple[str, ...]]:
-    """Columns of an FMU's tables by name; of a number none."""
-    return {
-        field.name: field.metadata["columns"]
+        field.name: field.metadata
         for kind in PARAMETERS[fmu]
         for field in fields(kind)
         if field.init

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from shipcosim.errors import Problem, suggestion
-from shipcosim.ships.entries import Entry, table_entry
+from shipcosim.ships.entries import Quantity, table_entry
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.given import PLAIN, Given, given_in_unit
-from shipcosim.ships.kinds import columns_of, units_of
+from shipcosim.ships.kinds import metadata_of
 
 ESTIMATED = "estimated: "
 """What the origin of a number begins with that a formula gave."""
@@ -30,7 +30,7 @@ class Numbers:
         Where numbers come from that do not say it themselves.
     problems : list of Problem
         Gets what is wrong.
-    entries : dict of str to Entry
+    entries : dict of str to Quantity
         What was found.
     """
 
@@ -39,7 +39,7 @@ class Numbers:
     folder: Path
     source: str
     problems: list[Problem]
-    entries: dict[str, Entry] = field(default_factory=dict)
+    entries: dict[str, Quantity] = field(default_factory=dict)
 
     def give(self, name: str, given: Given | None) -> bool:
         """Take a number from the file; return whether there is one."""
@@ -47,20 +47,21 @@ class Numbers:
             return False
         # Origin: the number's own, else that of the file.
         origin = given.origin or self.source or PLAIN
-        unit = units_of(self.fmu)[name]
+        unit = metadata_of(self.fmu)[name]["unit"]
         more = given.tolerance or 0.0, origin, (), f"{self.where}: {name}", given.uncertainty
-        self.entries[name] = Entry(given.value, unit, *more)
+        self.entries[name] = Quantity(given.value, unit, *more)
         return True
 
     def estimate(self, name: str, estimate: EstimatedNumber) -> None:
         """Take an estimate where no value is given."""
         if name in self.entries:
             return
-        unit = units_of(self.fmu)[name]
-        columns = columns_of(self.fmu)[name]
+        about = metadata_of(self.fmu)[name]
         origin = f"{ESTIMATED}{estimate.source}"
         where = f"{self.where}: {name}"
-        self.entries[name] = Entry(estimate.value, unit, estimate.tolerance, origin, columns, where)
+        self.entries[name] = Quantity(
+            estimate.value, about["unit"], estimate.tolerance, origin, about["columns"], where
+        )
 
     def estimates(self, found: dict[str, EstimatedNumber]) -> None:
         """Take all estimates for which no value is given."""
@@ -75,19 +76,21 @@ class Numbers:
 
     def coefficients(self, found: dict[str, Any]) -> None:
         """Take parameters that the file gives under the FMU's own names."""
-        units = units_of(self.fmu)
+        declared = metadata_of(self.fmu)
         for name, value in found.items():
-            if name not in units:
+            if name not in declared:
                 self.problems.append(
                     Problem(
-                        f"{self.where}.{name}", "There is no such number.", suggestion(name, units)
+                        f"{self.where}.{name}",
+                        "There is no such number.",
+                        suggestion(name, declared),
                     )
                 )
             elif isinstance(value, dict) and "table" in value:
                 self.table(name, str(value["table"]))
             else:
                 try:
-                    self.give(name, given_in_unit(value, units[name]))
+                    self.give(name, given_in_unit(value, declared[name]["unit"]))
                 except ValueError as error:
                     text = str(error)
                     sentence = text[:1].upper() + text[1:]

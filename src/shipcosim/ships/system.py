@@ -1,18 +1,17 @@
 """Systems of a described ship: open, for replays and diagnosis, and in a closed DP loop."""
 
 from collections.abc import Iterable, Mapping
-from os import PathLike
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ships.control import COMPONENTS, dp_entries, units_for_dp, why_no_dp
 from shipcosim.ships.described import Described, describe
-from shipcosim.ships.entries import Entry
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.folder import Ship
 from shipcosim.ships.kinds import FMU_OF, PARAMETERS
 from shipcosim.ships.parameter_set import parameter_values
 from shipcosim.ships.thrusters import ShipThruster
-from shipcosim.ssp import SystemStructure, new, parameter, read, write_ssv
+from shipcosim.ssp import AnyPath, SystemStructure, new, parameter, read, write_ssv
 
 STEP = 0.05  # s
 LONG_RUN = 600.0
@@ -48,9 +47,9 @@ APPARENT = ("apparent_wind_speed", "apparent_wind_from")
 
 
 def make_systems(
-    ship: str | PathLike[str] | Described,
-    out: str | PathLike[str],
-    fmus: Iterable[str | PathLike[str]],
+    ship: AnyPath | Described,
+    out: AnyPath,
+    fmus: Iterable[AnyPath],
 ) -> list[Path]:
     """Parameter sets and systems of a ship: ``NAME_open``, and ``NAME_dp`` where her thrusters allow a DP.
 
@@ -163,9 +162,7 @@ def _fmu(name: str, folders: list[Path]) -> Path:
     for folder in folders:
         if (folder / f"{name}.fmu").is_file():
             return folder / f"{name}.fmu"
-    raise ShipcosimError(
-        Problem(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them.")
-    )
+    raise error_at(f"{name}.fmu", "There is no such FMU.", "`shipcosim build` builds them.")
 
 
 def _around(units: list[ShipThruster]) -> Iterable[tuple[str, str]]:
@@ -255,5 +252,5 @@ def _kinds(ship: Described, kind: str) -> dict[str, tuple[type, ...]]:
     )
 
 
-def _as_ship(ship: Described, entries: Mapping[str, Mapping[str, Entry]]) -> Ship:
+def _as_ship(ship: Described, entries: Mapping[str, Mapping[str, Quantity]]) -> Ship:
     return Ship(ship.name, ship.file.description, ship.path.parent, (), entries)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shipcosim.errors import Problem
 from shipcosim.models.propulsion.mapped import MapParameters, within_map
-from shipcosim.ships.entries import Entry
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.estimate import EstimatedNumber, within
 from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.estimates.propulsion import (
@@ -50,7 +50,7 @@ class ShipThruster:
         Place, and the direction that the DP holds it at, clockwise from the bow. [m, m, rad]
     least, most, rate : float
         Limits of its thrust for the DP; 0 where nothing says how much it gives. [N, N, N/s]
-    entries : dict of str to Entry
+    entries : dict of str to Quantity
         Its parameters.
     screw : Screw or None
         Its propeller, where diameter, power, thrust and speed are known or estimated.
@@ -65,7 +65,7 @@ class ShipThruster:
     least: float
     most: float
     rate: float
-    entries: dict[str, Entry]
+    entries: dict[str, Quantity]
     screw: Screw | None = None
 
     @property
@@ -306,7 +306,9 @@ def _mapped(one: ThrustMap, own: Numbers) -> ShipThruster | None:
         rows = "; ".join(f"{command:g} {thrust:g}" for command, thrust in one.table)
         origin = own.source or "given in the ship file"
         columns = ("command [1]", "thrust [N]")
-        own.entries["thrust_table"] = Entry(rows, "1", 0.0, origin, columns, f"{own.where}: table")
+        own.entries["thrust_table"] = Quantity(
+            rows, "1", 0.0, origin, columns, f"{own.where}: table"
+        )
     for name in ("direction", "time_constant", "speed_loss"):
         own.give(name, getattr(one, name))
     if "thrust_table" not in own.entries:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from shipcosim.errors import Problem
 from shipcosim.models.ship.hull import CONTRIBUTIONS
-from shipcosim.ships.entries import Entry
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.estimate import EstimatedNumber
 from shipcosim.ships.estimates.hull import (
     HullDimensions,
@@ -82,7 +82,7 @@ def form_of(ship: ShipFile, where: str, problems: list[Problem]) -> HullDimensio
 
 def vessel_of(
     ship: ShipFile, form: HullDimensions, file: Path, problems: list[Problem]
-) -> dict[str, Entry]:
+) -> dict[str, Quantity]:
     """Parameters of the vessel, given or estimated.
 
     Parameters

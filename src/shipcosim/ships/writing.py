@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from math import sqrt
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 from shipcosim.ships.estimates.hull import HullDimensions
 from shipcosim.ships.estimates.resistance import resistance
 from shipcosim.ships.estimates.weather import USUAL_KIND
@@ -121,16 +121,14 @@ def ship_text(answers: Answers) -> str:
     missing = [key for key in ("length", "breadth", "draught") if not getattr(answers, key)]
     if missing:
         found = f"nothing says {', '.join(missing)}."
-        raise ShipcosimError(
-            Problem(
-                "new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'
-            )
+        raise error_at(
+            "new ship", found, 'Give --length "60 m" and so on, or --from with a ship file.'
         )
     # Given thrusters, else usual ones for the layout.
     try:
         thrusters = answers.thrusters or _thrusters(answers)
     except ValueError as error:
-        raise ShipcosimError(Problem("new ship", f"{error}")) from None
+        raise error_at("new ship", f"{error}") from None
     shown = "\n\n".join(
         "[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters
     )
@@ -162,7 +160,7 @@ def thruster_from(text: str) -> dict[str, str]:
     parts = [part.partition("=") for part in text.split(",") if part.strip()]
     if not parts or not all(sign and key.strip() and value.strip() for key, sign, value in parts):
         remedy = 'Write --thruster "name=bow, kind=tunnel, x=25 m, diameter=1.7 m, power=500 kW".'
-        raise ShipcosimError(Problem("--thruster", f"found {text!r}.", remedy))
+        raise error_at("--thruster", f"found {text!r}.", remedy)
     return {key.strip(): value.strip() for key, _, value in parts}
 
 

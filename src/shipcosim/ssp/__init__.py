@@ -15,8 +15,10 @@ from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
 from shipcosim.ssp.single_fmu import default_step_size, settings_of_one, step_remarks
 from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
+from shipcosim.ssp.xml.document import AnyPath
 
 __all__ = [
+    "AnyPath",
     "Component",
     "Connection",
     "FmuDescription",

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from os import PathLike
-
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.flatten.with_values import with_values
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterValue, read_parameter_set
-from shipcosim.ssp.xml.document import Findings, read_document
+from shipcosim.ssp.xml.document import AnyPath, Findings, read_document
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import conversion, spelled_unit
 
 
-def fitting_values(
-    path: str | PathLike[str], system: System
-) -> tuple[dict[str, Value], list[Problem]]:
+def fitting_values(path: AnyPath, system: System) -> tuple[dict[str, Value], list[Problem]]:
     """Start values of a parameter set, as far as a system has what they are for.
 
     Parameters
@@ -53,13 +49,11 @@ def fitting_values(
     # A set of which nothing fits is for another system.
     if not values:
         found = f"Nothing of it fits {system.name}: {', '.join(problem.where.rpartition(': ')[2] for problem in remarks)}."
-        raise ShipcosimError(
-            Problem(str(path), found, f"Components: {', '.join(system.components)}.")
-        )
+        raise error_at(str(path), found, f"Components: {', '.join(system.components)}.")
     return values, remarks
 
 
-def _read(path: str | PathLike[str]) -> ParameterSet:
+def _read(path: AnyPath) -> ParameterSet:
     findings = Findings()
     document = read_document(path, str(path), findings)
     found = None if document is None else read_parameter_set(document, findings)

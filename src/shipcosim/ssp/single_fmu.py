@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from math import inf
-from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
 
@@ -15,7 +14,7 @@ from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSets
-from shipcosim.ssp.xml.document import Document, Findings, qualified
+from shipcosim.ssp.xml.document import AnyPath, Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import UnitError, seconds
@@ -30,7 +29,7 @@ WHOLE = 1e-6
 """Part of a step by which a number of steps may differ from a whole one."""
 
 
-def single_fmu(path: str | PathLike[str]) -> Path | None:
+def single_fmu(path: AnyPath) -> Path | None:
     """Path of an FMU that is used as a system, or None."""
     path = Path(path)
     return path if path.suffix.lower() == ".fmu" and path.is_file() else None
@@ -39,7 +38,7 @@ def single_fmu(path: str | PathLike[str]) -> Path | None:
 def assemble_fmu(
     path: Path,
     parameters: ParameterSets,
-    fmus: Iterable[str | PathLike[str]],
+    fmus: Iterable[AnyPath],
     findings: Findings,
     swapped: Mapping[str, Path] | None = None,
 ) -> System | None:

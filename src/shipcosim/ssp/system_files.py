@@ -1,7 +1,6 @@
 """Read a system from any file: an SSP in its three forms, an OspSystemStructure.xml, or an FMU."""
 
 from collections.abc import Iterable, Mapping
-from os import PathLike
 from pathlib import Path
 
 from shipcosim.errors import ShipcosimError, held_strictly
@@ -11,14 +10,14 @@ from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.single_fmu import assemble_fmu, single_fmu
-from shipcosim.ssp.xml.document import Findings
+from shipcosim.ssp.xml.document import AnyPath, Findings
 
 
 def read_system(
-    path: str | PathLike[str],
+    path: AnyPath,
     parameters: ParameterSets = (),
     *,
-    fmus: Iterable[str | PathLike[str]] = (),
+    fmus: Iterable[AnyPath] = (),
     components: Mapping[str, Path] | None = None,
     strict: bool = False,
 ) -> System:
@@ -57,9 +56,9 @@ def read_system(
 
 
 def assemble(
-    path: str | PathLike[str],
+    path: AnyPath,
     parameters: ParameterSets = (),
-    fmus: Iterable[str | PathLike[str]] = (),
+    fmus: Iterable[AnyPath] = (),
     components: Mapping[str, Path] | None = None,
 ) -> tuple[System | None, Findings]:
     """Like `read_system`, but collects the problems.

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from itertools import islice
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.work import Chunk, Row
 from shipcosim.sweep.workers import Workers
@@ -132,7 +132,5 @@ class _Dispatch:
         # Nothing has worked and several runs crash: something is wrong with all of them.
         if not self._n_done and len(failed) and self._ends.total() >= 3 * ENDS:
             remedy = "Run the scenario alone to see why: shipcosim run SCENARIO --engine native."
-            raise ShipcosimError(
-                Problem("workers", "Each worker process ends in its first run.", remedy)
-            )
+            raise error_at("workers", "Each worker process ends in its first run.", remedy)
         return failed

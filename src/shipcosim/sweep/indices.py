@@ -61,7 +61,9 @@ def indices_of(plan: Plan, runs: pandas.DataFrame) -> tuple[pandas.DataFrame, li
     for levels, part in _parts(runs, factors):
         for measure in plan.measures:
             # Saltelli's design: blocks of (parameters + 2) samples. An index needs the whole block.
-            values = _by_sample(plan, part, measure.name)
+            values = np.full(plan.shape[-1], np.nan)
+            sound = part[part["error"] == ""]
+            values[sound["sample"].to_numpy(int)] = sound[measure.name].to_numpy(float)
             blocks = values.reshape(-1, len(columns) + 2)
             known = np.asarray(np.isfinite(blocks).all(axis=1))
             # Report how many blocks are lost, and why: failed runs or runs not done yet.
@@ -93,14 +95,6 @@ def _parts(runs: Any, factors: Sequence[str]) -> Iterator[tuple[dict[str, Any], 
     grouped = runs.groupby(list(factors), sort=False, dropna=False) if factors else [((), runs)]
     for key, part in grouped:
         yield dict(zip(factors, key, strict=True)), part
-
-
-def _by_sample(plan: Plan, part: Any, quantity: str) -> np.ndarray:
-    """A quantity by number of the sample; NaN where it has no value."""
-    values = np.full(plan.shape[-1], np.nan)
-    sound = part[part["error"] == ""]
-    values[sound["sample"].to_numpy(int)] = sound[quantity].to_numpy(float)
-    return values
 
 
 def _done(plan: Plan, part: Any) -> np.ndarray:

@@ -72,6 +72,10 @@ class Levels:
         self._system = system
         self.problems: list[Problem] = []
 
+    def complain(self, keys: Sequence[str | int], found: str, remedy: str = "") -> None:
+        """Add a problem of what stands in the study under some keys."""
+        self.problems.append(problem_of(self._study, keys, found, remedy))
+
     def of(self, number: int) -> list[Level]:
         """Levels of the factor with a number."""
         factor = self._study.factor[number]
@@ -134,20 +138,18 @@ class Levels:
         for name, group in self._study.names.items():
             if name in components:
                 found = f"'{name}' is a component already."
-                self.problems.append(
-                    problem_of(self._study, ("names", name), found, "Give them another name.")
-                )
+                self.complain(("names", name), found, "Give them another name.")
             for one in group:
                 if one not in components:
                     found = f"There is no component '{one}'."
                     remedy = suggestion(one, components)
-                    self.problems.append(problem_of(self._study, ("names", name), found, remedy))
+                    self.complain(("names", name), found, remedy)
 
     def at_fork(self, signals: Sequence[str], value: Value, keys: Sequence[str | int]) -> Level:
         """Level of a value that acts as an event at the fork."""
         event = Event(time=self._study.fork_at or 0.0, override=dict.fromkeys(signals, value))
         for _, _, found, remedy in event_complaints(event, self._system):
-            self.problems.append(problem_of(self._study, keys, found, remedy))
+            self.complain(keys, found, remedy)
         number = value if self.problems else _number(value, units_of(self._system)(signals[0]))
         return Level(number, events=(event,))
 
@@ -166,16 +168,13 @@ class Levels:
     def existing(self, names: Iterable[str], keys: Sequence[str | int]) -> list[str]:
         """Signals of names; empty, with a problem, if one does not exist."""
         signals = [signal for name in names for signal in self.signals_of(name)]
-        problems = []
+        before = len(self.problems)
         for signal in signals:
             try:
                 self._system.split(signal)
             except ShipcosimError as error:
-                problems.append(
-                    problem_of(self._study, keys, error.problems[0].found, error.problems[0].remedy)
-                )
-        self.problems += problems
-        return [] if problems else signals
+                self.complain(keys, error.problems[0].found, error.problems[0].remedy)
+        return [] if len(self.problems) > before else signals
 
     def _of_case(self, case: Case, keys: tuple[str | int, ...]) -> Level:
         # Order of precedence within a case: parameter sets first, then single values.
@@ -211,7 +210,7 @@ class Levels:
             known = [file.stem for file in paths[0].parent.glob("*.ssv")]
             known += [file.name for file in self._study.folder.glob("*.ssv")]
             found = f"There is no parameter set '{name}', in {paths[0].parent} or beside the study."
-            self.problems.append(problem_of(self._study, keys, found, suggestion(name, known)))
+            self.complain(keys, found, suggestion(name, known))
             return {}
         try:
             return fitting_values(path, self._system)[0]
@@ -223,9 +222,7 @@ class Levels:
         """Check the signals, values and times of events, which keys of the study name."""
         for number, event in enumerate(events):
             for verb, signal, found, remedy in event_complaints(event, self._system):
-                self.problems.append(
-                    problem_of(self._study, (*keys, number, verb, signal), found, remedy)
-                )
+                self.complain((*keys, number, verb, signal), found, remedy)
             self._check_time(event.time, (*keys, number, "time"), may_be_zero=True)
 
     def _check_time(
@@ -239,9 +236,7 @@ class Levels:
         if count is None or (count == 0 and not may_be_zero):
             found = f"{keys[-1]} = {time:g} s is no multiple of the step size {step:g} s."
             nearest = max(1, round(time / step)) * step
-            self.problems.append(
-                problem_of(self._study, keys, found, f"The nearest would be {nearest:g} s.")
-            )
+            self.complain(keys, found, f"The nearest would be {nearest:g} s.")
 
     def _spaced(self, factor: Factor, signal: str, number: int) -> list[float]:
         """Evenly spaced values of a factor, ends included, in the unit of its signal."""
@@ -251,9 +246,7 @@ class Levels:
             first, last = (_number(value, unit) for value in (factor.start, factor.to))
             step = None if factor.step is None else _number(factor.step, unit, difference=True)
         except UnitError as error:
-            self.problems.append(
-                problem_of(self._study, ("factor", number, "from"), error.found, error.remedy)
-            )
+            self.complain(("factor", number, "from"), error.found, error.remedy)
             return []
         # Either a number of values, or a step.
         if step is None:
@@ -262,9 +255,7 @@ class Levels:
         # holds.
         if step == 0.0 or (last - first) / step < 0.0 or (last - first) / step > MOST_LEVELS:
             found = f"Steps of {factor.step} do not lead from {factor.start} to {factor.to}."
-            self.problems.append(
-                problem_of(self._study, ("factor", number, "step"), found, "Give another step.")
-            )
+            self.complain(("factor", number, "step"), found, "Give another step.")
             return []
         # A small tolerance, so that rounding does not lose the last value.
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
@@ -279,9 +270,7 @@ class Levels:
         )
         if not signals and not self.problems:
             found = "Nothing in the system has a seed: it has no parameter named seed."
-            self.problems.append(
-                problem_of(self._study, keys, found, "Name the signals: signal = [...].")
-            )
+            self.complain(keys, found, "Name the signals: signal = [...].")
         levels = []
         # Seeds of one level differ between signals, so that two sensors have independent noise.
         for level in range(1, (factor.seeds or 0) + 1):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,9 +10,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.scenario.locations import line_of, location_of
 from shipcosim.scenario.reader import complaint_of, read_toml
+from shipcosim.ssp import AnyPath
 from shipcosim.sweep.study_model import Study
 
 LISTS = {"factor": "name", "quantity": "name", "summary": "name", "view": "title"}
@@ -62,7 +62,7 @@ class Source:
         return str(self.files[0][0])
 
 
-def read_study(path: str | os.PathLike[str]) -> Study:
+def read_study(path: AnyPath) -> Study:
     """Read and check a study file in itself; `shipcosim.sweep.plan` checks it with its scenario.
 
     Raises
@@ -123,8 +123,8 @@ def _read(path: Path, before: tuple[Path, ...]) -> Source:
     where = source.location(("extends",))
     resolved = path.resolve()
     if not isinstance(base, str):
-        raise ShipcosimError(
-            Problem(where, f"extends = {base!r}.", "Give the name or path of a study, in quotes.")
+        raise error_at(
+            where, f"extends = {base!r}.", "Give the name or path of a study, in quotes."
         )
     beside = path.resolve().parent / base
     try:
@@ -132,13 +132,11 @@ def _read(path: Path, before: tuple[Path, ...]) -> Source:
             beside if beside.is_file() else library.find("study", base, near=path.resolve().parent)
         )
     except ShipcosimError as error:
-        raise ShipcosimError(
-            Problem(where, f"There is no study '{base}'.", error.problems[0].remedy)
-        ) from None
+        raise error_at(where, f"There is no study '{base}'.", error.problems[0].remedy) from None
     # Studies that extend each other in a circle would never end.
     if found.resolve() in (resolved, *before):
-        raise ShipcosimError(
-            Problem(where, f"'{base}' extends this study in turn.", "Extend a study that does not.")
+        raise error_at(
+            where, f"'{base}' extends this study in turn.", "Extend a study that does not."
         )
     return _over(_read(found, (*before, resolved)), source)
 

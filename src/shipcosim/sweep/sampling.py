@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import ShipcosimError, error_at, imported, suggestion
 from shipcosim.scenario import units_of
-from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
-from shipcosim.sweep.reader import problem_of
-from shipcosim.sweep.study_model import Distribution, Study
+from shipcosim.sweep.study_model import Distribution, Sample, Study
 from shipcosim.units import UnitError, number_in
 
 if TYPE_CHECKING:
@@ -90,9 +88,7 @@ class Samples:
         row = self.numbers[number].tolist()
         if any(map(isnan, row)):
             remedy = "Run the study so far: each generation follows from the one before."
-            raise ShipcosimError(
-                Problem(f"trial {number}", "It has not been proposed yet.", remedy)
-            )
+            raise error_at(f"trial {number}", "It has not been proposed yet.", remedy)
         return [
             round(v) if column.is_whole else v for v, column in zip(row, self.columns, strict=True)
         ]
@@ -112,10 +108,10 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     with imported("sample", "Samples come from SciPy, which is missing."):
         import scipy  # noqa: F401
     lines = [
-        line for key, one in sample.of.items() for line in _lines(study, levels, system, key, one)
+        line for key, one in sample.of.items() for line in _lines(sample, levels, system, key, one)
     ]
     # Each column maps probabilities to values (inverse transform sampling).
-    quantiles = [_quantiles(study, levels, system, *line) for line in lines]
+    quantiles = [_quantiles(levels, system, *line) for line in lines]
     usable = [one for one in quantiles if one is not None]
     if len(usable) < len(quantiles) or not usable:
         return None
@@ -125,12 +121,12 @@ def samples_of(study: Study, levels: Levels, system: System) -> Samples | None:
     numbers = np.column_stack([of(spread[:, i]) for i, (_, of) in enumerate(usable)])
     found = Samples(tuple(column for column, _ in usable), numbers)
     # Only the extremes can break a bound.
-    _check_ends(study, levels, found, [key for key, _, _ in lines])
+    _check_ends(levels, found, [key for key, _, _ in lines])
     return found
 
 
 def _lines(
-    study: Study, levels: Levels, system: System, key: str, one: Distribution
+    sample: Sample, levels: Levels, system: System, key: str, one: Distribution
 ) -> Iterator[tuple[str, str, Distribution]]:
     """Key, name and distribution of each column of a line; ``vessel.*`` gives one per tolerance."""
     if not key.endswith(EVERY):
@@ -140,9 +136,7 @@ def _lines(
     group = key.removesuffix(EVERY)
     if not one.tolerance or one.name or one.also:
         found = f"'{key}' stands for each parameter with a tolerance."
-        levels.problems.append(
-            problem_of(study, keys, found, "It takes tolerance = true, and neither name nor also.")
-        )
+        levels.complain(keys, found, "It takes tolerance = true, and neither name nor also.")
         return
     # All parameters with a tolerance, except those that have a line of their own.
     component = system.components.get(levels.signals_of(key)[0].removesuffix(EVERY))
@@ -150,11 +144,10 @@ def _lines(
     if not names:
         known = [f"{c.name}{EVERY}" for c in system.components.values() if c.tolerances]
         found = f"No parameter set states a tolerance of {key}."
-        levels.problems.append(problem_of(study, keys, found, suggestion(key, known)))
-    of = study.sample.of if study.sample else {}
+        levels.complain(keys, found, suggestion(key, known))
     own = {
         signal
-        for line, said in of.items()
+        for line, said in sample.of.items()
         for name in (line, *said.also)
         for signal in levels.signals_of(name)
     }
@@ -162,7 +155,7 @@ def _lines(
 
 
 def _quantiles(
-    study: Study, levels: Levels, system: System, key: str, name: str, one: Distribution
+    levels: Levels, system: System, key: str, name: str, one: Distribution
 ) -> tuple[SampledColumn, Callable[[np.ndarray], np.ndarray]] | None:
     """A column of samples, and its quantile function; None with a problem."""
     keys = "sample", "of", key
@@ -176,11 +169,10 @@ def _quantiles(
         scale, shift = _conversion(one.unit, unit)
         of = _with_tolerance(system, signals[0]) if one.tolerance else _distribution(one)
     except UnitError as error:
-        levels.problems.append(problem_of(study, keys, error.found, error.remedy))
+        levels.complain(keys, error.found, error.remedy)
     except ShipcosimError as error:
-        levels.problems += [
-            problem_of(study, keys, problem.found, problem.remedy) for problem in error.problems
-        ]
+        for problem in error.problems:
+            levels.complain(keys, problem.found, problem.remedy)
     else:
         kind = (
             "Real"
@@ -213,22 +205,20 @@ def _distribution(one: Distribution) -> Callable[[np.ndarray], np.ndarray]:
     known = [name for name in dir(stats) if isinstance(getattr(stats, name), kinds)]
     if one.distribution not in known:
         found = f"scipy.stats has no distribution '{one.distribution}'."
-        raise ShipcosimError(Problem("", found, suggestion(str(one.distribution), known)))
+        raise error_at("", found, suggestion(str(one.distribution), known))
     distribution = getattr(stats, str(one.distribution))
     needed = (distribution.shapes or "").replace(",", " ").split()
     allowed = [*needed, "loc"] + ([] if isinstance(distribution, stats.rv_discrete) else ["scale"])
     if unknown := [name for name in one.shape if name not in allowed]:
-        raise ShipcosimError(
-            Problem("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
-        )
+        raise error_at("", f"unknown key '{unknown[0]}'.", suggestion(unknown[0], allowed))
     if missing := [name for name in needed if name not in one.shape]:
         found = f"'{missing[0]}' is missing."
-        raise ShipcosimError(Problem("", found, f"{one.distribution} has: {', '.join(allowed)}."))
+        raise error_at("", found, f"{one.distribution} has: {', '.join(allowed)}.")
     # Wrong parameters show as values that are not finite.
     if not np.isfinite(distribution.ppf([EDGE, 0.5, 1.0 - EDGE], **one.shape)).all():
         found = f"{one.distribution} with {', '.join(f'{n} = {v:g}' for n, v in one.shape.items()) or 'no numbers'}."
-        raise ShipcosimError(
-            Problem("", found, "These numbers make no distribution, or one without finite values.")
+        raise error_at(
+            "", found, "These numbers make no distribution, or one without finite values."
         )
     return lambda shares: distribution.ppf(shares, **one.shape)
 
@@ -242,11 +232,11 @@ def _with_tolerance(system: System, signal: str) -> Callable[[np.ndarray], np.nd
     if name not in tolerances:
         known = [f"{c.name}.{n}" for c in system.components.values() for n in c.tolerances]
         found = f"No parameter set states a tolerance of {signal}."
-        raise ShipcosimError(Problem("", found, suggestion(signal, known)))
+        raise error_at("", found, suggestion(signal, known))
     return lambda shares: norm.ppf(shares, loc=start_value(system, signal), scale=tolerances[name])
 
 
-def _check_ends(study: Study, levels: Levels, found: Samples, lines: Sequence[str]) -> None:
+def _check_ends(levels: Levels, found: Samples, lines: Sequence[str]) -> None:
     """Check the extremes of each column against bounds and types."""
     for i, (key, column) in enumerate(zip(lines, found.columns, strict=True)):
         for row in (int(np.argmin(found.numbers[:, i])), int(np.argmax(found.numbers[:, i]))):

@@ -7,7 +7,8 @@ import json
 import os
 import platform
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from time import monotonic
@@ -16,11 +17,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim import __version__
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at, imported
 from shipcosim.scenario.model import Value
 from shipcosim.series import write_file
 from shipcosim.staging import set_aside
-from shipcosim.sweep.extras import imported
 from shipcosim.sweep.plan import ColumnOf, Plan
 from shipcosim.sweep.work import Row
 
@@ -146,9 +146,7 @@ class Store:
 
     def runs(self) -> pandas.DataFrame:
         """The table of runs."""
-        import pandas
-
-        return pandas.read_parquet(self.folder / "runs.parquet")
+        return read_part(self.folder / "runs.parquet")
 
     def about(self) -> dict[str, Any]:
         """The content of study.json."""
@@ -319,20 +317,15 @@ class Store:
         return pyarrow.table(columns)
 
 
-class _said:
+@contextmanager
+def _said(folder: Path) -> Iterator[None]:
     """Turn errors of the operating system into one ShipcosimError."""
-
-    def __init__(self, folder: Path):
-        self._folder = folder
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: Any, error: BaseException | None, _: Any) -> None:
-        if isinstance(error, OSError):
-            found = f"Results cannot be written here: {error.strerror or error}."
-            remedy = "Make room and run the study again: it goes on from what is done."
-            raise ShipcosimError(Problem(str(self._folder), found, remedy)) from error
+    try:
+        yield
+    except OSError as error:
+        found = f"Results cannot be written here: {error.strerror or error}."
+        remedy = "Make room and run the study again: it goes on from what is done."
+        raise error_at(str(folder), found, remedy) from error
 
 
 def _kind(labels: list[Value]) -> Any:
@@ -358,3 +351,21 @@ def _of_summaries(plan: Plan) -> list[ColumnOf]:
             )
         )
     return found
+
+
+def read_part(path: Path) -> pandas.DataFrame:
+    """A table of a study's folder.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is damaged.
+    """
+    import pandas
+
+    try:
+        return pandas.read_parquet(path)
+    except Exception as error:  # Arrow has errors of many kinds
+        found = f"cannot be read: {' '.join(str(error).split())[:200]}."
+        remedy = "Delete the folder, or replace it with --force: its runs are made again."
+        raise error_at(str(path), found, remedy) from error

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.series import write_file
 from shipcosim.sweep.dispatch import rows_of
 from shipcosim.sweep.indices import has_indices, indices_of
@@ -91,9 +91,7 @@ def run_study(
     """
     check_installed()
     if engine not in ENGINES:
-        raise ShipcosimError(
-            Problem("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'.")
-        )
+        raise error_at("engine", f"engine = {engine!r}.", "Studies are run by 'native' or 'fmpy'.")
     # The store knows which runs are done, also from an interrupted study.
     store = Store(folder, plan, engine, force)
     search = Search(plan) if plan.study.tune else None

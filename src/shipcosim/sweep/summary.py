@@ -10,6 +10,7 @@ import numpy as np
 
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.study_model import Summary
+from shipcosim.sweep.weather import NUMBERS
 
 if TYPE_CHECKING:
     import pandas
@@ -18,6 +19,9 @@ CONFIDENCE = 0.95
 _NORMAL = 1.959963984540054  # quantile of the normal distribution at (1 + CONFIDENCE) / 2
 SHARE = 0.9
 """Of the runs of a case that have to hold, where a summary does not say."""
+
+RANGE = "_range"
+"""Ending of the column that says what is known of a value where not every case was run."""
 
 Interval = tuple[float, float, float]
 """Value, lower and upper limit at CONFIDENCE; NaN where a limit cannot be given."""
@@ -68,7 +72,7 @@ def _rows(
 
 def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
     if one.statistic == "last_held":
-        return {one.name: _last_held(plan, one, part)}
+        return _last_held(plan, one, part)
     values = part[one.quantity].to_numpy(dtype=float)
     # "Never" is later than any time: infinite instead of missing, or an average would be too early.
     if any(measure.name == one.quantity and measure.may_never_be for measure in plan.measures):
@@ -78,20 +82,51 @@ def _summary(plan: Plan, one: Summary, part: Any) -> Mapping[str, Any]:
     return {one.name: value} | (limits if one.statistic in WITH_LIMITS else {})
 
 
-def _last_held(plan: Plan, one: Summary, part: Any) -> Any:
-    """Label of the last case up to which all hold."""
+def _last_held(plan: Plan, one: Summary, part: Any) -> dict[str, Any]:
+    """Label of the last case up to which all hold, and what the study tells of the cases that it left out."""
     factor = next(i for i, factor in enumerate(plan.study.factor) if factor.name == one.along)
     found = one.none
+    # None where no case fails: only cases that were not run could.
+    failing = None
     share = one.share if one.share is not None else SHARE
     # Levels come in increasing severity. Stop at the first in which too few runs hold.
     for level in plan.levels[factor]:
         held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(
             dtype=float
         )
-        if not len(held) or held.mean() < share - 1e-12:
+        if not len(held):
+            break
+        if held.mean() < share - 1e-12:
+            failing = level.label
             break
         found = level.label
-    return found
+    is_condition = plan.study.factor[factor].conditions is not None
+    return {one.name: found, f"{one.name}{RANGE}": range_of(found, failing, is_condition)}
+
+
+def range_of(held: Any, failing: Any, is_condition: bool) -> str:
+    """What is known where not every case is run: ``"4"``, ``">= 4"``, ``"1 to 3"``.
+
+    Parameters
+    ----------
+    held, failing : label
+        Last case that is held, and first that is not; None where there is none.
+    is_condition : bool
+        Whether they are DP capability numbers, of which there are none between neighbours and none above the highest.
+
+    Examples
+    --------
+    >>> range_of(4, None, True), range_of(1, 4, True), range_of(3, 4, True), range_of(0, 1, True)
+    ('>= 4', '1 to 3', '3', '0')
+    >>> range_of("calm", "storm", False)
+    'calm, not storm'
+    """
+    if not is_condition:
+        return f">= {held}" if failing is None else f"{held}, not {failing}"
+    if failing is None:
+        return str(held) if held == NUMBERS[-1] else f">= {held}"
+    highest = int(failing) - 1
+    return str(held) if int(held or 0) == highest else f"{held} to {highest}"
 
 
 def wilson(held: int, n: int) -> Interval:

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from shipcosim.errors import suggestion
+from shipcosim.errors import imported, suggestion
 from shipcosim.scenario import units_of
-from shipcosim.sweep.extras import imported
 from shipcosim.sweep.levels import Levels, start_value
 from shipcosim.sweep.plan import Plan
 from shipcosim.sweep.reader import problem_of

@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import hashlib
 import pickle
-import tempfile
 import threading
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
@@ -23,6 +22,7 @@ from shipcosim.options import RunOptions
 from shipcosim.ssp import System
 from shipcosim.sweep.plan import Plan, PlannedRun, Swapped
 from shipcosim.sweep.quantities import Measure
+from shipcosim.temporary import temporary_folder
 
 MOST_JOBS = 2
 MOST_SYSTEMS = 4
@@ -154,9 +154,7 @@ class _Bench:
         job: Job = pickle.loads(packed.content)
         self._job = job
         self._plan = job.plan
-        self._folder = tempfile.TemporaryDirectory(
-            prefix="shipcosim-fmus-", ignore_cleanup_errors=True
-        )
+        self._folder = temporary_folder()
         self._at: dict[str, Path] = {}
         self._ready: OrderedDict[Swapped, OneAfterAnother] = OrderedDict()
         measures: Sequence[Measure] = job.plan.measures

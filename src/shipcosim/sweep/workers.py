@@ -6,7 +6,6 @@ import os
 import pickle
 import signal
 import sys
-import tempfile
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
@@ -16,10 +15,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.sweep.extras import imported
+from shipcosim.cosim.processes.child import end_with_parent
+from shipcosim.errors import error_at, imported
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
+from shipcosim.temporary import temporary_folder
 
 
 class Workers(ABC):
@@ -69,7 +69,7 @@ class Processes(Workers):
 
     def __init__(self, plan: Plan, engine: str, n: int | None = None):
         self.n = n or cores()
-        self._folder = tempfile.TemporaryDirectory(prefix="shipcosim-sweep-")
+        self._folder = temporary_folder()
         self._job = Path(self._folder.name) / "job.pickle"
         self._job.write_bytes(pickle.dumps(pack(plan, engine, with_fmus=False), protocol=5))
         self._executor = self._new()
@@ -134,13 +134,13 @@ class Cluster(Workers):
                 "Start one: dask scheduler, and on each machine dask worker ADDRESS --nthreads 1."
             )
             found = f"No scheduler of Dask answers: {str(error) or type(error).__name__}."
-            raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy)) from None
+            raise error_at(f"--scheduler {address}", found, remedy) from None
         self.n = len(self._client.scheduler_info(n_workers=-1)["workers"])
         if not self.n:
             self._client.close()
             found = "It has no worker."
             remedy = f"Start some: dask worker {address} --nthreads 1."
-            raise ShipcosimError(Problem(f"--scheduler {address}", found, remedy))
+            raise error_at(f"--scheduler {address}", found, remedy)
         # The job goes to all workers once; each chunk then only refers to it.
         self._packed: PackedJob = pack(plan, engine, with_fmus=True)
         self._executor = self._client.get_executor(pure=False, retries=2)
@@ -173,7 +173,8 @@ def cores() -> int:
 
 
 def _begin() -> None:
-    """Prepare a worker: no Ctrl-C, and one thread for numerical libraries."""
+    """Prepare a worker: it ends with this process, no Ctrl-C, and one thread for numerical libraries."""
+    end_with_parent()
     # All cores have a process each; more threads would only compete.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     from threadpoolctl import threadpool_limits

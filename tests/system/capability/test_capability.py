@@ -235,9 +235,8 @@ def test_words_that_mean_nothing_are_said_with_those_that_do(system, root, tmp_p
 def test_ships_of_all_parameter_sets_have_what_the_capability_needs(system, root):
     for folder in sorted((root / "ssp" / "ships").glob("gunnerus-*")):
         found = read_vessel(system, read_ship(folder))
-        assert len(found.thrusters) == 3 and any(
-            "assumed" in one.origin for one in found.particulars
-        )
+        said = [one for file in found.particulars.values() for one in file.values()]
+        assert len(found.thrusters) == 3 and any("assumed" in one.origin for one in said)
 
 
 def test_an_azimuth_that_cannot_turn_pushes_where_it_points(system, root):

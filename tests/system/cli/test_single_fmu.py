@@ -1,8 +1,10 @@
 """One FMU runs by itself, of every version and form: its inputs from a table, its parameters set."""
 
 import re
+import tempfile
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import c_fmus
 import numpy as np
@@ -14,6 +16,7 @@ from hypothesis import strategies as st
 
 import shipcosim as sc
 from shipcosim.calls.arguments import without_none
+from shipcosim.checks import check_any
 from shipcosim.cli.commands.simulate import simulate
 from shipcosim.series import read_table
 from shipcosim.ssp import (
@@ -154,3 +157,29 @@ static int completed(M* m) { return 0; }
         set={} if given_value is None else {"u": given_value},
     )
     assert run["counts.n"].values[-1] == (given_value is not None)
+
+
+@given(data=st.data())
+@settings(max_examples=40, deadline=None)
+def test_check_finds_all_that_the_validator_of_fmpy_finds(data):
+    """An attribute of the description is removed or exchanged, as other exporters write them."""
+    from fmpy.validation import validate_fmu
+
+    with tempfile.TemporaryDirectory() as folder:
+        original = build_part("gain")
+        text = zipfile.ZipFile(original).read("modelDescription.xml").decode()
+        attributes = list(
+            re.finditer(r' (start|causality|variability|initial|unit)="([^"]*)"', text)
+        )
+        chosen = data.draw(st.sampled_from(attributes))
+        others = ("", "input", "output", "parameter", "continuous", "fixed", "exact", "furlong")
+        value = data.draw(st.sampled_from(others))
+        spoilt = f' {chosen[1]}="{value}"' if value else ""
+        text = text[: chosen.start()] + spoilt + text[chosen.end() :]
+        fmu = Path(folder) / "spoilt.fmu"
+        with zipfile.ZipFile(original) as before, zipfile.ZipFile(fmu, "w") as after:
+            for name in before.namelist():
+                is_text = name == "modelDescription.xml"
+                after.writestr(name, text if is_text else before.read(name))
+        found = [problem for problem in check_any(str(fmu)) if problem.severity == "error"]
+        assert bool(found) >= bool(validate_fmu(str(fmu)))

@@ -74,7 +74,7 @@ def test_step_size_error_is_that_of_the_closed_form(loop, make_scenario):
 def test_half_the_step_has_the_same_rows(loop, make_scenario):
     scenario = make_scenario(1.0, 0.1)
     np.testing.assert_array_equal(
-        simulate(loop, halved(scenario))["time"], simulate(loop, scenario)["time"]
+        simulate(*halved(loop, scenario))["time"], simulate(loop, scenario)["time"]
     )
 
 

@@ -12,7 +12,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.sea_trials import separation
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
 from shipcosim.diagnose.sea_trials.study import causes_of_trials, studied
-from shipcosim.report.sea_trials.page import write_sea_trials
+from shipcosim.report.sea_trials.page import render
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,7 @@ def found():
 
 
 def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp_path, data_of):
-    write_sea_trials(found, tmp_path / "report.html", {"Log": "<trials>.csv"})
+    (tmp_path / "report.html").write_text(render(found, {"Log": "<trials>.csv"}), encoding="utf-8")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "&lt;trials&gt;.csv" in page and "AMBIGUOUS" in page
     for anchor in re.findall(r'<a href="#(\w+)"', page):
@@ -52,7 +52,7 @@ def test_the_page_says_what_is_wrong_what_fits_alike_and_what_to_sail(found, tmp
 
 
 def test_the_summary_says_the_same_as_the_page(found, tmp_path, capsys):
-    write_sea_trials(found, tmp_path / "report.html", {})
+    (tmp_path / "report.html").write_text(render(found, {}), encoding="utf-8")
     print_study(found, tmp_path, False)
     said = capsys.readouterr().out
     sentence = re.search(r"[A-Z][a-z ]+ drag explains best[^.]*\.", said)[0]

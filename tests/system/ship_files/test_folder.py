@@ -6,7 +6,7 @@ import pytest
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.models.core.parameters import quantity, required, required_table
-from shipcosim.ships import read_ship
+from shipcosim.ships import Quantity, read_ship
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,11 +54,13 @@ def test_a_ship_is_her_numbers_with_origin_and_tolerance_and_her_tables_digit_by
     assert (ship.name, ship.description, ship.systems) == ("own", "a boat", ("here",))
     found = ship.parameter_set({"port": [Screw]})["port"]
     assert (
-        found["diameter"] == (2.0, "m", "diameter", "drawing", 0.01, ())
+        found["diameter"] == Quantity(2.0, "m", 0.01, "drawing", description="diameter")
         and type(found["diameter"].value) is float
     )
-    assert found["curve"] == ("0 0.40; 1 0.1", "1", "rows 'J KT'", "tank test", 0.0, ())
-    assert found["loss"] == (0.0, "1", "loss of thrust", "neutral", 0.0, ())
+    assert found["curve"] == Quantity(
+        "0 0.40; 1 0.1", "1", 0.0, "tank test", description="rows 'J KT'"
+    )
+    assert found["loss"] == Quantity(0.0, "1", 0.0, "neutral", description="loss of thrust")
     assert ship.parameters(Screw, "port") == Screw(diameter=2.0, pitch=1.1, curve="0 0.40; 1 0.1")
 
 

@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -56,7 +57,8 @@ def write_new(folder: Path, new: Mapping[str, str | bytes]) -> list[Path]:
             path.write_bytes(content.encode() if isinstance(content, str) else content)
     except OSError as error:
         for path in written:
-            path.unlink(missing_ok=True)
+            with suppress(OSError):  # what cannot be written cannot be removed either
+                path.unlink(missing_ok=True)
         where = str(written[-1] if written else folder)
         raise ShipcosimError(Problem(where, f"cannot be written: {error.strerror}.")) from None
     return written

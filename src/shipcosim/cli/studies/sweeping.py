@@ -14,6 +14,7 @@ from shipcosim.cli.console import shown_path
 from shipcosim.cli.exits import INTERRUPTED
 from shipcosim.cli.terminal import make_console, say
 from shipcosim.sweep import Plan, Swept
+from shipcosim.sweep.summary import RANGE
 
 if TYPE_CHECKING:
     from shipcosim.calls.studies import PlannedStudy
@@ -107,9 +108,11 @@ def _say(swept: Swept) -> None:
     """The summary, errors, and where the page is."""
     console = make_console(soft_wrap=True)
     if 0 < len(swept.summary) <= SHOWN:
-        text = swept.summary.to_string(
-            index=False, na_rep="", float_format=lambda value: f"{value:.4g}"
-        )
+        # What is known of a value that not every case was run for takes its place.
+        shown = swept.summary.copy()
+        for name in [name for name in shown if str(name).endswith(RANGE)]:
+            shown[str(name).removesuffix(RANGE)] = shown.pop(name)
+        text = shown.to_string(index=False, na_rep="", float_format=lambda value: f"{value:.4g}")
         console.print(text, markup=False)
     if "indices" in swept.tables:
         _say_indices(console, swept)

@@ -9,7 +9,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -23,6 +22,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import System
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     import xarray
@@ -82,7 +82,7 @@ def _run(host, path, scenario, set_name, system):
         "set": set_name,
         "ends": list(outputs.values()),
     }
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         values = _values(host, job, Path(folder))
     # The tools return no start values, so the table begins after the first step.
     columns = [(name, values[:, i], end[-1], "") for i, (name, end) in enumerate(outputs.items())]

@@ -9,7 +9,6 @@ texts may be long. Events become a scenario of its own.
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack
 from ctypes import POINTER, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32
@@ -33,6 +32,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
+from shipcosim.temporary import temporary_folder
 
 if TYPE_CHECKING:
     import xarray
@@ -81,9 +81,7 @@ class LibcosimSession:
         self._override: Any = None
         self._step = nanoseconds(job.scenario.step_size)
         self._stack.enter_context(imports_undone())
-        self._folder = Path(
-            self._stack.enter_context(tempfile.TemporaryDirectory(prefix="shipcosim-"))
-        )
+        self._folder = Path(self._stack.enter_context(temporary_folder()))
         # The constructor cannot use a `with` block: free everything by hand if opening fails.
         try:
             self._open()

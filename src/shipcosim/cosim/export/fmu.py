@@ -6,7 +6,6 @@ steps, with more passes in the container where it needs them, and an FMU that co
 """
 
 import os
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Component, System, read_fmu
+from shipcosim.temporary import temporary_folder
 
 SWEEPS = (1, 2, 4, 8)
 STEPS = 100
@@ -67,7 +67,7 @@ def export_fmu(
     # Our own run is the reference. It is made only once.
     ours = None
     differing = []
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         # Try as few sweeps as possible: each costs time at every step of the FMU.
         for sweeps in SWEEPS:
             tried = Path(folder) / f"{sweeps}.fmu"

@@ -10,6 +10,8 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from io import TextIOWrapper
+from threading import Thread
+from time import sleep
 from typing import Any, BinaryIO, cast
 
 import numpy as np
@@ -47,9 +49,7 @@ def serve() -> None:
     # Ctrl-C goes to the whole terminal, but only the run may decide to stop.
     source, target, flush = _own_pipes()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # The kernel ends this process if the run dies.
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
+    end_with_parent()
     with Instances() as instances:
         handler = RequestHandler(instances)
         failure = None
@@ -74,6 +74,24 @@ def serve() -> None:
                     ),
                 )
                 failure = None
+
+
+def end_with_parent() -> None:
+    """Have this process end where the one that started it ends, also where that is killed."""
+    parent = os.getppid()
+    # Linux does it itself. Elsewhere a thread looks whether the parent has changed.
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
+        if os.getppid() != parent:
+            os._exit(1)
+    elif os.name == "posix":
+        Thread(target=_wait_for_orphaning, args=(parent,), daemon=True).start()
+
+
+def _wait_for_orphaning(parent):
+    while os.getppid() == parent:
+        sleep(1.0)
+    os._exit(1)
 
 
 def _done(method, arguments):

@@ -3,7 +3,6 @@
 The process of a component does what a `Slave` does here, on the same bytes, so results are the same to the last digit.
 """
 
-import tempfile
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from threading import Event, Thread
@@ -15,6 +14,7 @@ import numpy as np
 from shipcosim.cosim.processes.component_process import EXIT_TIMEOUT, ComponentProcess
 from shipcosim.cosim.slaves.slave import OK, Slave, SlaveError
 from shipcosim.ssp import Component, System, Variable
+from shipcosim.temporary import temporary_folder
 
 
 class RemoteSlave(Slave):
@@ -176,7 +176,7 @@ class IsolatedInstances:
         self._stack = ExitStack()
         # If one process cannot start, the stack ends those already started.
         with self._stack:  # undoes all where a process cannot be started
-            folder = tempfile.TemporaryDirectory(prefix="shipcosim-", ignore_cleanup_errors=True)
+            folder = temporary_folder()
             folder = self._stack.enter_context(folder)
             self._stack.callback(self._end)
             # Start all processes first: they load Python in parallel.

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.cosim.slaves.event_indicators import EventIndicators
 from shipcosim.cosim.slaves.fmi2 import Slave2
 from shipcosim.cosim.slaves.fmi3 import Slave3
 from shipcosim.cosim.slaves.library_slave import LibrarySlave
@@ -94,10 +95,6 @@ class ModelExchange(LibrarySlave):
         self._solver: Cvode | None = None
         self._next_event = inf
         self._is_event_done = False
-        # Signs of the event indicators at the last event: -1, 0 or 1.
-        self._signs = np.zeros(0)
-        # Whether an indicator may be zero now, so that its sign is seen only a little later.
-        self._is_at_zero = False
         self.followed: frozenset[tuple[str, str]] = frozenset()
         self.close_group: Callable[[], None] | None = None
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
@@ -162,6 +159,7 @@ class ModelExchange(LibrarySlave):
             self._n, self._derivatives, self._n_indicators, self._indicators, tolerance
         )
         self._states = solver.states.ctypes.data_as(POINTER(c_double))
+        self._events = EventIndicators(self._n_indicators, self._get_indicators)
         # Discrete states must settle before continuous time begins (FMI, event iteration).
         self._iterate_event()
 
@@ -259,7 +257,7 @@ class ModelExchange(LibrarySlave):
         near = CLOSE * max(abs(end), end - time)
         farthest = FARTHEST_PAST * (end - time)
         n_events = 0
-        n_counted, counted_from = 0, time
+        counted_from = time
         # Inputs set since the last step have put the FMU into event mode.
         if self._mode == EVENT:
             self._time = time
@@ -271,7 +269,7 @@ class ModelExchange(LibrarySlave):
                     return
                 stop = min(end, self._next_event)
                 # An indicator that is zero now has its sign a little later.
-                if self._is_at_zero:
+                if self._events.may_be_zero:
                     is_event = self._pass_zero(min(self._time + farthest, stop))
                 else:
                     is_event = self._solver_step(stop, near)
@@ -282,20 +280,19 @@ class ModelExchange(LibrarySlave):
             self._iterate_event()
             self._enter_continuous_time()
             n_events += 1
-            n_counted += 1
             # Too many events in one step: the model switches back and forth (chattering).
             if n_events > MOST_EVENTS:
                 raise SlaveError(
                     f"It had more than {MOST_EVENTS} events until t = {self._time:.9g} s."
                 )
-            if n_counted == MOST_EVENTS_AT_ONCE:
+            if n_events % MOST_EVENTS_AT_ONCE == 0:
                 if self._time - counted_from <= SHORTEST_TIME * (end - time):
                     raise SlaveError(
-                        f"It chatters at t = {self._time:.9g} s: {n_counted} events within "
+                        f"It chatters at t = {self._time:.9g} s: {MOST_EVENTS_AT_ONCE} events within "
                         f"{self._time - counted_from:.1g} s, each of which causes the next. It needs a hysteresis, "
                         "or a state in which it slides or rests."
                     )
-                n_counted, counted_from = 0, self._time
+                counted_from = self._time
 
     def _solver_step(self, stop, near):
         """Make one step of the solver, at most to a time; true if there is an event where it ends."""
@@ -306,11 +303,11 @@ class ModelExchange(LibrarySlave):
         # The FMU's last evaluation may lie elsewhere, at a trial point of the solver.
         self._set_time_and_states(self._time, self._states)
         # Step event: the FMU asks for one. State event: an indicator has changed its sign.
-        if self._completed_step() or self._has_changed_sign():
+        if self._completed_step() or self._events.has_changed():
             return True
         # A root is often exactly zero. FMUs that compare with < and > see no change there.
-        self._is_at_zero = has_root
-        return has_root and self._time == stop and self._has_come_to_zero()
+        self._events.may_be_zero = has_root
+        return has_root and self._time == stop and self._events.has_come_to_zero()
 
     def _pass_zero(self, farthest):
         """Go past a zero of an indicator, at most to a time; true if there is an event.
@@ -318,48 +315,30 @@ class ModelExchange(LibrarySlave):
         The states go on along their derivatives, over a time that doubles until a sign changes. Where none does, the
         indicator touches zero or stays there: then nothing moves.
         """
-        self._is_at_zero = False
+        self._events.may_be_zero = False
         start = self._time
         states = np.ctypeslib.as_array(self._states, (max(self._n, 1),))
         before = states.copy()
         rates = np.zeros(max(self._n, 1))
-        if self._n:
-            self.call(self.DERIVATIVES, rates.ctypes.data_as(POINTER(c_double)), self._n)
+        self.derivatives_into(rates)
         # The first try is a few roundings of the time long.
-        past = 4 * np.spacing(max(abs(start), farthest - start))
-        while True:
-            past = min(past, farthest - start)
+        past = 2 * np.spacing(max(abs(start), farthest - start))
+        while past < farthest - start:
+            past = min(2 * past, farthest - start)
             self._time = start + past
             states[:] = before + past * rates
             self._set_time_and_states(self._time, self._states)
-            if self._has_changed_sign():
+            if self._events.has_changed():
                 return True
-            if past >= farthest - start:
-                break
-            past *= 2
         self._time = start
         states[:] = before
         self._set_time_and_states(start, self._states)
-        return self._has_come_to_zero()
+        return self._events.has_come_to_zero()
 
-    def _has_changed_sign(self):
-        """Whether an event indicator is past zero, on another side than at the last event."""
-        if not self._n_indicators:
-            return False
-        signs = np.sign(self._indicator_values())
-        return bool(np.any((signs != 0.0) & (signs != self._signs)))
-
-    def _has_come_to_zero(self):
-        """Whether a positive indicator has become zero: an event too, as FMI counts zero as negative."""
-        return bool(np.any((self._indicator_values() == 0.0) & (self._signs > 0.0)))
-
-    def _indicator_values(self):
-        """Event indicators at the present time and states, an (n_indicators,) array."""
-        values = np.zeros(self._n_indicators)
-        self.call(
-            "GetEventIndicators", values.ctypes.data_as(POINTER(c_double)), self._n_indicators
-        )
-        return values
+    def _get_indicators(self, values):
+        """Fill an (n_indicators,) array with the event indicators at the present time and states."""
+        pointer = values.ctypes.data_as(POINTER(c_double))
+        self.call("GetEventIndicators", pointer, self._n_indicators)
 
     def _iterate_event(self):
         """Event iteration: update the discrete states until they no longer change."""
@@ -383,10 +362,8 @@ class ModelExchange(LibrarySlave):
         if self._n:
             self.call("GetContinuousStates", self._states, self._n)
             self.call(self.NOMINALS, nominals.ctypes.data_as(POINTER(c_double)), self._n)
-        # The discrete states have settled for these signs. A zero gets its sign when time goes on.
-        if self._n_indicators:
-            self._signs = np.sign(self._indicator_values())
-            self._is_at_zero = bool(np.any(self._signs == 0.0))
+        # A zero gets its sign when time goes on.
+        self._events.keep()
         assert self._solver is not None  # since the initialisation
         self._solver.start(self._time, nominals)
 

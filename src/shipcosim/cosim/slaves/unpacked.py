@@ -12,6 +12,8 @@ import shutil
 import sys
 import tempfile
 import time
+import zipfile
+import zlib
 from pathlib import Path
 from typing import Self
 
@@ -19,6 +21,7 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.library import cache
 from shipcosim.ssp import unpack
 from shipcosim.ssp.xml.archive import entries
+from shipcosim.temporary import temporary_folder
 
 UNUSED = 30 * 86400.0
 """After which an FMU leaves the cache. [s]"""
@@ -28,9 +31,7 @@ class UnpackedFmus:
     """Folders of unpacked FMUs. At the end, temporary ones and their modules are removed."""
 
     def __enter__(self) -> Self:
-        self._temporary = tempfile.TemporaryDirectory(
-            prefix="shipcosim-", ignore_cleanup_errors=True
-        )
+        self._temporary = temporary_folder()
         self._root = Path(self._temporary.name).resolve()
         self._folders = {}
         return self
@@ -75,6 +76,8 @@ def _in_cache(fmu: Path) -> Path | None:
     try:
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()[:32]
         folder = (cache() / "unpacked" / digest).resolve()
+        if folder.is_dir() and not _is_intact(fmu, folder):
+            shutil.rmtree(folder)
         if not folder.is_dir():
             # True if all code of an FMU goes by a name that follows from its content; see `fmi.export.bundle`.
             names = entries(fmu)
@@ -98,9 +101,23 @@ def _in_cache(fmu: Path) -> Path | None:
             _unpack_into_cache(fmu, folder)
         # A fresh time stamp keeps the folder in the cache; unused ones are removed.
         os.utime(folder)
-    except (OSError, ShipcosimError):
+    except (OSError, zipfile.BadZipFile, ShipcosimError):
         return None
     return folder
+
+
+def _is_intact(fmu: Path, folder: Path) -> bool:
+    """Whether a folder of the cache holds the files of an FMU in their sizes and with their check sums."""
+    with zipfile.ZipFile(fmu) as archive:
+        for part in archive.infolist():
+            path = folder / part.filename
+            if part.is_dir():
+                continue
+            if not path.is_file() or path.stat().st_size != part.file_size:
+                return False
+            if zlib.crc32(path.read_bytes()) != part.CRC:
+                return False
+    return True
 
 
 def _unpack_into_cache(fmu: Path, folder: Path) -> None:

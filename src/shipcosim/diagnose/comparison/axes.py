@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.commanded import Commanded, inertia, moving_mass
+from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
 from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.regression import Regression, regressed
 from shipcosim.diagnose.comparison.thresholds import (
@@ -255,7 +255,7 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     kernel = felt.kernel
     motion = felt.motion
     rows = felt.usable
-    force = inertia(model) @ felt.rates + kernel.smooth(moving_mass(motion, model))
+    force = model.mass_matrix @ felt.rates + kernel.smooth(moving_mass(motion, model))
     block = max(int(BLOCK_WIDTHS * kernel.width / kernel.step), int(rows.sum() / MOST_BLOCKS), 1)
     thrust = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))
     found = []

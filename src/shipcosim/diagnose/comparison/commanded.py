@@ -64,12 +64,6 @@ def _rows(load: Load, size: int) -> np.ndarray:
     return np.pad(rows, ((0, 0), (0, size - rows.shape[1])), mode="edge")
 
 
-def inertia(model: ShipModel) -> np.ndarray:
-    """Mass and moment of inertia with added mass, (3, 3) array. [kg, kg, kg.m2]"""
-    i11, i22, i26, i62, i66 = model.parts["hull"].inverse_mass
-    return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
-
-
 def moving_mass(motion: Motion, model: ShipModel) -> np.ndarray:
     """Loads that turning asks of the rigid body, C_RB(ν) ν, (3, n) array. [N, N, N.m]"""
     hull = model.parts["hull"]

@@ -141,7 +141,11 @@ def compared(log: CheckedLog) -> ComparedLog:
     felt = felt_by(record, length)
     ship = with_surrogates(ship, record, first_motion(record, ship))
     errors = errors_of(record, felt, ship)
-    too_slow = _too_slow(log.repaired, ship)
+    # What to say where rows are too far apart for the ship's answers.
+    step = float(np.diff(log.repaired["time"].values[:2])[0])
+    most = RESOLVED * froude_time(ship.parts["hull"].length)
+    said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
+    too_slow = (said,) if step > most else ()
     unknown = _unknown_thrusters(log.repaired, ship)
     if too_slow or felt.usable.sum() < FEWEST_USABLE:
         return _stage(log, LogComparison(errors, (), obstacles=too_slow + unknown))
@@ -218,14 +222,6 @@ def ratio_alone(
     if ratio is None or thrust is None:
         return None
     return CrudeModel((replace(thrust, estimate=ratio.ratio, std=ratio.std),))
-
-
-def _too_slow(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
-    """What to say where rows are too far apart for the ship's answers."""
-    step = float(np.diff(repaired["time"].values[:2])[0])
-    most = RESOLVED * froude_time(ship.parts["hull"].length)
-    said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
-    return (said,) if step > most else ()
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:

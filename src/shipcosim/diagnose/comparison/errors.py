@@ -76,7 +76,11 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     motion = felt.motion
     seen = Motion(*(felt.kernel.smooth(value) for value in motion))
     counts = [max(1, round(horizon / record.step)) for horizon in horizons]
-    off = _missed(record, model, seen, rows, counts)
+    # Errors of the predictions by channel, (horizons, s) arrays.
+    logged, ship = replayable(record, model, seen)
+    start = true_motion(Motion(*(value[rows] for value in seen)), ship)
+    found = predicted(start, rows, logged, ship, counts)
+    off = missing(readings(found, ship), seen, rows + np.array(counts)[:, None])
     return {
         "horizon_s": [count * record.step for count in counts],
         "position_error_m": [root_mean_square(one) for one in off["position"]],
@@ -138,11 +142,3 @@ def starts_of(record: Record, felt: Felt, horizon: float) -> np.ndarray:
     good = rows[(lost[rows + reach] == lost[rows]) & felt.usable[rows] & felt.usable[rows + reach]]
     good = good if good.size >= FEWEST_STARTS else rows[lost[rows + reach] == lost[rows]]
     return good[:: max(1, good.size // MOST_STARTS)]
-
-
-def _missed(record, model, seen, rows, counts):
-    """Errors of the predictions by channel, (horizons, s) arrays."""
-    logged, ship = replayable(record, model, seen)
-    start = true_motion(Motion(*(value[rows] for value in seen)), ship)
-    found = predicted(start, rows, logged, ship, counts)
-    return missing(readings(found, ship), seen, rows + np.array(counts)[:, None])

@@ -113,9 +113,7 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     """
     names = [name for name in model.thrusters if np.any(record.units[name][0])]
     pairs = [
-        pair
-        for pair in combinations(names, 2)
-        if make_of(model, pair[0]) == make_of(model, pair[1])
+        pair for pair in combinations(names, 2) if model.make_of(pair[0]) == model.make_of(pair[1])
     ]
     singles = [LabelError(pair, pair[0] in model.azimuths) for pair in pairs] + [
         LabelError((name,)) for name in names
@@ -123,12 +121,6 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     return [
         several for count in range(1, MOST_CHANGES + 1) for several in combinations(singles, count)
     ]
-
-
-def make_of(model: ShipModel, name: str) -> object:
-    """What kind of thruster it is."""
-    third_party = model.third_party.get(name)
-    return third_party.component.fmu.model_name if third_party else type(model.parts[name])
 
 
 def reading(

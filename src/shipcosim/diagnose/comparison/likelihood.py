@@ -12,7 +12,7 @@ import numpy as np
 
 from shipcosim.diagnose.comparison.axes import rest_of
 from shipcosim.diagnose.comparison.causality import blocks
-from shipcosim.diagnose.comparison.commanded import Commanded, inertia, moving_mass
+from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
 from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.regression import bounded
 from shipcosim.diagnose.comparison.thresholds import (
@@ -110,7 +110,7 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     usable = blocks(felt.usable.astype(float), count) > 1.0 - 1e-9
     rows = _with_past(usable[1:] & usable[:-1])
     rates = np.diff(speeds, axis=1) / (count * felt.kernel.step)
-    force = inertia(model) @ rates + _between(blocks(moving_mass(motion, model), count))
+    force = model.mass_matrix @ rates + _between(blocks(moving_mass(motion, model), count))
     listed = rest_of(motion, commanded)
     sizes = _sizes(commanded, length)
     axes = {}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.comparison.axes import AXES, Axis
-from shipcosim.diagnose.comparison.commanded import Commanded, inertia
+from shipcosim.diagnose.comparison.commanded import Commanded
 from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     ABOVE_NOISE,
@@ -182,4 +182,4 @@ def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     white = np.sqrt(np.median(third**2, axis=1) / 0.455 / 20.0)
     rows = kernel.width / kernel.step
     rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
-    return np.diag(inertia(model)) * rates
+    return np.diag(model.mass_matrix) * rates

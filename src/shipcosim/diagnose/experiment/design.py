@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -25,6 +26,7 @@ from shipcosim.diagnose.inference.linearisation import linearise, rows_first
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.dynamics import with_steady_current
+from shipcosim.diagnose.ship.inputs import part_of
 from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
@@ -97,13 +99,13 @@ def design_experiment(
     able = np.flatnonzero(count == count.max())
     short = able[minutes[able] <= _ABOUT * minutes[able].min()]
     best = max(short, key=lambda i: least[i] / minutes[i])
-    names = [_differing(fits[a], fits[b]) for a, b in pairs]
+    names = [differing(fits[a], fits[b]) for a, b in pairs]
     separates = tuple(name for name, value in zip(names, told[best], strict=True) if value >= CLEAR)
     return ExperimentDesign(manoeuvres[best].name, round(float(minutes[best]), 1), separates)
 
 
-def _differing(one: Fit, other: Fit) -> tuple[str, str]:
-    """What two sets of causes do not share."""
+def differing(one: Any, other: Any) -> tuple[str, str]:
+    """What two sets of causes, with their `hypotheses`, do not share."""
     a, b = ([hypothesis.label for hypothesis in fit.hypotheses] for fit in (one, other))
     only_a, only_b = (
         " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))
@@ -258,7 +260,7 @@ def _simulated(problem, models, manoeuvres):
     for i in range(len(models)):
         part = slice(i * many, (i + 1) * many)
         motions.append(Motion(*(value[part] for value in motion)))
-        here = {name: tuple(series[part] for series in pair) for name, pair in units.items()}
+        here = part_of(units, part)
         records.append(replace(record, units=here))
         through.append(_keeps_track(motions[-1], track, manoeuvres, dp))
     return motions, records, through

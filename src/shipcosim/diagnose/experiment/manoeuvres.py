@@ -118,7 +118,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
         _pulses(
             "pulses of one thruster after the other",
             T,
-            {name: mass * _PUSH for name in model.thrusters},
+            dict.fromkeys(model.thrusters, mass * _PUSH),
         ),
     ]
     if model.azimuths:
@@ -126,7 +126,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
             _pulses(
                 "reversal of each azimuth thruster",
                 T,
-                {name: -mass * _PUSH for name in model.azimuths},
+                dict.fromkeys(model.azimuths, -mass * _PUSH),
             )
         )
     sweeps = _sweeps(model, T, [name for name in model.azimuths if name not in fixed], mass * _PUSH)
@@ -255,7 +255,7 @@ def _held(manoeuvre, name, time):
 
 def rows_of(manoeuvre: Manoeuvre, step: float) -> int:
     """Number of rows of a manoeuvre."""
-    return 1 + int(round(60.0 * manoeuvre.minutes / step))
+    return 1 + round(60.0 * manoeuvre.minutes / step)
 
 
 def _track(manoeuvre, time, start):
@@ -303,7 +303,12 @@ def _thrusters(manoeuvre, time, track, start, wind, dp):
         share = np.clip((time - push.start) / (push.end - push.start), 0.0, 1.0)
         azimuth = push.azimuth[0] + share * (push.azimuth[1] - push.azimuth[0])
         alone.setdefault(push.thruster, []).append((inside, push.force, azimuth))
-    load = _needed(track, time, start, wind, dp)
+    # Load of the thrusters by which the ship would follow the track. (3, n)
+    still = {name: (np.zeros(time.size), np.zeros(time.size)) for name in dp.model.thrusters}
+    air = (None, None) if wind is None else tuple(np.full(time.size, value) for value in wind)
+    drift = motion_rates(track, Inputs(start[0] + time, still, *air), dp.model)
+    wanted = [np.gradient(value, time) for value in (track.u, track.v, track.r)]
+    load = dp.mass[:, None] * (np.stack(wanted) - np.stack([drift.u, drift.v, drift.r]))
     opposed = _opposed_forces(dp)
     wishes = {name: np.zeros((2, time.size)) for name in model.thrusters}
     for rows, left in _stretches(alone, time.size):
@@ -329,15 +334,6 @@ def _stretches(alone, rows):
     ]
     edges = [0, *(k for k in range(1, rows) if pushed[k] != pushed[k - 1]), rows]
     return [(np.arange(a, b), pushed[a]) for a, b in zip(edges[:-1], edges[1:], strict=True)]
-
-
-def _needed(track, time, start, wind, dp):
-    """Load of the thrusters by which the ship would follow the track. (3, n)"""
-    still = {name: (np.zeros(time.size), np.zeros(time.size)) for name in dp.model.thrusters}
-    air = (None, None) if wind is None else tuple(np.full(time.size, value) for value in wind)
-    drift = motion_rates(track, Inputs(start[0] + time, still, *air), dp.model)
-    wanted = [np.gradient(value, time) for value in (track.u, track.v, track.r)]
-    return dp.mass[:, None] * (np.stack(wanted) - np.stack([drift.u, drift.v, drift.r]))
 
 
 def _load_of(name, force, azimuth, model):

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.compared import LogComparison
 from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.verdict import JudgedLog, usual_gain
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
@@ -29,19 +28,19 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     """
     problem = log.problem
     found = log.explained.identification
-    of_log = (*(() if is_testable(problem) else ("clock",)), *_labels(found.comparison))
+    # Faults of the thrusters' labels, where a log does not tell whether it has them.
+    judged = (
+        found.comparison is None
+        or found.comparison.labels is None
+        or found.comparison.labels.is_judged
+    )
+    of_log = (*(() if is_testable(problem) else ("clock",)), *(() if judged else THRUSTER_LABELS))
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
     if found.comparison.obstacles:
         return tuple(sorted({*of_log, *everywhere}))
     weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
     return tuple(sorted({*weak, *of_log, *(everywhere - identifiable)}))
-
-
-def _labels(comparison: LogComparison) -> tuple[str, ...]:
-    """Faults of the thrusters' labels, where a log does not tell whether it has them."""
-    judged = comparison.labels is None or comparison.labels.is_judged
-    return () if judged else THRUSTER_LABELS
 
 
 def hidden_by_form(log: JudgedLog) -> tuple[str, ...]:

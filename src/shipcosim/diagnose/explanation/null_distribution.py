@@ -18,7 +18,7 @@ from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.inference.workers import each
-from shipcosim.diagnose.ship.inputs import Record, first_motion
+from shipcosim.diagnose.ship.inputs import Record, first_motion, part_of
 from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
@@ -102,7 +102,7 @@ def on_track(products: np.ndarray) -> np.ndarray:
 
 def _some(records, which):
     """Some of several logs."""
-    units = {name: tuple(series[which] for series in pair) for name, pair in records.units.items()}
+    units = part_of(records.units, which)
     return replace(records, measured=records.measured[which], units=units)
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -105,76 +104,73 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
     without_wind = problem.record.wind is None
     usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
-    found = judged_by_healthy_logs(
+    found = judge_against_healthy(
         fits,
-        partial(unmodelled_gains, problem),
-        {hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {},
+        lambda fit: unmodelled_gains(problem, fit),
         lambda fit: null_gains(problem, fit.motion, fit.hypotheses),
+        null={hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {},
         without_wind=without_wind,
     )
     return JudgedLog(explained, *found)
 
 
-def judged_by_healthy_logs(
-    fits: Sequence[Fit],
-    unmodelled_of: Callable[[Any], dict[str, float]],
-    usual: dict[str, float],
-    simulated_of: Callable[[Any], Mapping[str, Sequence[float] | np.ndarray]],
+def judge_against_healthy(
+    fits: Sequence[Any],
+    gains_of: Callable[[Any], dict[str, float]],
+    healthy_gains: Callable[[Any], Mapping[str, Sequence[float] | np.ndarray]],
     *,
+    null: dict[str, float],
     without_wind: bool,
 ) -> tuple[Judgement, dict[str, float], dict[str, float]]:
-    """The verdict on fits, by what causes gain on healthy logs.
+    """The verdict on causes by what they gain beyond what they gain on healthy logs.
 
     Parameters
     ----------
-    fits : sequence of Fit
-    unmodelled_of : callable
-        Gains of unmodelled errors beside a fit, by kind.
-    usual : dict of str to float
-        What causes usually gain on healthy logs, by label.
-    simulated_of : callable
-        What the causes of a fit gain on simulated healthy logs, by label.
+    fits : sequence of Fit or JointFit
+        Best first.
+    gains_of, healthy_gains : function
+        Gains of unmodelled errors beside a fit, by kind; of its causes on simulated healthy logs, by label. [nats]
+    null : dict of str to float
+        Gains on healthy logs that are known before any is simulated, by label. [nats]
     without_wind : bool
-        Where nobody knows the wind, a force that nobody explains is no surprise.
+        A log does not have the wind.
 
     Returns
     -------
-    tuple of Judgement, dict of str to float, dict of str to float
-        The verdict, unmodelled errors beside its fit, and what its causes gain on healthy logs.
+    tuple of Judgement, and two dicts of str to float
+        With the gains of unmodelled errors beside the judged fit, and the gains of causes on healthy logs. [nats]
     """
-    unmodelled = {}
+    unmodelled: dict[Any, dict[str, float]] = {}
 
     def unmodelled_beside(fit):
         if fit not in unmodelled:
-            unmodelled[fit] = unmodelled_of(fit)
+            unmodelled[fit] = gains_of(fit)
+        # where nobody knows the wind, a force that nobody explains is no surprise
         return {
             kind: gain
             for kind, gain in unmodelled[fit].items()
             if kind not in FORCES or not without_wind
         }
 
-    null = usual
     judgement = judge(fits, unmodelled_beside, null)
-
-    # Where the log is unknown with and without causes, it is so whatever healthy logs gain.
+    # An error that nobody explains, with causes and without, stays unknown whatever healthy logs gain.
     is_unknown = (
         judgement.verdict == "unknown"
         and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
     )
-
     # Healthy logs are simulated where a cause gains so little that chance may give it.
     fit = judgement.fit
     if not is_unknown and any(
         gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses
     ):
         null = {
-            label: usual.get(label, 0.0)
+            label: null.get(label, 0.0)
             + (
                 float(max(np.mean(values) + 3.0 * np.std(values), np.max(values)))
                 if len(values)
                 else NULL_GAIN_UNKNOWN
             )
-            for label, values in simulated_of(fit).items()
+            for label, values in healthy_gains(fit).items()
         }
         judgement = judge(fits, unmodelled_beside, null)
     return judgement, unmodelled[judgement.fit], null

@@ -91,7 +91,16 @@ class ExtensionDraft:
         self, finding: Finding, signal: str, given: Estimated, unit: str | None, *, note: str = ""
     ) -> None:
         """Give a signal a value in the set."""
-        text = "; ".join(filter(None, (note, _origin(finding, self.log))))
+        # Where a value comes from, for the set.
+        log = self.log
+        sizes = ", ".join(
+            f"{name} {e.estimate:.4g} ± {e.std:.2g} {e.unit}"
+            for name, e in finding.parameters.items()
+        )
+        source = Path(str(log["source"])).name if log.get("source") else "a log"
+        digest = f", SHA-256 {log['sha256']}" if log.get("sha256") else ""
+        origin = f"{finding.label}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"
+        text = "; ".join(filter(None, (note, origin)))
         unit = None if unit in (None, "", "1") else unit
         self.values[signal] = parameter(
             signal, float(given.value), unit, text, tolerance=given.std or None
@@ -160,13 +169,3 @@ class ExtensionDraft:
         """Disconnect an input from whatever feeds it."""
         if any(input_name in pair for pair in self.structure.connections):
             self.structure.disconnect(input_name)
-
-
-def _origin(finding: Finding, log: Mapping[str, Any]) -> str:
-    """Where a value comes from, for the set."""
-    sizes = ", ".join(
-        f"{name} {e.estimate:.4g} ± {e.std:.2g} {e.unit}" for name, e in finding.parameters.items()
-    )
-    source = Path(str(log["source"])).name if log.get("source") else "a log"
-    digest = f", SHA-256 {log['sha256']}" if log.get("sha256") else ""
-    return f"{finding.label}, named with probability {finding.probability:.2f}: {sizes}; from {source}{digest}"

@@ -11,10 +11,9 @@ from shipcosim.diagnose.extension.insertions import add_current, add_force, add_
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnections
-from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.ssp import SystemStructure, read, write_ssv
+from shipcosim.errors import error_at
+from shipcosim.ssp import AnyPath, SystemStructure, read, write_ssv
 
 _SHOWN = {"north": "x", "east": "y", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
 
@@ -55,7 +54,7 @@ class Extension:
 def extend(
     system: str | Path | SystemStructure,
     findings: Iterable[Finding],
-    folder: FilePath,
+    folder: AnyPath,
     *,
     log_attributes: Mapping[str, Any] | None = None,
     catalogue: Mapping[str, Cause] | None = None,
@@ -122,7 +121,7 @@ def _ship(structure: SystemStructure) -> str:
             f": {', '.join(ships)}." if ships else "."
         )
         remedy = "To extend it, a system needs one vessel, with inputs tau_X_1, tau_Y_1, tau_N_1, current_north, ..."
-        raise ShipcosimError(Problem(structure.name, found, remedy))
+        raise error_at(structure.name, found, remedy)
     return ships[0]
 
 

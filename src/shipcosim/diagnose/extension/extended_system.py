@@ -9,9 +9,8 @@ from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extend import Extension, extend
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.hypotheses.cause import Cause
-from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import System, SystemStructure, read_system
+from shipcosim.ssp import AnyPath, System, SystemStructure, read_system
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,7 @@ def with_findings(
     given: ExtendedSystem,
     findings: Iterable[Finding],
     log: Identification,
-    folder: FilePath,
+    folder: AnyPath,
 ) -> ExtendedSystem:
     """The system extended by findings of the physics; the given one where there are none.
 
@@ -88,7 +87,7 @@ def extended_by(
     findings: Iterable[Finding],
     about: Mapping[str, Any],
     causes: Mapping[str, Cause],
-    folder: FilePath,
+    folder: AnyPath,
 ) -> ExtendedSystem:
     """The same by findings of several logs.
 

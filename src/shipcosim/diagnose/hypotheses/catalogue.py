@@ -1,6 +1,5 @@
 """The catalogue of causes, read from one file each, and their hypotheses: each cause at each place of one ship."""
 
-import os
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -14,8 +13,9 @@ from pydantic import ValidationError
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import conversion
+from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def paths_of(hypotheses: Iterable[Hypothesis]) -> set[str]:
     return {path for one in hypotheses for path in one.paths}
 
 
-def read_catalogue(folder: str | os.PathLike[str] | None = None) -> dict[str, Cause]:
+def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:
     """All causes by name: our own, and those of a folder.
 
     Parameters
@@ -150,7 +150,7 @@ def read_cause(path: Path) -> Cause:
             )
         raise ShipcosimError(problems) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise ShipcosimError(Problem(str(path), f"It cannot be read: {error}.", remedy)) from None
+        raise error_at(str(path), f"It cannot be read: {error}.", remedy) from None
 
 
 @cache

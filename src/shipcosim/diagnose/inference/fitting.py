@@ -170,17 +170,14 @@ def _smoothed(
     jolt = np.maximum(misfit, 1.0)[..., None] * np.asarray(problem.noise.jolt)
     noise = replace(problem.noise, jolt=jolt, walk=np.broadcast_to(problem.noise.walk, jolt.shape))
     found = smoothed(linear, noise, problem.record, motion)[0]
-    return found if _follows(found, motion) else motion
-
-
-def _follows(found: Motion, motion: Motion) -> bool:
-    """Whether a smoothed motion is a number throughout, and no velocity of it far beyond that of the one before."""
+    # Whether a smoothed motion is a number throughout, and no velocity of it far beyond that of the one before.
     fastest = [np.abs(velocity).max() for velocity in found[3:]]
     before = [np.abs(velocity).max() for velocity in motion[3:]]
-    return bool(
+    follows = bool(
         np.isfinite(np.stack(found)).all()
         and np.all(np.less(fastest, _RUNS_AWAY * np.array(before) + 0.1))
     )
+    return found if follows else motion
 
 
 def _key(column: Regressor) -> tuple[tuple[str, float], ...]:
@@ -271,6 +268,7 @@ def own_columns(
     """Columns of hypotheses, what is only known within a tolerance about them first."""
     about = [path for hypothesis in hypotheses for path in hypothesis.definition.companions]
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
+    # The regressor of a parameter of a hypothesis.
     return found + [
         Regressor(dict.fromkeys(of.paths, of.typical), vector=one.vector_of(of))
         for one in hypotheses
@@ -332,7 +330,12 @@ def linearised(
     model = problem.model.with_values(values)
     linear = linearised_by_parts(motion, problem.record, model, columns)
     products = inner_products(linear, problem.noise, problem.record)
-    centre = _centre(columns, model, problem.model)
+    # θ of the ship model that the columns were linearised about; 0 for known numbers.
+    centre = np.zeros(len(columns))
+    for i, column in enumerate(columns):
+        if not column.beside:
+            path, size = next(iter(column.changes.items()))
+            centre[i] = (model.get(path) - problem.model.get(path)) / size
     return Linearised(columns, linear, products, centre, model, motion)
 
 
@@ -381,14 +384,4 @@ def tolerated(fit: Fit) -> dict[str, float]:
     for column, theta, centre in zip(fit.columns, fit.theta, fit.centre, strict=True):
         for path, size in column.changes.items() if wanted & set(column.changes) else ():
             found[path] = fit.model.get(path) + size * float(np.clip(theta, -_FAR, _FAR) - centre)
-    return found
-
-
-def _centre(columns: Sequence[Regressor], model: ShipModel, neutral: ShipModel) -> np.ndarray:
-    """θ of the ship model that the columns were linearised about; 0 for known numbers."""
-    found = np.zeros(len(columns))
-    for i, column in enumerate(columns):
-        if not column.beside:
-            path, size = next(iter(column.changes.items()))
-            found[i] = (model.get(path) - neutral.get(path)) / size
     return found

@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim.diagnose.inference.innovations import Noise, innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
-from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.inputs import Record, part_of
 from shipcosim.diagnose.ship.instruments import LAGS
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
 from shipcosim.diagnose.ship.model import ShipModel
@@ -39,12 +39,6 @@ class Known:
     def of(self, which: Any) -> Known:
         """What some of the observers knew, those on the first axis."""
         return Known(Motion(*(value[which] for value in self.motion)), self.force[which])
-
-
-def mass_matrix(model: ShipModel) -> np.ndarray:
-    """Mass and added mass of the ship, (3, 3) array in surge, sway and yaw."""
-    i11, i22, i26, i62, i66 = model.parts["hull"].inverse_mass
-    return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
 
 
 def replayable(record: Record, model: ShipModel, seen: Motion) -> tuple[Record, ShipModel]:
@@ -103,7 +97,7 @@ def earth_fixed(linear: Linear, motion: Motion, model: ShipModel) -> Linear:
     back = np.zeros((turn.size, 3, 3))
     back[:, 0, 0] = back[:, 1, 1] = np.cos(turn)
     back[:, 0, 1], back[:, 1, 0], back[:, 2, 2] = np.sin(turn), -np.sin(turn), 1.0
-    mass = mass_matrix(model)
+    mass = model.mass_matrix
     transition = linear.transition.copy()
     transition[:, _FORCE, _FORCE] = np.linalg.inv(mass) @ back @ mass
     return linear._replace(transition=transition)
@@ -182,7 +176,7 @@ def observed(
     found = np.moveaxis(innovations(stacked(problems), noise, record).filtered, 0, 1)
     about = np.stack([np.stack(motion, axis=-1) for motion in motions])
     force = np.stack(
-        [one[:, _FORCE] @ mass_matrix(model).T for one, model in zip(found, models, strict=True)]
+        [one[:, _FORCE] @ model.mass_matrix.T for one, model in zip(found, models, strict=True)]
     )
     return Known(Motion(*np.moveaxis(about + found[..., :6], -1, 0)), force)
 
@@ -261,7 +255,7 @@ def _bounded(motion):
 
 def _at(inputs, rows):
     """Inputs at some rows."""
-    units = {name: tuple(series[rows] for series in pair) for name, pair in inputs.units.items()}
+    units = part_of(inputs.units, rows)
     wind = (
         None if series is None else series[rows] for series in (inputs.wind_speed, inputs.wind_from)
     )

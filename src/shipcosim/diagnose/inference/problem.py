@@ -1,6 +1,6 @@
 """The identification problem of a repaired log: which causes it could show, and how noisy it is."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -47,7 +47,18 @@ def identification_problem(
     everyone = hypotheses_of(causes, ship)
     hidden = unidentifiable(everyone, record, repaired, ship.third_party)
     if record.wind is None:
-        ship = replace(ship, tolerances=ship.tolerances | _unknown_wind(everyone))
+        # Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for.
+        allowed = [
+            hypothesis
+            for hypothesis in everyone
+            if hypothesis.definition.without_wind == "allowed for"
+        ]
+        unknown_wind = {
+            path: parameter.typical
+            for parameter in parameters_of(allowed)
+            for path in parameter.paths
+        }
+        ship = replace(ship, tolerances=ship.tolerances | unknown_wind)
     wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
     start = first_noise(record, ship.parts["hull"].length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
@@ -90,16 +101,6 @@ def unidentifiable(
         for s in everyone
         if s.component in silent or (record.wind is None and s.definition.without_wind != "sought")
     ]
-
-
-def _unknown_wind(everyone: Iterable[Hypothesis]) -> dict[str, float]:
-    """Tolerances of what stands for the wind, where nobody knows it: the typical size of causes allowed for."""
-    allowed = [
-        hypothesis for hypothesis in everyone if hypothesis.definition.without_wind == "allowed for"
-    ]
-    return {
-        path: parameter.typical for parameter in parameters_of(allowed) for path in parameter.paths
-    }
 
 
 def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:

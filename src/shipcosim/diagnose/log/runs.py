@@ -2,7 +2,6 @@
 
 import gzip
 import hashlib
-import os
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
@@ -12,11 +11,9 @@ import xarray
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table, read_columns
+from shipcosim.ssp import AnyPath
 
-FilePath = str | os.PathLike[str]
-"""A file or a folder."""
-
-LogSource = FilePath | xarray.Dataset
+LogSource = AnyPath | xarray.Dataset
 """A log: a file, the folder of a run, or a table."""
 
 _SHIP = {

@@ -196,7 +196,14 @@ def _with_right_input(explained):
             continue
         fits = tuple(explain(right.problem))
         close = [fit for fit in fits[:3] if fit.score > best.score + _least_gain(fault, best)]
-        if any(_is_explained(right.problem, fit) for fit in close):
+        # Whether no unmodelled error stands out beside a fit.
+        if any(
+            (
+                len(fit.hypotheses) <= MOST_CAUSES
+                and max(unmodelled_gains(right.problem, fit).values()) < UNMODELLED
+            )
+            for fit in close
+        ):
             right = replace(right, faults=(*found.faults, fault))
             return ExplainedLog(right, fits, is_healthy(right.problem, fits[0]))
     return None
@@ -257,11 +264,3 @@ def _least_gain(fault, fit):
     alike = {channel for one in fit.hypotheses for channel in one.definition.unit_of}
     is_unit = label is not None and label.scale is not None
     return UNIT if is_unit and alike & set(fault.channels) else FAULT
-
-
-def _is_explained(problem, fit):
-    """Whether no unmodelled error stands out beside a fit."""
-    return (
-        len(fit.hypotheses) <= MOST_CAUSES
-        and max(unmodelled_gains(problem, fit).values()) < UNMODELLED
-    )

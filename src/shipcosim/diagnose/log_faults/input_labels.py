@@ -12,7 +12,6 @@ from itertools import combinations
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.comparison.label_hypotheses import make_of
 from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
@@ -197,7 +196,7 @@ def _mislabels(log, model):
     for one, other in combinations(model.thrusters, 2):
         pairs = [(f"{one}_{what}", f"{other}_{what}") for what in ("rpm", "thrust", "azimuth")]
         pairs = [pair for pair in pairs if pair[0] in log and pair[1] in log]
-        if make_of(model, one) == make_of(model, other):
+        if model.make_of(one) == model.make_of(other):
             found += [
                 exchanged(group)
                 for group in ([pairs] if len(pairs) == 1 else [pairs, pairs[1:]])

@@ -105,17 +105,15 @@ def _likely(gains, record, least):
     """Findings of the labels that gain most by their rows' gains, those above a least gain, in their stretches."""
     found = [where_best(gain, label, record, SHORTEST_LABEL) for label, gain in gains.items()]
     likely = [one for total, one in sorted(found, key=lambda one: -one[0]) if total > least]
+    # A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own.
     tried = {
-        (one.note, one.segments): one for part in likely[:LIKELY_LABELS] for one in _stretches(part)
+        (one.note, one.segments): one
+        for part in likely[:LIKELY_LABELS]
+        for one in (
+            (part,) if mislabel_in(part).scale is not None else (part, replace(part, segments=()))
+        )
     }
     return tried.values()
-
-
-def _stretches(found):
-    """A label in its stretch and throughout; a unit throughout is a scale, which is a cause of its own."""
-    return (
-        (found,) if mislabel_in(found).scale is not None else (found, replace(found, segments=()))
-    )
 
 
 def _matters(plain, label):

@@ -198,7 +198,9 @@ def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.nda
     wanted = [i for i, column in enumerate(fit.columns) if _is_known_of_ship(column, fit)]
     names = list(dict.fromkeys(path for i in wanted for path in fit.columns[i].changes))
     sizes = np.array([[fit.columns[i].changes.get(name, 0.0) for i in wanted] for name in names])
-    spread = (fit.covariance + 2.0 * _by_part(fit))[np.ix_(wanted, wanted)]
+    # Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
+    moves = _pulls(fit) @ fit.covariance
+    spread = (fit.covariance + 2.0 * (moves.T @ moves))[np.ix_(wanted, wanted)]
     return names, np.sqrt((sizes**2).sum(1)), sizes @ fit.theta[wanted], sizes @ spread @ sizes.T
 
 
@@ -211,19 +213,8 @@ def dispersion_of(fit: JointFit) -> float:
 
 
 def _pulls(fit: JointFit) -> np.ndarray:
-    """By how much each part of the logs pulls the numbers away from the fit to all parts."""
-    blocks = fit.products.blocks
-    return blocks[:, 1:, 0] - blocks[:, 1:, 1:] @ fit.left
-
-
-def _by_part(fit: JointFit) -> np.ndarray:
-    """Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
-
-    Where the model's form is right this is at most the posterior's covariance; where it is not, each part of a log, and
-    each day, would have other numbers (the sandwich estimator of misspecified models: White 1982).
-    """
-    moves = _pulls(fit) @ fit.covariance
-    return moves.T @ moves
+    """How much each part of the logs pulls at each column, (parts, p) array."""
+    return np.stack([part[1:, 0] - part[1:, 1:] @ fit.left for part in fit.products.blocks])
 
 
 def reference_of(

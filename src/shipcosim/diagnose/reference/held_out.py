@@ -1,6 +1,5 @@
 """What common causes gain in each log: the system extended by what the other logs say, co-simulated over this one."""
 
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -29,6 +28,7 @@ from shipcosim.diagnose.validation.tracks import (
 )
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
+from shipcosim.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
@@ -222,7 +222,7 @@ def _cosimulated(log, given, causes, progress) -> Tracks:
     record = log.problem.record
     model = log.problem.model
     systems = {"before": Replayed(given.given)}
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         if log.of_ship or log.own:
             about = {"span": model.span, "source": ", ".join(log.others)}
             made = extend(

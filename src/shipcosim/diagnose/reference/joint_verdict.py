@@ -1,7 +1,6 @@
 """The verdict on several logs of one ship together: common causes, and those of each log's weather."""
 
 from dataclasses import dataclass
-from functools import partial
 from typing import cast
 
 import numpy as np
@@ -10,7 +9,11 @@ from shipcosim.diagnose.experiment.testability import not_testable
 from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
 from shipcosim.diagnose.explanation.search import explain, without_causes
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
-from shipcosim.diagnose.explanation.verdict import Judgement, judged_by_healthy_logs, usual_gain
+from shipcosim.diagnose.explanation.verdict import (
+    Judgement,
+    judge_against_healthy,
+    usual_gain,
+)
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 from shipcosim.diagnose.inference.screening import gains
@@ -65,11 +68,11 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     silent = any(problem.record.wind is None for problem in logs.problems.values())
     models = [problem.model for problem in logs.problems.values()]
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent
-    found = judged_by_healthy_logs(
+    found = judge_against_healthy(
         fits,
-        partial(_unmodelled, logs),
-        {one.label: usual for one in logs.hypotheses},
+        lambda fit: _unmodelled(logs, fit),
         lambda fit: _null_gains(logs, fit, fits),
+        null={one.label: usual for one in logs.hypotheses},
         without_wind=silent,
     )
     return JointVerdict(logs, tuple(fits), *found)

@@ -3,15 +3,14 @@
 from pathlib import Path
 
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
-from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.diagnose.reference.reference import KnownNumber, Reference, is_same
-from shipcosim.ssp import System, SystemStructure, parameter, read, write_ssv
+from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read, write_ssv
 
 FILE = "calibrated.ssv"
 """Name of the set in the folder that a calibration leaves."""
 
 
-def write_parameter_set(system: System, reference: Reference, path: FilePath) -> dict[str, float]:
+def write_parameter_set(system: System, reference: Reference, path: AnyPath) -> dict[str, float]:
     """Write a parameter set with the numbers of a reference that the system has.
 
     Not all of it is true: numbers that the logs cannot tell apart share what they explain.
@@ -61,7 +60,7 @@ def _variable(system: System, number: KnownNumber):
 
 
 def with_calibrated_numbers(
-    given: ExtendedSystem, reference: Reference, folder: FilePath
+    given: ExtendedSystem, reference: Reference, folder: AnyPath
 ) -> ExtendedSystem:
     """A system with the numbers of a reference bound, to be extended by what has changed since.
 

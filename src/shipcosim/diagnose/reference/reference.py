@@ -12,11 +12,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from shipcosim.diagnose.inference.thresholds import ENOUGH
-from shipcosim.diagnose.log.runs import FilePath
 from shipcosim.diagnose.reference.thresholds import DAY_TO_DAY, NEGLIGIBLE, ORDINARY
 from shipcosim.diagnose.ship.model import ANY_CAUSE, ShipModel
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import write_file
+from shipcosim.ssp import AnyPath
 
 SCHEMA = "shipcosim-reference/1"
 FILE = "reference.json"
@@ -123,12 +123,12 @@ class Reference(_Strict):
         head = json.dumps(content, indent=2, ensure_ascii=False).removesuffix("\n}")
         return f'{head},\n  "numbers": [\n    {numbers}\n  ],\n  "correlation": [\n    {rows}\n  ]\n}}\n'
 
-    def write(self, path: FilePath) -> None:
+    def write(self, path: AnyPath) -> None:
         """Write the file; it is there completely or not at all."""
         write_file(path, self.as_json().encode())
 
 
-def read_reference(path: FilePath | Reference) -> Reference:
+def read_reference(path: AnyPath | Reference) -> Reference:
     """Read a reference.
 
     Parameters
@@ -152,7 +152,7 @@ def read_reference(path: FilePath | Reference) -> Reference:
         return Reference.model_validate_json(file.read_bytes())
     except OSError as error:
         remedy = "Give the folder or the file that `shipcosim calibrate` left."
-        raise ShipcosimError(Problem(str(file), "There is no such reference.", remedy)) from error
+        raise error_at(str(file), "There is no such reference.", remedy) from error
     except ValidationError as error:
         problems = [
             Problem(f"{file}: {'.'.join(map(str, e['loc']))}", e["msg"]) for e in error.errors()

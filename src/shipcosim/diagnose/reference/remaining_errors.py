@@ -7,7 +7,7 @@ import numpy as np
 from shipcosim.diagnose.reference.calibration import Calibration, numbers_of
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
-from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.inputs import Record, part_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.split import first_rows, trained
@@ -118,7 +118,7 @@ def _rows_of(record: Record, rows: np.ndarray) -> Record:
         record,
         time=record.time[rows],
         measured=record.measured[rows],
-        units={name: tuple(series[rows] for series in pair) for name, pair in record.units.items()},
+        units=part_of(record.units, rows),
         wind=None if record.wind is None else tuple(series[rows] for series in record.wind),
         known=record.known[rows],
     )

@@ -43,7 +43,7 @@ def own_clock(time: np.ndarray, measured: np.ndarray, length: float) -> tuple[np
         np.diff(measured[:, 1]) * (east / size)[:-1]
     )
     sailed = 0.5 * step * (speed[1:] + speed[:-1])
-    rows = max(int(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step))), 1)
+    rows = max(round(thresholds.CLOCK_WINDOW * np.sqrt(length) / np.median(step)), 1)
     way = moving_average(way, rows)
     sailed = moving_average(sailed, rows)
     moving = sailed > thresholds.UNDER_WAY * np.sqrt(9.81 * length) * np.median(step)

@@ -125,7 +125,7 @@ def trial_evidence(
         (parameter, _PART * parameter.typical) for one in hypotheses for parameter in one.parameters
     ]
     known = known_numbers(model)
-    both = [{path: sign * size for path in p.paths} for sign in (1.0, -1.0) for p, size in causes]
+    both = [dict.fromkeys(p.paths, sign * size) for sign in (1.0, -1.0) for p, size in causes]
     found = predicted(
         trials, model, [{}, *both, *({path: size} for path, size in known)], orders=orders
     )

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.design import CLEAR, ExperimentDesign
+from shipcosim.diagnose.experiment.design import CLEAR, ExperimentDesign, differing
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -246,12 +246,3 @@ def designed(
         separates = tuple(differing(sets[a], sets[b]) for a, b in told)
         chosen.append(ExperimentDesign(best.manoeuvre, best.minutes, separates))
     return tuple(chosen)
-
-
-def differing(one: SetOfCauses, other: SetOfCauses) -> tuple[str, str]:
-    """What two sets of causes do not share."""
-    a, b = ([cause.label for cause in each.hypotheses] for each in (one, other))
-    only_a, only_b = (
-        " + ".join(x for x in mine if x not in yours) for mine, yours in ((a, b), (b, a))
-    )
-    return only_a or "nothing more", only_b or "nothing more"

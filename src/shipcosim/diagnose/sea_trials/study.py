@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.experiment.design import ExperimentDesign, differing
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.runs import FilePath, LogSource
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -30,15 +30,14 @@ from shipcosim.diagnose.sea_trials.separation import (
     MOST_SETS,
     Separation,
     designed,
-    differing,
     separations,
 )
 from shipcosim.diagnose.sea_trials.windows import SeaTrial, as_ordered, sea_trials_of
 from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.ssp import System
+from shipcosim.errors import error_at
+from shipcosim.ssp import AnyPath, System
 
 STEPS = {
     "which manoeuvres are in the log?": 1.0,
@@ -237,8 +236,8 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
 def study(
     log: LogSource,
     system: System,
-    channels: FilePath | None = None,
-    causes: FilePath | None = None,
+    channels: AnyPath | None = None,
+    causes: AnyPath | None = None,
     progress: Callable[..., None] | None = None,
     *,
     orders: bool = False,
@@ -275,9 +274,7 @@ def study(
     read = checked(ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes)))
     if read.ship.third_party:
         found = f"{', '.join(read.ship.third_party)}: third-party FMUs, which are only known where a log has been."
-        raise ShipcosimError(
-            Problem(system.file, found, "Sea trials are sailed with thrusters of ours.")
-        )
+        raise error_at(system.file, found, "Sea trials are sailed with thrusters of ours.")
     lost = [segment for fault in read.faults if fault.cause == "gap" for segment in fault.segments]
     record = record_of(read.repaired, read.ship)
     record = as_ordered(record, read.repaired, read.ship) if orders else record
@@ -285,7 +282,7 @@ def study(
     if not any(trial.kind == "turning circle" for trial in trials):
         found = f"no turning circle among {len(trials)} manoeuvres: {', '.join(t.name for t in trials) or 'none'}."
         right = f"A circle is an order held until she has turned by {thresholds.CIRCLE:.0f} deg, from a straight course."
-        raise ShipcosimError(Problem(str(read.repaired.attrs.get("source", "log")), found, right))
+        raise error_at(str(read.repaired.attrs.get("source", "log")), found, right)
     return studied(
         trials,
         read.ship,

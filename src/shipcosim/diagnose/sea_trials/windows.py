@@ -187,6 +187,11 @@ def _bridged(measured):
     return filled, whole
 
 
+def _way(measured):
+    """Distance sailed until each row. [m]"""
+    return np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
+
+
 def _runs(mask):
     """Runs of rows where a mask holds: slices."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], mask.astype(int), [0]))))
@@ -212,7 +217,7 @@ def _circles(helm, measured):
 
 def _zig_zags(helm, measured, length):
     """Rows from the first order of a zig-zag to its last change of the helm."""
-    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
+    way = _way(measured)
     side = np.where(helm > thresholds.ZIG_ZAG, 1, np.where(helm < -thresholds.ZIG_ZAG, -1, 0))
     swings = [run for one in (1, -1) for run in _runs(side == one)]
     swings.sort(key=lambda run: run.start)
@@ -242,7 +247,7 @@ def _merged(slices):
 
 def _straight_runs(helm, record, measured, length, busy):
     """Rows of straight courses at held orders, after the speed has settled."""
-    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(measured[:, :2], axis=0).T))))
+    way = _way(measured)
     held = np.abs(moving_average(helm, _rows_of_rest(record))) < thresholds.STEADY
     rate = moving_average(measured[:, 5], _rows_of_rest(record))
     speed = np.hypot(measured[:, 3], measured[:, 4])

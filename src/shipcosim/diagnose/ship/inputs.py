@@ -1,8 +1,9 @@
 """A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray
@@ -13,7 +14,7 @@ from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
 
@@ -29,6 +30,10 @@ _LATE = (
 )
 CHANNELS = ("north", "east", "heading", "surge", "sway", "yaw_rate")
 _TO_SI = (1.0, 1.0, np.pi / 180.0, 1.0, 1.0, np.pi / 180.0)
+
+
+ThrusterSeries = dict[str, tuple[np.ndarray, np.ndarray]]
+"""By thruster its speed or thrust, and its direction, over the rows. [rev/s or N, rad]"""
 
 
 class Inputs(NamedTuple):
@@ -48,10 +53,6 @@ class Inputs(NamedTuple):
     units: dict[str, tuple[Arithmetic, Arithmetic]]
     wind_speed: Arithmetic | None
     wind_from: Arithmetic | None
-
-
-ThrusterSeries = dict[str, tuple[np.ndarray, np.ndarray]]
-"""By thruster its speed, or thrust where that drives it, and its direction. [rev/s or N, rad]"""
 
 
 @dataclass(frozen=True)
@@ -139,6 +140,11 @@ def _between(series: np.ndarray, low: np.ndarray, share: np.ndarray) -> np.ndarr
     return series[..., low] * (1.0 - share) + series[..., low + 1] * share
 
 
+def part_of(units: Mapping[str, tuple], rows: Any) -> dict[str, tuple]:
+    """Some rows, or some of several logs, of each thruster's channels."""
+    return {name: tuple(series[rows] for series in pair) for name, pair in units.items()}
+
+
 def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     """Arrays of a repaired log.
 
@@ -164,7 +170,7 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     if missing:
         found = f"no channel {', '.join(missing)}."
         right = "A diagnosis needs north, east and heading."
-        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
+        raise error_at(str(log.attrs.get("source", "log")), found, right)
     measured = np.stack(
         [_column(log, role, rows) * si for role, si in zip(CHANNELS, _TO_SI, strict=True)], axis=-1
     )
@@ -265,7 +271,7 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
         )
         found = f"{rows} rows over {span:.0f} s, of a ship {answer}."
         right = f"It takes {_FEWEST_ROWS} rows over {least:.0f} s at the least, better twenty times that."
-        raise ShipcosimError(Problem(str(log.attrs.get("source", "log")), found, right))
+        raise error_at(str(log.attrs.get("source", "log")), found, right)
 
 
 def _thinned(record: Record, rows: int, model: ShipModel) -> Record:

@@ -83,6 +83,19 @@ class ShipModel:
         ]
 
     @property
+    def mass_matrix(self) -> np.ndarray:
+        """Mass and moment of inertia with added mass, (3, 3) array. [kg, kg, kg.m2]"""
+        i11, i22, i26, i62, i66 = self.parts["hull"].inverse_mass
+        return np.linalg.inv(np.array([[i11, 0.0, 0.0], [0.0, i22, i26], [0.0, i62, i66]]))
+
+    def make_of(self, thruster: str) -> object:
+        """What kind of thruster it is."""
+        third_party = self.third_party.get(thruster)
+        if third_party:
+            return third_party.component.fmu.model_name
+        return type(self.parts[thruster])
+
+    @property
     def uncertainties(self) -> dict[str, float]:
         """Standard deviation of every number that is not known for sure: by its tolerance, and by the form's."""
         found = dict(self.tolerances)
@@ -93,16 +106,16 @@ class ShipModel:
     @property
     def form_sizes(self) -> dict[str, float]:
         """How far each number of her form may be off, of scale 1: standard deviation by ``place.name``."""
-        return form_sizes(
-            self.parts, self.vessel, {name: self.drives(name) for name in self.thrusters}
-        )
+        return form_sizes(self.parts, self.vessel, self._driven)
 
     @property
     def form_functions(self) -> dict[str, dict[str, float]]:
         """Functions of her form in words, each with its numbers and how much one adds to its mean square."""
-        return form_functions(
-            self.parts, self.vessel, {name: self.drives(name) for name in self.thrusters}
-        )
+        return form_functions(self.parts, self.vessel, self._driven)
+
+    @property
+    def _driven(self) -> dict:
+        return {name: self.drives(name) for name in self.thrusters}
 
     @property
     def referenced(self) -> set[str]:

@@ -12,7 +12,7 @@ from shipcosim.diagnose.ship.third_party_fmu import part_of, problem_of, third_p
 from shipcosim.diagnose.ship.thrusters import fixed_of, neighbours_of, neighbours_placed
 from shipcosim.diagnose.ship.tolerances import tolerances_of
 from shipcosim.diagnose.ship.wiring import wiring_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.models.environment.wind_loads import WindParameters
 from shipcosim.models.ship.hull import HullParameters
 from shipcosim.ssp import System
@@ -70,12 +70,10 @@ def _vessel(system: System) -> Component:
     vessels = [c for c in system.components.values() if _holds(c, HullParameters)]
     if len(vessels) != 1:
         found = ", ".join(f"{name} ({c.fmu.model_name})" for name, c in system.components.items())
-        raise ShipcosimError(
-            Problem(
-                system.file,
-                f"{len(vessels)} components with the parameters of a hull among: {found}.",
-                "The diagnosis needs a system with exactly one vessel.fmu.",
-            )
+        raise error_at(
+            system.file,
+            f"{len(vessels)} components with the parameters of a hull among: {found}.",
+            "The diagnosis needs a system with exactly one vessel.fmu.",
         )
     return vessels[0]
 

@@ -75,7 +75,13 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
         series = record.measured[:, channel]
         whole = np.isfinite(series)
         if is_measured(record, channel):
-            bad |= ~whole & _is_long(~whole, kernel)
+            # Rows of gaps that are longer than what the kernel averages over anyway.
+            gap = ~whole
+            edges = np.flatnonzero(np.diff(np.r_[0, gap.astype(int), 0]))
+            long = np.zeros(gap.size, bool)
+            for first, last in edges.reshape(-1, 2):
+                long[first:last] = (last - first) * kernel.step > kernel.width
+            bad |= ~whole & long
             series = np.interp(rows, rows[whole], series[whole])
         columns.append(series)
     for part in record.stretches[:-1]:
@@ -91,12 +97,3 @@ def unsmoothed(record: Record, kernel: Kernel) -> tuple[Motion, np.ndarray]:
 def is_measured(record: Record, channel: int) -> bool:
     """Whether a channel has values in a good part of the rows."""
     return bool(np.isfinite(record.measured[:, channel]).mean() > _ENOUGH)
-
-
-def _is_long(gap, kernel):
-    """Rows of gaps that are longer than what the kernel averages over anyway."""
-    edges = np.flatnonzero(np.diff(np.r_[0, gap.astype(int), 0]))
-    long = np.zeros(gap.size, bool)
-    for first, last in edges.reshape(-1, 2):
-        long[first:last] = (last - first) * kernel.step > kernel.width
-    return long

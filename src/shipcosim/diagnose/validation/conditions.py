@@ -110,15 +110,12 @@ def compare_held_out(
     for name, train in rows_without_condition(problem.record).items():
         comparison = compare(problem, fit, train=train, plain=plain)
         if comparison is not None and name == "other headings":
-            comparison = _only(comparison, ~comparison.errors["heading_known"].values)
+            # The comparison on some of its segments.
+            which = ~comparison.errors["heading_known"].values
+            some = np.flatnonzero(which)
+            comparison = replace(
+                comparison, errors=comparison.errors.isel(segment=some), rows=comparison.rows[some]
+            )
         if comparison is not None and comparison.rows.size >= FEWEST_PREDICTIONS:
             found[name] = comparison
     return found
-
-
-def _only(comparison, which):
-    """The comparison on some of its segments."""
-    some = np.flatnonzero(which)
-    return replace(
-        comparison, errors=comparison.errors.isel(segment=some), rows=comparison.rows[some]
-    )

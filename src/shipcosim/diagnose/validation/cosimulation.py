@@ -1,6 +1,6 @@
 """The predictions of a gain as co-simulations: the system itself, from what was known at the start of each segment."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
 from typing import Any
@@ -17,6 +17,7 @@ from shipcosim.diagnose.validation.split import HORIZONS, in_rows
 from shipcosim.diagnose.validation.thresholds import INPUT_DELAY, MOST, STEP, WEATHER_RATE
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.motion import Motion
+from shipcosim.options import CountProgress
 from shipcosim.series import make_table
 from shipcosim.ssp import System
 
@@ -51,7 +52,7 @@ def simulated(
     extended: Replayed | None,
     *,
     most: int = MOST,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> xarray.Dataset:
     """Errors of a comparison, those of the plain and the extended model by co-simulation, on some of its segments.
 
@@ -115,7 +116,7 @@ def replayed(
     rows: np.ndarray,
     *,
     step_size: float = STEP,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> Motion:
     """What a system, run from some rows of a log, says that the log will show after the horizons.
 

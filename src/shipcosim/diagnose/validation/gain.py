@@ -316,7 +316,14 @@ def gain(errors: xarray.Dataset, seed: int = 1, fewest: int = 1) -> dict[str, An
     dict
         ``share_of_explainable`` and ``ci95`` are None where nothing was to explain, the second with too few blocks.
     """
-    squares = _squares(errors)
+    # Squares of position errors after the longest horizon: plain, bias observer, extended, floor; (4, s) array.
+    squares = (
+        errors["position"]
+        .isel(horizon=-1)
+        .sel(model=["plain", "bias_observer", "extended", "floor"])
+        .values
+        ** 2
+    )
     times = errors["start_time"].values
     before, rival, after, floor = _roots(squares.mean(1))
     share = share_explained(before, after, floor)
@@ -394,17 +401,6 @@ def parts(errors: xarray.Dataset, names: str = "regime") -> dict[Any, xarray.Dat
         value.item(): errors.isel(segment=np.flatnonzero(values == value))
         for value in np.unique(values)
     }
-
-
-def _squares(errors):
-    """Squares of position errors after the longest horizon: plain, bias observer, extended, floor; (4, s) array."""
-    return (
-        errors["position"]
-        .isel(horizon=-1)
-        .sel(model=["plain", "bias_observer", "extended", "floor"])
-        .values
-        ** 2
-    )
 
 
 def _roots(means):

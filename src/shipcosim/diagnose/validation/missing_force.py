@@ -8,7 +8,6 @@ import xarray
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import smoothed
 from shipcosim.diagnose.inference.parts import linearised_by_parts
-from shipcosim.diagnose.inference.predictions import mass_matrix
 from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
@@ -114,7 +113,7 @@ def missing_force(
     record = problem.record
     noise = replace(problem.noise, walk=problem.noise.jolt / learning)
     motion, slow = smoothed(linearised_by_parts(motion, record, model, []), noise, record, motion)
-    force = np.where(record.known[:, None], slow[:, :3] @ mass_matrix(model).T, np.nan)
+    force = np.where(record.known[:, None], slow[:, :3] @ model.mass_matrix.T, np.nan)
     return _in_frames(force.T, motion, record, model)
 
 

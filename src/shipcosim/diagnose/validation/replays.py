@@ -1,7 +1,5 @@
 """The errors of predictions again as co-simulations: the given system, and the one extended by what was fitted."""
 
-import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -14,7 +12,9 @@ from shipcosim.diagnose.inference.fitting import Fit
 from shipcosim.diagnose.validation.conditions import PredictedLog
 from shipcosim.diagnose.validation.cosimulation import MOST, Replayed, simulated
 from shipcosim.errors import ShipcosimError
+from shipcosim.options import CountProgress
 from shipcosim.ssp import read_system
+from shipcosim.temporary import temporary_folder
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class SimulatedLog:
 
 
 def with_cosimulation(
-    log: PredictedLog, extended: ExtendedSystem, progress: Callable[[int, int], None] | None = None
+    log: PredictedLog, extended: ExtendedSystem, progress: CountProgress | None = None
 ) -> SimulatedLog:
     """Predictions as co-simulations, with what was fitted on the training rows.
 
@@ -81,7 +81,7 @@ def _cosimulated(extended, causes, beyond_doubt, progress, comparison, most):
     """Errors of one comparison, by the given system and by the one extended by what the comparison was fitted with."""
     fitted = None
     findings = [*beyond_doubt, *findings_of(comparison.fit)]
-    with tempfile.TemporaryDirectory(prefix="shipcosim-") as folder:
+    with temporary_folder() as folder:
         if findings:
             about = {"span": comparison.fit.model.span}
             made = extend(extended.source, findings, folder, log_attributes=about, catalogue=causes)

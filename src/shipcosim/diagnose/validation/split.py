@@ -6,7 +6,7 @@ import numpy as np
 
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.parts import InParts
-from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.inputs import Record, part_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.thresholds import (
     IDLE,
@@ -128,7 +128,7 @@ def trained(problem: IdentificationProblem, train: np.ndarray) -> Identification
         record,
         time=record.time[:n],
         measured=np.where(train[:, None], record.measured[:n], np.nan),
-        units={name: tuple(series[:n] for series in pair) for name, pair in record.units.items()},
+        units=part_of(record.units, slice(n)),
         wind=None if record.wind is None else tuple(series[:n] for series in record.wind),
         known=record.known[:n] & np.append(steps, True),
     )

@@ -1,6 +1,6 @@
 """A log again as simulated: open-loop predictions one after another, each from the measured state, beside the log."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,8 +28,9 @@ from shipcosim.diagnose.validation.thresholds import (
     STEP,
     TIME_CONSTANTS,
 )
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.models.core.motion import Motion
+from shipcosim.options import CountProgress
 
 _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
 
@@ -117,7 +118,7 @@ def tracks_by_systems(
     model: ShipModel,
     systems: Mapping[str, Replayed],
     horizon: float,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
     most: int | None = None,
 ) -> Tracks:
     """Predictions of systems, by co-simulation.
@@ -194,7 +195,7 @@ def _cosimulated(record, model, one, rows, horizon, progress):
     channels[2] += (
         2.0 * np.pi * np.round((seen.psi[rows] - channels[2][:, 0]) / (2.0 * np.pi))[:, None]
     )
-    kept = slice(int(round(lag / STEP)), None)
+    kept = slice(round(lag / STEP), None)
     return _dataset(
         [values[:, kept] for values in channels], time[kept] - time[kept][0], record.time[rows]
     )
@@ -224,9 +225,7 @@ def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:
             row += 1
     if not rows:
         found = f"no {horizon:g} s of the log have a position and heading, and everything that drives her throughout."
-        raise ShipcosimError(
-            Problem("replay", found, "Ask for shorter predictions, or for a longer log.")
-        )
+        raise error_at("replay", found, "Ask for shorter predictions, or for a longer log.")
     return np.array(rows), count
 
 
@@ -319,7 +318,7 @@ def _misses(tracks: Tracks, one: xarray.Dataset, end: float) -> dict[str, np.nda
     """Errors of each prediction of one simulation after some time: distance of the positions, other channels."""
     there = one.sel(time=end, method="nearest")
     at = one["start_time"].values + float(there["time"])
-    # The log at these times, linear between rows; NaN where one of them has no value.
+    # A channel of the log at some times, linear between rows; NaN where one of them has no value.
     off = {
         role: there[role].values
         - np.interp(at, tracks.measured["time"].values, tracks.measured[role].values)

@@ -42,7 +42,7 @@ def substeps(h: float, longest: float) -> int:
     own = getattr(h, "maths", None)
     if own is not None:
         return own.maximum(own.whole(ceil(h / longest - _EXACT)), 1)
-    return max(1, int(ceil(h / longest - _EXACT)))
+    return max(1, ceil(h / longest - _EXACT))
 
 
 def euler(state: Sequence, rates: Sequence, h: float) -> tuple:

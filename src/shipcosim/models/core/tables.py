@@ -7,6 +7,7 @@ Definition of this text form.
 
 from collections.abc import Iterable
 from functools import lru_cache
+from math import pi
 from typing import Any
 
 
@@ -42,6 +43,37 @@ def parse(text: str) -> tuple[tuple[float, ...], ...]:
                 f"table, row {number}: {len(row)} columns. The first row has {len(rows[0])}."
             )
     return rows
+
+
+@lru_cache(maxsize=32)
+def columns_by_angle(text: str, name: str, last: float) -> tuple[tuple[float, ...], ...]:
+    """Angle and three columns of a table whose angles go from 0 to a last one, parsed once per text.
+
+    Parameters
+    ----------
+    text : str
+        Rows by ";", columns by blanks.
+    name : str
+        Of the table, for messages.
+    last : float
+        Last angle. [deg]
+
+    Returns
+    -------
+    tuple of tuples of float
+        The angle, then the other columns. [rad, as the parameter set says]
+
+    Raises
+    ------
+    ValueError
+        The table is not one of four columns with these angles.
+    """
+    angles, *others = columns(text, 4)
+    if angles[0] != 0.0 or angles[-1] != last:
+        raise ValueError(
+            f"{name}: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to {last:g} deg."
+        )
+    return tuple(angle * pi / 180.0 for angle in angles), *others
 
 
 @lru_cache(maxsize=64)

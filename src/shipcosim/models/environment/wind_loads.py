@@ -1,15 +1,15 @@
 """Wind on a ship: apparent wind, and loads from a table of coefficients."""
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 from shipcosim.angles import wrap
 from shipcosim.models.core.interpolation import interp_columns
 from shipcosim.models.core.kinematics import to_body
-from shipcosim.models.core.maths import Arithmetic, atan2, hypot, pi, where
+from shipcosim.models.core.maths import Arithmetic, atan2, hypot, where
 from shipcosim.models.core.motion import Load, Vector
 from shipcosim.models.core.parameters import acts, quantity, required_table
-from shipcosim.models.core.tables import columns
+from shipcosim.models.core.tables import columns_by_angle
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,20 +109,9 @@ def wind_loads(speed: Arithmetic, wind_from: Arithmetic, *, wind: WindParameters
     if wind.turned:
         wind_from = wrap(wind_from - wind.apparent_wind_offset)
     # The table has the starboard side only: X is even, Y and N are odd in the angle.
-    angles, *loads = _table(wind.wind_table)
+    angles, *loads = columns_by_angle(wind.wind_table, "wind table", 180.0)
     X, Y, N = interp_columns(abs(wind_from), angles, *loads)
     # Loads grow with the square of the apparent speed.
     square = wind.wind_load_scale * speed * speed
     side = where(wind_from < 0.0, -square, square)
     return square * X, side * Y, side * N
-
-
-@lru_cache(maxsize=16)
-def _table(text):
-    """Columns of the table, the angle in rad."""
-    angles, *loads = columns(text, 4)
-    if angles[0] != 0.0 or angles[-1] != 180.0:
-        raise ValueError(
-            f"wind table: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 180 deg."
-        )
-    return tuple(angle * pi / 180.0 for angle in angles), *loads

@@ -9,13 +9,13 @@ Assumed forms: a ship that differs from her model by its shape and not by its nu
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 from shipcosim.models.core.interpolation import interp, interp_columns
 from shipcosim.models.core.maths import Arithmetic, exp, maximum, pi, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity
-from shipcosim.models.core.tables import columns
+from shipcosim.models.core.tables import columns, columns_by_angle
 from shipcosim.models.environment.wind_loads import WindParameters, wind_loads
 from shipcosim.models.ship.hull import HullParameters
 
@@ -228,20 +228,9 @@ def rough_wind_loads(
     X, Y, N = wind_loads(speed, wind_from, wind=wind)
     if form.wind_factors == _NO_WIND:
         return X, Y, N
-    angles, *factors = _round(form.wind_factors)
+    angles, *factors = columns_by_angle(form.wind_factors, "wind factors", 360.0)
     # The table goes once around; angles from port count from 180 to 360 degrees.
     x, y, n = interp_columns(
         where(wind_from < 0.0, wind_from + 2.0 * pi, wind_from), angles, *factors
     )
     return x * X, y * Y, n * N
-
-
-@lru_cache(maxsize=16)
-def _round(text):
-    """Columns of the factors, the angle in rad."""
-    angles, *factors = columns(text, 4)
-    if angles[0] != 0.0 or angles[-1] != 360.0:
-        raise ValueError(
-            f"wind factors: angles from {angles[0]:g} to {angles[-1]:g}. They must go from 0 to 360 deg."
-        )
-    return tuple(angle * pi / 180.0 for angle in angles), *factors

@@ -172,9 +172,7 @@ class NumPy(_OrNumPy):
         super().__init__(np)
         self.linalg = _LinearAlgebra(np.linalg)
         self.random = _Random(np.random)
-        self.where = _with_symbols(
-            np.where, lambda c, a, b: np.frompyfunc(Maths.where, 3, 1)(c, a, b)
-        )
+        self.where = _with_symbols(np.where, np.frompyfunc(Maths.where, 3, 1))
         self.minimum = _with_symbols(np.minimum, _smaller)
         self.maximum = _with_symbols(np.maximum, _larger)
         self.clip = _with_symbols(np.clip, _clipped)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.native.checking import within_bounds
 from shipcosim.native.export.targets import TARGETS, own_target
 from shipcosim.native.symbols import Untraceable
 
@@ -165,8 +166,7 @@ def _near(cls, example, random) -> dict[str, Any]:
             and not v.is_left_out(value)
             and abs(value) < 1e12
         ):
-            low, high = v.bounds
-            value = float(min(max(value * (1.0 + SPREAD * random.standard_normal()), low), high))
+            value = within_bounds(v, value * (1.0 + SPREAD * random.standard_normal()))
         found[v.name] = value
     return found
 
@@ -184,7 +184,6 @@ def _draw(cls, inputs, random, share):
             continue
         value = inputs[v.name]
         if v.type == "Real":
-            low, high = v.bounds
             # An input of 1e12 and more means unlimited; its random value gets the size of real
             # power, 1e5.
             size = SIZES.get(v.unit, 0.5) if abs(v.start) < 1e12 else 1e5
@@ -197,7 +196,7 @@ def _draw(cls, inputs, random, share):
                 0.9 * (value - start if abs(value) < 1e12 else 0.0)
                 + share * size * random.standard_normal()
             )
-            inputs[v.name] = float(min(max(start + value, low), high))
+            inputs[v.name] = within_bounds(v, start + value)
         elif v.type == "Boolean":
             inputs[v.name] = bool(value) ^ bool(random.random() < 0.04)
         elif v.type == "Integer":

@@ -69,7 +69,7 @@ _FUNCTIONS: dict[str, Callable] = {
     "atan2": Maths.atan2,
     "hypot": lambda x, y: Maths.sqrt(x * x + y * y),
     "fabs": abs,
-    "copysign": lambda x, y: Maths.copysign(x, y),
+    "copysign": Maths.copysign,
     "pow": lambda x, y: x**y,
     "radians": lambda x: x * (math.pi / 180.0),
     "degrees": lambda x: x * (180.0 / math.pi),

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.fmi.export.builder import documentation, fmu_class, write_archive
 from shipcosim.fmi.export.description import model_description
 from shipcosim.native.export.checking import refuse_other_results
@@ -73,7 +73,7 @@ def build_native_fmu(
                 script
             )
         except ValueError as error:
-            raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
+            raise error_at(f"{script}, class {cls.__name__}", str(error)) from None
         text = text.replace('#define GUID ""', f'#define GUID "{guid}"')
         # Compare on this machine before anything is written. Other targets have the same source.
         own = compiled(text, own_target())

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.library import cache
 from shipcosim.native.compiler import EXACT, check_installed
 
@@ -123,9 +123,7 @@ def _from_compiler(source, triple, suffix) -> bytes:
         command += [] if "windows" in triple else ["-lm"]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode:
-            raise ShipcosimError(
-                Problem(f"compiler for {triple}", f"fails: {done.stderr.strip()[:1000]}")
-            )
+            raise error_at(f"compiler for {triple}", f"fails: {done.stderr.strip()[:1000]}")
         return library.read_bytes()
 
 

@@ -211,8 +211,10 @@ class ModelWriter(Writer):
             return f"p{primitive.number}[{place}]"
         return super()._expression(symbol)
 
-    def _calling(self, number, where, again):
-        return [f"if ({self._names[number]}({where}, o)) {{", f"    {again}return GIVEN_UP;", "}"]
+    def _put_call(self, number, where, again, depth):
+        self._put(depth, f"if ({self._names[number]}({where}, o)) {{")
+        self._put(depth + 1, f"{again}return GIVEN_UP;")
+        self._put(depth, "}")
 
 
 class _Procedure(ModelWriter):

@@ -1,6 +1,5 @@
 """The page of a calibration: what moved, the error before and after, and what the logs could not tell."""
 
-import os
 from dataclasses import dataclass
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -15,24 +14,30 @@ from shipcosim.report.calibration.words import (
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars, rounded
 from shipcosim.report.theme.numbers import metres
-from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import (
+    Figure,
+    FigurePage,
+    KeyFigure,
+    Link,
+    Outcome,
+    Table,
+    facts_of,
+)
 
 SECTIONS = {"moved": "Numbers", "errors": "Errors", "logs": "Logs", "untold": "Not told"}
 _ROW = 22  # px, of a number in the figure
 
 
 @dataclass(frozen=True)
-class CalibrationPage(Page):
+class CalibrationPage(FigurePage):
     """What the page of a calibration shows.
 
     Attributes
     ----------
     refusals, remarks : tuple of str
-    key_figures : tuple of KeyFigure
-    moved, errors, figures : tuple of Figure
-        What moved by how many tolerances; errors before and after; all of them in the order of `data`.
+    moved, errors : tuple of Figure
+        What moved by how many tolerances; errors before and after.
     numbers, error_table, logs : Table
     untold : str
         Numbers that the logs say next to nothing of.
@@ -40,31 +45,17 @@ class CalibrationPage(Page):
 
     refusals: tuple[str, ...]
     remarks: tuple[str, ...]
-    key_figures: tuple[KeyFigure, ...]
     moved: tuple[Figure, ...]
     errors: tuple[Figure, ...]
-    figures: tuple[Figure, ...]
     numbers: Table
     error_table: Table
     logs: Table
     untold: str
 
 
-def write_calibration(ship: CalibratedShip, path: str | os.PathLike[str]) -> None:
-    """Write the page of a calibration.
-
-    Parameters
-    ----------
-    ship : CalibratedShip
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(path, render("calibration/templates/calibration.html.jinja", _page(ship)).encode())
+def render(ship: CalibratedShip) -> str:
+    """The page of a calibration as HTML."""
+    return render_template("calibration/templates/calibration.html.jinja", _page(ship))
 
 
 def _page(ship: CalibratedShip) -> CalibrationPage:
@@ -77,14 +68,13 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
     facts["Tolerances"] = "as stated" if scale == 1.0 else f"{scale:g} times as stated"
     return CalibrationPage(
         title=f"Calibration of {reference.system}",
-        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        facts=facts_of(facts),
         outcome=Outcome(
             "unknown" if refused else "consistent",
             "refused" if refused else "calibrated",
             sentence(ship),
         ),
         links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
-        data=tuple(figure.drawn for figure in (*what, *errors)),
         refusals=ship.refusals,
         remarks=ship.remarks,
         key_figures=_key_figures(ship),
@@ -92,15 +82,15 @@ def _page(ship: CalibratedShip) -> CalibrationPage:
         errors=errors,
         figures=(*what, *errors),
         numbers=Table(
-            tuple(moved_rows(ship)), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
+            moved_rows(ship), ("Number", "System", "By the logs", "Tolerances"), (1, 2, 3)
         ),
         error_table=Table(
-            tuple(error_rows(ship)),
+            error_rows(ship),
             ("Log", "After", "As it is", "Calibrated", "This log fitted too", ""),
             (1, 2, 3, 4),
         ),
         logs=Table(
-            tuple(log_rows(ship)),
+            log_rows(ship),
             ("Log", "Faults, repaired", "Weather fitted", "Unmodelled errors left"),
         ),
         untold=untold(ship),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from shipcosim.diagnose.calibration_pipeline import CalibratedLog, CalibratedShip
 from shipcosim.diagnose.reference.reference import KnownNumber
-from shipcosim.diagnose.reference.remaining_errors import RemainingErrors
 from shipcosim.report.theme.numbers import metres, plain
 
 
@@ -54,21 +53,17 @@ def error_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
             log.name,
             f"{horizon:.2g} s",
             *map(metres, (one.before[k], one.after[k], one.floor[k])),
-            _judged_by(one),
+            (
+                f"calibrated by {', '.join(one.fitted_on)}"
+                if one.fitted_on
+                else "calibrated by its first part"
+            ),
         )
         for log in ship.logs
         for one in [log.errors]
         if one
         for k, horizon in enumerate(one.horizon)
     ]
-
-
-def _judged_by(one: RemainingErrors) -> str:
-    return (
-        f"calibrated by {', '.join(one.fitted_on)}"
-        if one.fitted_on
-        else "calibrated by its first part"
-    )
 
 
 def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:

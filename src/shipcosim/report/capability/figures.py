@@ -1,7 +1,5 @@
 """Figures of the capability: polar plots, bow up, and the loads by direction."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,8 +9,8 @@ from shipcosim.capability.loads import level_1_parts
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, rounded
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.figures import line, polar_axes, rounded
+from shipcosim.report.theme.views import Figure, PlotlyDict
 
 TALL = 400
 """Height of a polar plot. [px]"""
@@ -91,9 +89,7 @@ def load_figures(capability: Capability) -> tuple[Figure, ...]:
     )
 
 
-def _lines(
-    loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool
-) -> list[dict[str, Any]]:
+def _lines(loads: dict[str, NDArray], axis: int, size: float, is_level_1: bool) -> list[PlotlyDict]:
     # Dynamic factor included, as in the balance of forces.
     angles = np.degrees(DIRECTIONS)
     factor = DYNAMIC_FACTOR / size
@@ -113,43 +109,24 @@ def _lines(
 
 def _curve(
     name: str, numbers: NDArray, colour: str, *, dash: str = "solid", fill: float | None = None
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """A closed curve of capability numbers around the ship."""
     # Repeat the first direction at 360 deg to close the curve.
     angles = np.degrees(DIRECTIONS)
     values = np.asarray(numbers, float)
     filled = {} if fill is None else {"fill": "toself", "fillcolor": palette.faded(colour, fill)}
     return {
-        **{
-            "type": "scatterpolar",
-            "mode": "lines",
-            "name": name,
-            "hovertemplate": "%{r} from %{theta}",
-        },
-        **{"theta": rounded([*angles, 360.0]), "r": rounded([*values, values[0]])},
+        "type": "scatterpolar",
+        "mode": "lines",
+        "name": name,
+        "hovertemplate": "%{r} from %{theta}",
+        "theta": rounded([*angles, 360.0]),
+        "r": rounded([*values, values[0]]),
         "line": {"color": colour, "width": 2, "dash": dash},
         **filled,
     }
 
 
-def _polar(title: str, traces: tuple[dict[str, Any], ...], note: str) -> Figure:
-    # Bow up, clockwise, as on a nautical chart.
-    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
-    polar = {
-        "bgcolor": "@card",
-        "angularaxis": {
-            "rotation": 90,
-            "direction": "clockwise",
-            "dtick": 30,
-            "ticksuffix": "°",
-            **look,
-        },
-        "radialaxis": {
-            "range": [0, 11],
-            "tickvals": [2, 4, 6, 8, 10],
-            "angle": 45,
-            "tickangle": 45,
-            **look,
-        },
-    }
-    return Figure(title, "", traces, {"polar": polar}, note, TALL)
+def _polar(title: str, traces: tuple[PlotlyDict, ...], note: str) -> Figure:
+    axes = polar_axes(range=[0, 11], tickvals=[2, 4, 6, 8, 10])
+    return Figure(title, "", traces, {"polar": axes}, note, TALL)

@@ -1,7 +1,5 @@
 """The page of a static DP capability: its contents, and the function that writes it."""
 
-import os
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,12 +9,18 @@ from shipcosim.capability.conditions import CONDITIONS, DIRECTIONS, DYNAMIC_FACT
 from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.sectors import sectors
 from shipcosim.capability.thrust import BETA_MISC, ventilation
-from shipcosim.capability.vessel import Particular
 from shipcosim.report.capability.figures import capability_figures, limiting_condition, load_figures
 from shipcosim.report.theme.numbers import plain
-from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Outcome, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import (
+    Figure,
+    FigurePage,
+    KeyFigure,
+    Link,
+    Outcome,
+    Table,
+    facts_of,
+)
 
 SECTIONS = {
     "plot": "Plot",
@@ -28,15 +32,13 @@ SECTIONS = {
 
 
 @dataclass(frozen=True)
-class CapabilityPage(Page):
+class CapabilityPage(FigurePage):
     """What the page of a capability shows.
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
-        A, B, C, D.
-    plots, loads, figures : tuple of Figure
-        Polar plots, loads by direction, and all of them in the order of `data`.
+    plots, loads : tuple of Figure
+        Polar plots, loads by direction.
     numbers, thrusters, conditions, particulars : Table
         Of each direction; of each thruster; the weather; what was read from the ship's files.
     simulated : str
@@ -45,10 +47,8 @@ class CapabilityPage(Page):
         How many particulars are assumed, of how many.
     """
 
-    key_figures: tuple[KeyFigure, ...]
     plots: tuple[Figure, ...]
     loads: tuple[Figure, ...]
-    figures: tuple[Figure, ...]
     numbers: Table
     thrusters: Table
     conditions: Table
@@ -58,23 +58,9 @@ class CapabilityPage(Page):
     total: int
 
 
-def write_capability(capability: Capability, path: str | os.PathLike[str]) -> None:
-    """Write the page of a capability.
-
-    Parameters
-    ----------
-    capability : Capability
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(
-        path, render("capability/templates/capability.html.jinja", page_of(capability)).encode()
-    )
+def render(capability: Capability) -> str:
+    """The page of a capability as HTML."""
+    return render_template("capability/templates/capability.html.jinja", page_of(capability))
 
 
 def page_of(capability: Capability) -> CapabilityPage:
@@ -85,18 +71,27 @@ def page_of(capability: Capability) -> CapabilityPage:
     vessel = capability.vessel
     figures = (*plots, *loads)
     # Neutral particulars change nothing and are left out.
-    said = [one for one in vessel.particulars if one.origin != "neutral"]
+    said = [
+        (file, one)
+        for file, quantities in vessel.particulars.items()
+        for one in quantities.values()
+        if one.origin != "neutral"
+    ]
     facts = {
         "Ship": vessel.description or vessel.name,
         "System": vessel.system,
         "Dynamic factor": f"{DYNAMIC_FACTOR:g}",
     }
+    rows = [
+        (file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
+        for file, p in said
+    ]
+    particulars = Table(rows, ("file", "what", "value", "from"), tight=(2,))
     return CapabilityPage(
         title=f"Static DP capability of {vessel.name}",
-        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        facts=facts_of(facts),
         outcome=_outcome(capability),
         links=tuple(Link(anchor, title) for anchor, title in SECTIONS.items()),
-        data=tuple(figure.drawn for figure in figures),
         key_figures=_key_figures(capability),
         plots=plots,
         loads=loads,
@@ -104,9 +99,9 @@ def page_of(capability: Capability) -> CapabilityPage:
         numbers=_numbers(capability),
         thrusters=_thrusters(capability),
         conditions=_conditions(),
-        particulars=_particulars(said),
+        particulars=particulars,
         simulated=", ".join(map(str, capability.elements(SIMULATOR))),
-        assumed=sum("assumed" in one.origin for one in said),
+        assumed=sum("assumed" in one.origin for _, one in said),
         total=len(said),
     )
 
@@ -226,7 +221,7 @@ def _thrusters(capability: Capability) -> Table:
         "simulator's",
         "forbidden",
     )
-    return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6, 7))
+    return Table(rows, head, tight=(0, 2, 3, 4, 5, 6, 7))
 
 
 def _conditions() -> Table:
@@ -241,11 +236,3 @@ def _conditions() -> Table:
         for c in CONDITIONS
     )
     return Table(rows, ("number", "wind", "Hs", "Tp", "current"), tight=(0, 1, 2, 3, 4))
-
-
-def _particulars(said: Sequence[Particular]) -> Table:
-    rows = (
-        (p.file, p.description, f"{p.value} {p.unit if p.unit != '1' else ''}".strip(), p.origin)
-        for p in said
-    )
-    return Table(tuple(rows), ("file", "what", "value", "from"), tight=(2,))

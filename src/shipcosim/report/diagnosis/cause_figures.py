@@ -35,10 +35,16 @@ def evidence_figure(evidence: Evidence) -> Figure:
     ]
     gains = [max(one.gain, 0.0) for one in sets]
     bars = {
-        **{"type": "bar", "orientation": "h", "y": names, "x": rounded(gains, 4)},
+        "type": "bar",
+        "orientation": "h",
+        "y": names,
+        "x": rounded(gains, 4),
         "marker": {"color": [palette.BLUE if one.is_chosen else palette.FAINT for one in sets]},
-        **{"hovertemplate": "%{y}: %{x:.1f} nats", "named": False, "showlegend": False},
-        **{"text": [f"{one.gain:.1f}" for one in sets], "textposition": "auto"},
+        "hovertemplate": "%{y}: %{x:.1f} nats",
+        "named": False,
+        "showlegend": False,
+        "text": [f"{one.gain:.1f}" for one in sets],
+        "textposition": "auto",
     }
     note = (
         f"Log-evidence over the ship without a cause, in nats: {ENOUGH:g} more (dotted) mean {np.exp(ENOUGH):.0f} "
@@ -64,20 +70,19 @@ def estimate_figure(evidence: Evidence) -> Figure:
     size = [of.size for of in parameters]
     wide = [2.0 * of.std for of in parameters]
     marks = {
-        **{
-            "type": "scatter",
-            "mode": "markers",
-            "x": rounded(size, 4),
-            "y": names,
-            "showlegend": False,
-        },
+        "type": "scatter",
+        "mode": "markers",
+        "x": rounded(size, 4),
+        "y": names,
+        "showlegend": False,
         "error_x": {
             "type": "data",
             "array": rounded(wide, 3),
             "color": palette.BLUE,
             "thickness": 2,
         },
-        **{"marker": {"color": palette.BLUE, "size": 9}, "hovertemplate": "%{x:.2f} typical sizes"},
+        "marker": {"color": palette.BLUE, "size": 9},
+        "hovertemplate": "%{x:.2f} typical sizes",
         "named": False,
     }
     # Zero is the model as it was.
@@ -98,23 +103,21 @@ def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:
     # Above the threshold something unknown acts: these bars are coloured.
     names = [UNMODELLED_KINDS.get(kind, kind) for kind in unmodelled]
     bars = {
-        **{
-            "type": "bar",
-            "orientation": "h",
-            "y": names,
-            "x": rounded([max(gain, 0.0) for gain in unmodelled.values()], 4),
-        },
+        "type": "bar",
+        "orientation": "h",
+        "y": names,
+        "x": rounded([max(gain, 0.0) for gain in unmodelled.values()], 4),
         "marker": {
             "color": [
                 palette.VERMILLION if gain > UNMODELLED else palette.FAINT
                 for gain in unmodelled.values()
             ]
         },
-        **{"showlegend": False, "named": False, "hovertemplate": "%{x:.1f} nats"},
-        **{
-            "text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()],
-            "textposition": "outside",
-        },
+        "showlegend": False,
+        "named": False,
+        "hovertemplate": "%{x:.1f} nats",
+        "text": ["none" if g <= 0.0 else f"{g:.1f}" for g in unmodelled.values()],
+        "textposition": "outside",
     }
     axes = {
         "xaxis": {

@@ -95,7 +95,7 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
         others=_chances(others),
         is_unknown=diagnosis.verdict == "unknown",
         sail=_sail(diagnosis),
-        not_testable=Table(tuple(weak), head=("Cause", "What it would be", "Why not")),
+        not_testable=Table(weak, head=("Cause", "What it would be", "Why not")),
         form=form_section(diagnosis.form) if diagnosis.form else None,
     )
 
@@ -116,7 +116,7 @@ def _estimates(diagnosis: Diagnosis) -> Table:
             for row in size_rows(f)
         ]
         return Table(
-            tuple(rows),
+            rows,
             head=("Cause", "Parameter", "At the reference → now", "Probability"),
             tight=(1, 2, 3),
         )
@@ -126,7 +126,7 @@ def _estimates(diagnosis: Diagnosis) -> Table:
         for name, value, std, unit in estimate_rows(f)
     ]
     head = ("Cause", "Parameter", "Estimate", "Std", "Unit", "Probability")
-    return Table(tuple(rows), head, tight=(1, 2, 3, 4, 5))
+    return Table(rows, head, tight=(1, 2, 3, 4, 5))
 
 
 def _gains(evidence: Evidence) -> Table:
@@ -140,7 +140,7 @@ def _gains(evidence: Evidence) -> Table:
         )
         rows.append((title(of.cause, of.component), plain(of.gain), healthy))
     head = ("Cause", "Makes the log likelier by [nats]", "The same on healthy ships on this track")
-    return Table(tuple(rows), head, tight=(1,))
+    return Table(rows, head, tight=(1,))
 
 
 def _chances(candidates: Iterable[Candidate]) -> Table:
@@ -160,5 +160,5 @@ def _sail(diagnosis: Diagnosis) -> Sail | None:
         separates=tuple(
             f"It tells {a} from {b}.".replace("_", " ") for a, b in prescription.separates
         ),
-        steps=Table(tuple(manoeuvre_steps(manoeuvre)), head=("When", "What"), tight=(0,)),
+        steps=Table(manoeuvre_steps(manoeuvre), head=("When", "What"), tight=(0,)),
     )

@@ -38,7 +38,12 @@ def amount(
     unit, factor = _scaled(estimate, max(abs(estimate.estimate), largest))
     value = factor * estimate.estimate
     std = factor * estimate.std
-    digits = _digits(std, value)
+    # Without a standard deviation one percent of the value decides.
+    size = std if std > 0.0 and math.isfinite(std) else max(abs(value), 1e-9) / 100.0
+    # One digit of the uncertainty, two if it begins with 1.
+    exponent = math.floor(math.log10(size))
+    digits = -exponent + (size / 10.0**exponent < 2.0)
+    digits = min(max(digits, 0), 6)
     value = abs(value) if absolute else value
     return f"{value:.{digits}f}".replace("-", "−"), f"{std:.{digits}f}", unit
 
@@ -47,22 +52,6 @@ def _scaled(estimate: ParameterEstimate, size: float) -> tuple[str, float]:
     if estimate.unit in LARGE and size >= 1000.0:
         return LARGE[estimate.unit]
     return {"deg": "°"}.get(estimate.unit, SHOWN.get(estimate.unit, estimate.unit)), 1.0
-
-
-def _digits(std: float, value: float) -> int:
-    """Decimals that show the uncertainty with one digit, or two where it begins with 1.
-
-    Examples
-    --------
-    >>> _digits(0.0121, 0.337), _digits(0.4, 5.0), _digits(80.0, 4100.0)
-    (3, 1, 0)
-    """
-    # Without a standard deviation one percent of the value decides.
-    size = std if std > 0.0 and math.isfinite(std) else max(abs(value), 1e-9) / 100.0
-    # One digit of the uncertainty, two if it begins with 1.
-    exponent = math.floor(math.log10(size))
-    digits = -exponent + (size / 10.0**exponent < 2.0)
-    return min(max(digits, 0), 6)
 
 
 def vector(north: ParameterEstimate, east: ParameterEstimate) -> str:

@@ -85,20 +85,19 @@ def _against(sectors: Dataset, label: str, title: str) -> Figure:
         mean, spread = (1e-3 * sectors[key].values for key in (name, f"{name}_std"))
         traces.append(
             {
-                **{
-                    "type": "scatter",
-                    "mode": "lines+markers",
-                    "name": text,
-                    "x": rounded(middle),
-                    "y": rounded(mean),
-                },
+                "type": "scatter",
+                "mode": "lines+markers",
+                "name": text,
+                "x": rounded(middle),
+                "y": rounded(mean),
                 "error_y": {
                     "type": "data",
                     "array": rounded(spread),
                     "color": colour,
                     "thickness": 1,
                 },
-                **{"line": {"color": colour, "width": 1.5}, "marker": {"color": colour, "size": 6}},
+                "line": {"color": colour, "width": 1.5},
+                "marker": {"color": colour, "size": 6},
             }
         )
     axis = {"title": {"text": label}, "ticksuffix": "°", "range": [0, 360], "dtick": 90}

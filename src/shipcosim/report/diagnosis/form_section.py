@@ -30,7 +30,7 @@ def form_section(form: LoadForm) -> FormSection:
         f"Over place, angle and speed the loads on this ship have another shape than the model's. They differ {scale} "
         "ships usually do from their models. Causes were sought beside that.",
         Table(functions, head=("Load", "Differs from the model's by about"), tight=(1,)),
-        Table(tuple(map(_row, form.numbers)), head, tight=(1, 2, 3, 4)),
+        Table([_row(one) for one in form.numbers], head, tight=(1, 2, 3, 4)),
     )
 
 

@@ -12,7 +12,7 @@ from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import as_variable, thinned
 from shipcosim.report.theme.figures import TIME, line, rounded
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.views import Figure, PlotlyDict
 
 GROUPS = (  # title, channels, unit
     ("Position", ("north", "east"), "m"),
@@ -85,13 +85,11 @@ def track_figure(clean: Dataset) -> Figure | None:
     ends = [(known[0], "start", "circle-open"), (known[-1], "end", "circle")]
     marks = [
         {
-            **{
-                "type": "scatter",
-                "mode": "markers",
-                "name": name,
-                "x": rounded(east[[row]]),
-                "y": rounded(north[[row]]),
-            },
+            "type": "scatter",
+            "mode": "markers",
+            "name": name,
+            "x": rounded(east[[row]]),
+            "y": rounded(north[[row]]),
             "marker": {
                 "color": palette.INK,
                 "size": 9,
@@ -150,9 +148,7 @@ def _thrusters(names: Sequence[str], log: Dataset) -> list[tuple[str, tuple[str,
     return found
 
 
-def _traces(
-    raw: Dataset, used: Dataset, channel: str, colour: str, unit: str
-) -> list[dict[str, Any]]:
+def _traces(raw: Dataset, used: Dataset, channel: str, colour: str, unit: str) -> list[PlotlyDict]:
     """A channel as used, and as logged where that differs."""
     label = channel.replace("_", " ")
     traces = []
@@ -183,7 +179,7 @@ def _same(one: DataArray, other: DataArray) -> bool:
 
 def _curve(
     name: str, time: NDArray, values: NDArray, colour: str, unit: str, **look: Any
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """A channel over time; angles are interrupted where they wrap."""
     # A gap at each wrap, instead of a line across the figure.
     if unit == "deg":
@@ -198,18 +194,18 @@ def _concerns(fault: Finding, channels: Sequence[str]) -> bool:
     return everywhere or not set(fault.channels).isdisjoint(channels)
 
 
-def _shades(fault: Finding, raw: Dataset) -> Iterator[dict[str, Any]]:
+def _shades(fault: Finding, raw: Dataset) -> Iterator[PlotlyDict]:
     # A fault without segments concerns the whole log.
     time = raw["time"].values
     for start, end in fault.segments or ((time[0], time[-1]),):
         yield {
-            **{
-                "type": "rect",
-                "x0": float(start),
-                "x1": float(end),
-                "y0": 0,
-                "y1": 1,
-                "yref": "paper",
-            },
-            **{"layer": "below", "fillcolor": palette.FAULT, "line": {"width": 0}},
+            "type": "rect",
+            "x0": float(start),
+            "x1": float(end),
+            "y0": 0,
+            "y1": 1,
+            "yref": "paper",
+            "layer": "below",
+            "fillcolor": palette.FAULT,
+            "line": {"width": 0},
         }

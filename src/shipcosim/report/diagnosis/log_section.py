@@ -35,7 +35,7 @@ def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
     findings = diagnosis.findings
     faults = [f for f in findings if f.kind == "data"]
     # Each fault with its channels, place, and what was done about it.
-    rows = (
+    rows = [
         (
             title(f.cause),
             ", ".join(f.channels) or "all",
@@ -44,11 +44,11 @@ def log_section(diagnosis: Diagnosis, log: LogSummary) -> LogSection:
             "nothing" if f.alternatives else read_faults()[f.cause].repair,
         )
         for f in faults
-    )
+    ]
     track = track_figure(log.repaired)
     return LogSection(
         found=f"{len(faults)} fault{'s' * (len(faults) != 1)}" if faults else "no fault found",
-        faults=Table(tuple(rows), head=("Fault", "Channels", "Where", "What", "Done about it")),
+        faults=Table(rows, head=("Fault", "Channels", "Where", "What", "Done about it")),
         notes=diagnosis.notes,
         figures=(*([track] if track else []), *log_figures(log.measured, log.repaired, findings)),
         handled=log.handled,

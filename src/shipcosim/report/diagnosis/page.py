@@ -12,17 +12,23 @@ from shipcosim.report.diagnosis.log_section import LogSection, log_section
 from shipcosim.report.diagnosis.track_figures import over_time_figures, track_figure
 from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, outcome
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
+from shipcosim.report.theme.views import (
+    Fact,
+    Figure,
+    FigurePage,
+    Link,
+    Table,
+    known_facts,
+)
 from shipcosim.ssp import System
 
 
 @dataclass(frozen=True)
-class DiagnosisPage(Page):
+class DiagnosisPage(FigurePage):
     """What the page of a diagnosis shows: figures that matter, what to do next, and five sections.
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
     discrepancies : Table
         What is wrong at first sight, largest first.
     next_steps : tuple of str
@@ -30,11 +36,8 @@ class DiagnosisPage(Page):
     tracks : tuple of Figure
         Track and speeds, measured and simulated; empty where no stretch of the log is whole.
     log, error, cause, extension, gain : section of the page
-    figures : tuple of Figure
-        All of the page, in the order of `data`.
     """
 
-    key_figures: tuple[KeyFigure, ...]
     discrepancies: Table
     next_steps: tuple[str, ...]
     tracks: tuple[Figure, ...]
@@ -43,7 +46,6 @@ class DiagnosisPage(Page):
     cause: CauseSection
     extension: ExtensionSection
     gain: GainSection
-    figures: tuple[Figure, ...]
 
 
 def render(diagnosis: Diagnosis) -> str:
@@ -84,9 +86,8 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
         links=tuple(
             Link(anchor, title, section.found) for anchor, (title, section) in links.items()
         ),
-        data=tuple(figure.drawn for figure in figures),
         key_figures=key_figures(diagnosis),
-        discrepancies=Table(tuple(discrepancy_rows(diagnosis)), ("", "size", "of the error")),
+        discrepancies=Table(discrepancy_rows(diagnosis), ("", "size", "of the error")),
         next_steps=tuple(steps),
         tracks=tracks,
         log=log,
@@ -107,4 +108,4 @@ def _facts(log: LogSummary, system: System | None) -> tuple[Fact, ...]:
         ("Log", length),
         ("Step", f"{log.step:g} s"),
     )
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)

@@ -72,7 +72,7 @@ def error_table(errors: PredictionErrors, models: Sequence[str] = ("plain", "flo
             for channel in CHANNELS
         ]
         rows.append((one.condition, str(one.predictions), *cells))
-    return Table(tuple(rows), head, tight=tuple(range(2, 9)))
+    return Table(rows, head, tight=tuple(range(2, 9)))
 
 
 def condition_table(errors: PredictionErrors) -> Table:
@@ -88,7 +88,7 @@ def condition_table(errors: PredictionErrors) -> Table:
     for name, one in groups.items():
         cells = [plain(_last(one, "position", model), 2) for model in MODELS]
         rows.append((name, str(one.predictions), *cells, removed(one.gain)))
-    return Table(tuple(rows), head, tight=tuple(range(1, 8)))
+    return Table(rows, head, tight=tuple(range(1, 8)))
 
 
 def removed(entry: Mapping[str, Any] | None) -> str:

@@ -1,55 +1,32 @@
 """The page of a replay: a log, and its simulation by one or two systems."""
 
-import os
 from dataclasses import dataclass
 
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.report.diagnosis.track_figures import error_rows, over_time_figures, track_figure
 from shipcosim.report.theme.numbers import metres
-from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Fact, Figure, Outcome, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import FigurePage, Outcome, Table, facts_of
 
 
 @dataclass(frozen=True)
-class ReplayPage(Page):
+class ReplayPage(FigurePage):
     """What the page of a replay shows.
 
     Attributes
     ----------
-    figures : tuple of Figure
-        The track, then channels over time.
     errors : Table
     remarks : tuple of str
         What was found in the log and handled.
     """
 
-    figures: tuple[Figure, ...]
     errors: Table
     remarks: tuple[str, ...]
 
 
-def write_replay(
-    replay: LogReplay, path: str | os.PathLike[str], title: str, facts: dict[str, str]
-) -> None:
-    """Write the page of a replay.
-
-    Parameters
-    ----------
-    replay : LogReplay
-    path : path
-        HTML file; it is there completely or not at all.
-    title : str
-        Name of the log.
-    facts : dict of str to str
-        Shown below the title.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
+def render(replay: LogReplay, title: str, facts: dict[str, str]) -> str:
+    """The page of a replay as HTML; `title` is the name of the log, `facts` are shown below it."""
     # Track and channels, measured and simulated.
     tracks = replay.tracks
     figures = (track_figure(tracks), *over_time_figures(tracks))
@@ -59,15 +36,13 @@ def write_replay(
     )
     page = ReplayPage(
         title=f"Replay of {title}",
-        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        facts=facts_of(facts),
         outcome=replay_outcome(replay),
-        links=(),
-        data=tuple(figure.drawn for figure in figures),
         figures=figures,
         errors=error_rows(errors_of(tracks)),
         remarks=(*faults, *replay.remarks),
     )
-    write_file(path, render("diagnosis/templates/replay.html.jinja", page).encode())
+    return render_template("diagnosis/templates/replay.html.jinja", page)
 
 
 def replay_outcome(replay: LogReplay) -> Outcome:

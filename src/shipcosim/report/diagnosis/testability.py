@@ -12,8 +12,12 @@ BY_FORM = (
     "was well, as a reference, tells"
 )
 UNITS = {
-    **{"speed": "m/s", "surge": "m/s", "sway": "m/s", "wind_speed": "m/s"},
-    **{"surge_acceleration": "m/s²", "yaw_rate": "°/s"},
+    "speed": "m/s",
+    "surge": "m/s",
+    "sway": "m/s",
+    "wind_speed": "m/s",
+    "surge_acceleration": "m/s²",
+    "yaw_rate": "°/s",
 }
 
 

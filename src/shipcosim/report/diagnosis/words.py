@@ -12,6 +12,10 @@ from shipcosim.report.diagnosis.estimates import amount, plus_minus
 from shipcosim.report.theme.numbers import span
 from shipcosim.report.theme.views import Outcome
 
+ADD_A_CAUSE = (
+    "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
+)
+
 
 def title(cause: str, component: str | None = None) -> str:
     """Name of a cause for readers.
@@ -200,8 +204,7 @@ def next_steps(
     # Steps that the causes' files recommend.
     physics = [f for f in diagnosis.findings if f.kind == "physics"]
     causes = read_catalogue() if causes is None else causes
-    wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
-    steps += [step.format(component=component) for step, component in wanted if step]
+    steps += cause_steps(physics, causes)
     # A manoeuvre that separates causes, better logs, or a look at the missing force.
     if diagnosis.verdict == "ambiguous" and not misread:
         steps.append(manoeuvre_step(diagnosis.prescription))
@@ -211,16 +214,25 @@ def next_steps(
         )
     elif diagnosis.verdict == "unknown":
         steps.append("Look on the page how the missing force goes with time, heading and wind.")
-        steps.append(
-            "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
-        )
+        steps.append(ADD_A_CAUSE)
     # What is possible now, and what this log cannot say.
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable and not diagnosis.obstacles:
-        names = listed([title(name).lower() for name in diagnosis.not_testable], "or")
-        steps.append(f"This log says nothing about {names}, present or not.")
+        steps.append(f"This log {say_nothing(diagnosis.not_testable, 'says')}")
     return steps or ["Nothing needs to be done."]
+
+
+def cause_steps(physics: Iterable[Finding], causes: Mapping[str, Cause]) -> list[str]:
+    """Steps that the causes' files recommend."""
+    wanted = [(causes[f.cause].next_step, f.component) for f in physics if f.cause in causes]
+    return [step.format(component=component) for step, component in wanted if step]
+
+
+def say_nothing(causes: Iterable[str], verb: str) -> str:
+    """End of a sentence on causes that could not have shown."""
+    names = listed([title(name).lower() for name in causes], "or")
+    return f"{verb} nothing about {names}, present or not."
 
 
 def manoeuvre_step(prescription: ExperimentDesign | None) -> str:

@@ -1,8 +1,6 @@
 """The page of a diagnosis of several logs: what they say together, what that gains in each, and each by itself."""
 
-import os
 from dataclasses import dataclass, replace
-from typing import Any
 
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
@@ -23,8 +21,15 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import bars
 from shipcosim.report.theme.numbers import metres, percent
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.views import (
+    Fact,
+    Figure,
+    FigurePage,
+    KeyFigure,
+    Link,
+    PlotlyDict,
+    Table,
+)
 
 TRACKS = 3
 """Logs whose tracks are all shown; of more the longest."""
@@ -42,12 +47,11 @@ SECTIONS = {
 
 
 @dataclass(frozen=True)
-class JointPage(Page):
+class JointPage(FigurePage):
     """What the page of a diagnosis of several logs shows.
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
     discrepancies : Table
         Those of half of the logs, two at least, largest first.
     next_steps, remarks : tuple of str
@@ -62,11 +66,8 @@ class JointPage(Page):
     extension : ExtensionSection
     silent : Table
         Causes that all logs together could not have shown.
-    figures : tuple of Figure
-        All of the page, in the order of `data`.
     """
 
-    key_figures: tuple[KeyFigure, ...]
     discrepancies: Table
     next_steps: tuple[str, ...]
     remarks: tuple[str, ...]
@@ -80,25 +81,6 @@ class JointPage(Page):
     logs: Table
     extension: ExtensionSection
     silent: Table
-    figures: tuple[Figure, ...]
-
-
-def write_joint(found: JointDiagnosis, path: str | os.PathLike[str]) -> None:
-    """Write the page of a diagnosis of several logs.
-
-    Parameters
-    ----------
-    found : JointDiagnosis
-        Complete, as from `diagnose_jointly`.
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(path, render(found).encode())
 
 
 def render(found: JointDiagnosis) -> str:
@@ -126,28 +108,25 @@ def _page(found: JointDiagnosis) -> JointPage:
     )
     return JointPage(
         title=f"Diagnosis of {len(found.logs)} logs of one ship",
-        facts=tuple(Fact(name, text) for name, text in _facts(found)),
+        facts=_facts(found),
         outcome=outcome(found),
         links=tuple(
             Link(anchor, name, text)
             for (anchor, name), text in zip(SECTIONS.items(), _found(found), strict=True)
         ),
-        data=tuple(figure.drawn for figure in (*tracks, *errors)),
         key_figures=key_figures(found),
-        discrepancies=Table(tuple(discrepancy_rows(found)), ("", "size", "of the error", "logs")),
+        discrepancies=Table(discrepancy_rows(found), ("", "size", "of the error", "logs")),
         next_steps=tuple(steps),
         remarks=found.remarks,
-        causes=Table(tuple(cause_rows(found)), ("Cause", "By", "Parameter", "Size"), (3,)),
-        faults=Table(
-            tuple(fault_rows(found)), ("Fault of the data", "Channels", "Logs", "Done about it")
-        ),
+        causes=Table(cause_rows(found), ("Cause", "By", "Parameter", "Size"), (3,)),
+        faults=Table(fault_rows(found), ("Fault of the data", "Channels", "Logs", "Done about it")),
         alike=Table(alike, ("Cause", "Probability")),
         tracks=tracks,
         errors=errors,
-        error_table=Table(tuple(error_rows(found)), _ERROR_HEAD, (0, 1, 2, 3, 4, 5)),
+        error_table=Table(error_rows(found), _ERROR_HEAD, (0, 1, 2, 3, 4, 5)),
         is_held_out=any(one.fitted_on for one in found.errors.values()),
         logs=Table(
-            tuple(log_rows(found)),
+            log_rows(found),
             ("Log", "Verdict", "Faults of its own", "Causes", "Largest discrepancy", "Error"),
             (0, 5),
         ),
@@ -168,7 +147,7 @@ _ERROR_HEAD = (
 )
 
 
-def _facts(found: JointDiagnosis) -> list[tuple[str, str]]:
+def _facts(found: JointDiagnosis) -> tuple[Fact, ...]:
     rows = 0
     minutes = 0.0
     for one in found.logs.values():
@@ -177,7 +156,7 @@ def _facts(found: JointDiagnosis) -> list[tuple[str, str]]:
             rows = rows + time.size
             minutes = minutes + float(time[-1] - time[0]) / 60.0
     length = f"{', '.join(found.logs)}; {minutes:.0f} min, {rows} rows in all"
-    return [("System", found.system.name if found.system else "–"), ("Logs", length)]
+    return Fact("System", found.system.name if found.system else "–"), Fact("Logs", length)
 
 
 def _found(found: JointDiagnosis) -> list[str]:
@@ -243,7 +222,7 @@ def _error_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
     )
 
 
-def _bars(sizes: dict[str, dict[str, tuple[float, ...]]], unit: str) -> tuple[dict[str, Any], ...]:
+def _bars(sizes: dict[str, dict[str, tuple[float, ...]]], unit: str) -> tuple[PlotlyDict, ...]:
     """Bars by log, before and after; none where a log has no after."""
     shown = {
         label: look for label, look in LOOKS.items() if any(label in one for one in sizes.values())

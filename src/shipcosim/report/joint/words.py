@@ -7,7 +7,16 @@ from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.reference.common_findings import Shared
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
-from shipcosim.report.diagnosis.words import listed, manoeuvre_step, size_rows, title, told
+from shipcosim.report.diagnosis.words import (
+    ADD_A_CAUSE,
+    cause_steps,
+    listed,
+    manoeuvre_step,
+    say_nothing,
+    size_rows,
+    title,
+    told,
+)
 from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import Outcome
 
@@ -215,21 +224,14 @@ def next_steps(found: JointDiagnosis, extended: str | None = None) -> list[str]:
             f"Look at the faults of single logs: {', '.join(own)}. This diagnosis used repaired copies."
         )
     physics = [one.what for one in found.findings if one.what.kind == "physics"]
-    wanted = [
-        (found.causes[f.cause].next_step, f.component) for f in physics if f.cause in found.causes
-    ]
-    steps += list(
-        dict.fromkeys(step.format(component=component) for step, component in wanted if step)
-    )
+    steps += dict.fromkeys(cause_steps(physics, found.causes))
     if found.verdict == "ambiguous" and found.indistinguishable:
         steps.append(manoeuvre_step(found.prescription))
     if found.verdict == "unknown":
         steps.append(
             "Diagnose a log by itself: its page shows how the missing force goes with time, heading and wind."
         )
-        steps.append(
-            "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
-        )
+        steps.append(ADD_A_CAUSE)
     better, judged = predicted_better(found)
     if extended and 2 * better < judged:
         steps.append(
@@ -239,6 +241,5 @@ def next_steps(found: JointDiagnosis, extended: str | None = None) -> list[str]:
     elif extended:
         steps.append(f"Simulate with the causes in the system: shipcosim simulate {extended}")
     if found.not_testable:
-        names = listed([title(name).lower() for name in found.not_testable], "or")
-        steps.append(f"All logs together say nothing about {names}, present or not.")
+        steps.append(f"All logs together {say_nothing(found.not_testable, 'say')}")
     return steps or ["Nothing needs to be done."]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
+from shipcosim.report.notebook.figures import can_draw
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Page, Table
 
@@ -16,6 +19,7 @@ COLOURS = {
     "replayed": "#0072b2",
 }
 WRONG = "#b34700"
+HINT = "The picture needs matplotlib: pip install 'shipcosim[notebook]'."
 
 
 @dataclass(frozen=True)
@@ -31,7 +35,7 @@ class Block:
         return bool(self.table.rows or self.lines)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Card(Page):
     """What a card shows besides title, facts and outcome.
 
@@ -39,12 +43,22 @@ class Card(Page):
     ----------
     blocks : tuple of Block
         Those with something in them are shown.
-    picture : str
-        SVG beside the text; none if empty.
+    draw : function, optional
+        Gives the picture beside the text as SVG; empty where there is nothing to draw.
     """
 
     blocks: tuple[Block, ...]
-    picture: str = ""
+    draw: Callable[[], str] | None = None
+
+    @cached_property
+    def picture(self) -> str:
+        """The picture as SVG; empty without one, and where matplotlib is missing."""
+        return self.draw() if self.draw is not None and can_draw() else ""
+
+    @property
+    def hint(self) -> str:
+        """What to install for the picture; empty where nothing is missing."""
+        return "" if self.draw is None or can_draw() else HINT
 
     @property
     def colour(self) -> str:

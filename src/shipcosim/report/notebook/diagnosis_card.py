@@ -18,9 +18,9 @@ from shipcosim.report.diagnosis.words import (
 )
 from shipcosim.report.joint import words as joint
 from shipcosim.report.notebook.card import Block, Card
-from shipcosim.report.notebook.chart import Path, chart_svg
+from shipcosim.report.notebook.figures import Path, track_svg
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.views import Fact, Table
+from shipcosim.report.theme.views import Fact, Table, known_facts
 
 COLOURS = (palette.ORANGE, palette.BLUE, palette.GREEN)
 
@@ -46,12 +46,10 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
         title=name,
         facts=_facts(found),
         outcome=outcome(found, found.causes),
-        links=(),
-        data=(),
         blocks=(
-            Block("Wrong, largest first", Table(tuple(discrepancy_rows(found)))),
+            Block("Wrong, largest first", Table(discrepancy_rows(found))),
             Block(
-                "Found", Table(tuple(finding_rows(found.findings)), ("", "probability", "", "size"))
+                "Found", Table(list(finding_rows(found.findings)), ("", "probability", "", "size"))
             ),
             Block("This log cannot tell apart", Table(alike)),
             Block(
@@ -62,7 +60,7 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
             Block("What to do next", lines=tuple(steps)),
             Block("This log could not have shown", lines=silent, folded=True),
         ),
-        picture="" if found.tracks is None else tracks_svg(found.tracks, name),
+        draw=None if (tracks := found.tracks) is None else lambda: tracks_svg(tracks, name),
     )
 
 
@@ -71,7 +69,7 @@ def _facts(found: Diagnosis) -> tuple[Fact, ...]:
     if found.log is not None:
         time = found.log.measured["time"].values
         facts.append(("Log", f"{(time[-1] - time[0]) / 60:.0f} min, {time.size} rows"))
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)
 
 
 def joint_card(found: JointDiagnosis, name: str) -> Card:
@@ -91,13 +89,11 @@ def joint_card(found: JointDiagnosis, name: str) -> Card:
             Fact("Logs", ", ".join(found.logs)),
         ),
         outcome=joint.outcome(found),
-        links=(),
-        data=(),
         blocks=(
-            Block("Wrong, largest first", Table(tuple(joint.discrepancy_rows(found)))),
-            Block("Faults of the data in common", Table(tuple(joint.fault_rows(found)))),
-            Block("Causes in common", Table(tuple(joint.cause_rows(found)))),
-            Block("Errors by log", Table(tuple(joint.error_rows(found)), head)),
+            Block("Wrong, largest first", Table(joint.discrepancy_rows(found))),
+            Block("Faults of the data in common", Table(joint.fault_rows(found))),
+            Block("Causes in common", Table(joint.cause_rows(found))),
+            Block("Errors by log", Table(joint.error_rows(found), head)),
             Block("Each log by itself", Table(tuple(row[:4] for row in joint.log_rows(found)))),
             Block("Remarks", lines=tuple(found.remarks)),
             Block("What to do next", lines=tuple(joint.next_steps(found))),
@@ -114,4 +110,4 @@ def tracks_svg(tracks: Tracks, name: str) -> str:
         paths.append(
             Path(f"{label}, every {tracks.horizon:.0f} s anew", north, east, colour=colour)
         )
-    return chart_svg(paths, name)
+    return track_svg(paths, name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from xarray import Dataset
@@ -15,7 +15,11 @@ from shipcosim.report.theme.views import Fact, Outcome, Table
 
 
 def log_card(
-    name: str, table: Dataset, faults: Sequence[Finding], remarks: Sequence[str], picture: str
+    name: str,
+    table: Dataset,
+    faults: Sequence[Finding],
+    remarks: Sequence[str],
+    draw: Callable[[], str] | None,
 ) -> Card:
     """Channels with their ranges, faults, remarks and the track.
 
@@ -28,8 +32,8 @@ def log_card(
     faults : sequence of Finding
         That the channels show.
     remarks : sequence of str
-    picture : str
-        SVG of the track; empty without a position.
+    draw : function, optional
+        Of the track, as SVG; None without a position.
     """
     time = table["time"].values
     span = f"{len(time)} rows, {plain(float(np.nanmin(time)))} to {plain(float(np.nanmax(time)))} s"
@@ -40,14 +44,12 @@ def log_card(
         title=name,
         facts=facts,
         outcome=_outcome(faults),
-        links=(),
-        data=(),
         blocks=(
             Block("Faults", Table(found)),
             Block("Channels", Table(_channels(table), ("", "unit", "least", "largest", "missing"))),
             Block("Remarks", lines=tuple(remarks)),
         ),
-        picture=picture,
+        draw=draw,
     )
 
 

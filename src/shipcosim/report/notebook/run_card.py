@@ -10,7 +10,7 @@ from shipcosim.report.notebook.card import Block, Card
 from shipcosim.report.notebook.run_track import run_track
 from shipcosim.report.run.details import parsed
 from shipcosim.report.run.page import digest
-from shipcosim.report.theme.views import Fact, Table
+from shipcosim.report.theme.views import Fact, Table, known_facts
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.ssp import System
 
@@ -38,15 +38,13 @@ def run_card(
         + (f": {scenario.description}" if scenario.description and scenario.name else ""),
         facts=_facts(table, scenario, system),
         outcome=found.outcome,
-        links=(),
-        data=(),
         blocks=(
             Block("Expected", Table(rows, ("", "", "during", "worst", "at"))),
             Block("Changed for this run", lines=(changed,) if changed else ()),
             Block("Remarks", lines=tuple(found.remarks)),
             Block("Signals, by component", Table(_signals(table)), folded=True),
         ),
-        picture=run_track(table, verdicts, f"track of {name}") or "",
+        draw=lambda: run_track(table, verdicts, f"track of {name}") or "",
     )
 
 
@@ -60,7 +58,7 @@ def _facts(table: Dataset, scenario: Scenario, system: System) -> tuple[Fact, ..
         ("Step size", f"{scenario.step_size:g} s"),
     ]
     facts.append(("Table", f"{len(time)} rows, {len(table)} signals"))
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)
 
 
 def _signals(table: Dataset) -> tuple[tuple[str, str], ...]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from xarray import Dataset
 
-from shipcosim.report.notebook.chart import Circle, Path, chart_svg
+from shipcosim.report.notebook.figures import Circle, Path, track_svg
 from shipcosim.report.run.roles import find_roles
 from shipcosim.report.run.track import ship_size
 from shipcosim.report.theme import palette
@@ -43,7 +43,7 @@ def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | N
     if len(wanted) == 2:
         east = table[wanted[1]].values
         north = table[wanted[0]].values
-        paths.append(Path("reference", north, east, colour=palette.REFERENCE, dash="6 4"))
+        paths.append(Path("reference", north, east, colour=palette.REFERENCE, style="--"))
     psi = np.degrees(table[pose[2]].values)
     paths.append(
         Path(
@@ -53,7 +53,7 @@ def run_track(table: Dataset, verdicts: Sequence[Verdict], name: str) -> str | N
             psi,
         )
     )
-    return chart_svg(paths, name, ship_size(table, roles), _circles(verdicts, pose[:2]))
+    return track_svg(paths, name, ship_size(table, roles), _circles(verdicts, pose[:2]))
 
 
 def _circles(verdicts: Sequence[Verdict], position: list[str]) -> list[Circle]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from shipcosim.capability import Capability
 from shipcosim.cosim.compare import OURS, Comparison
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
@@ -32,7 +34,7 @@ def comparison_card(found: Comparison, name: str) -> Card:
                 f"{one.engines[engine].largest:.1e}" if engine in one.engines else "–"
                 for engine in others
             ),
-            f"{one.step.largest:.1e}",
+            f"{one.step.largest:.1e}" if one.step else "not tried",
         )
         for one in found.signals[:MOST_ROWS]
     )
@@ -44,8 +46,6 @@ def comparison_card(found: Comparison, name: str) -> Card:
         title=f"Engines on {name}",
         facts=tuple(Fact(engine, f"{seconds:.1f} s") for engine, seconds in found.seconds.items()),
         outcome=_agreement(found, others),
-        links=(),
-        data=(),
         blocks=(
             Block(
                 f"Largest differences, {len(rows)} of {len(found.signals)} signals",
@@ -76,8 +76,8 @@ def _agreement(found: Comparison, others: list[str]) -> Outcome:
     )
 
 
-def replay_card(found: LogReplay, name: str, picture: str) -> Card:
-    """Errors of the predictions and the track; `picture` is its SVG."""
+def replay_card(found: LogReplay, name: str, draw: Callable[[], str]) -> Card:
+    """Errors of the predictions and the track, which `draw` gives as SVG."""
     faults = tuple(
         f"{fault.label}: {fault.note}" if fault.note else fault.label for fault in found.faults
     )
@@ -85,13 +85,11 @@ def replay_card(found: LogReplay, name: str, picture: str) -> Card:
         title=f"Replay of {name}",
         facts=(Fact("Predictions", f"{found.tracks.horizon:.0f} s each"),),
         outcome=replay_outcome(found),
-        links=(),
-        data=(),
         blocks=(
             Block("Errors, root mean square", error_rows(errors_of(found.tracks))),
             Block("Remarks", lines=(*faults, *found.remarks)),
         ),
-        picture=picture,
+        draw=draw,
     )
 
 
@@ -106,15 +104,13 @@ def calibration_card(found: CalibratedShip) -> Card:
         title=f"Calibration of {found.reference.system}",
         facts=(Fact("Logs", ", ".join(log.name for log in found.logs)),),
         outcome=Outcome(word.kind, word.word, calibration.sentence(found)),
-        links=(),
-        data=(),
         blocks=(
             Block("Why", lines=found.refusals),
             Block("Moved most", Table(moved, ("", "before", "calibrated", "by tolerances"))),
             Block(
                 "Position error that remains",
                 Table(
-                    tuple(calibration.error_rows(found)),
+                    calibration.error_rows(found),
                     ("log", "after", "as it is", "calibrated", "at best", ""),
                 ),
             ),
@@ -130,8 +126,6 @@ def capability_card(found: Capability) -> Card:
         title=f"Static DP capability of {found.vessel.name}",
         facts=page.facts,
         outcome=page.outcome,
-        links=(),
-        data=(),
         blocks=(
             Block("Numbers by direction", page.numbers, folded=True),
             Block("Thrusters", page.thrusters),
@@ -145,8 +139,6 @@ def sea_trials_card(found: SeaTrialStudy, name: str) -> Card:
         title=f"Sea trials of {name}",
         facts=(Fact("Trials", f"{len(found.trials)}"),),
         outcome=sea_trials.outcome(found),
-        links=(),
-        data=(),
         blocks=(
             Block("Causes", sea_trials.sets_table(found)),
             Block("Judged on the other side", sea_trials.held_out_table(found)),

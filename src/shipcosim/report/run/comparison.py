@@ -1,6 +1,5 @@
 """The page of two runs: both in one scene and in every plot, and their differences as numbers."""
 
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -22,6 +21,7 @@ from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Fact, Outcome, Table
 from shipcosim.series import write_file
+from shipcosim.ssp import AnyPath
 
 COLOURS = (palette.BLUE, palette.PURPLE)
 THE_LINE = (
@@ -67,7 +67,7 @@ class Pair:
 
 
 def write_comparison(
-    tables: tuple[Dataset, Dataset], names: tuple[str, str], path: str | os.PathLike[str]
+    tables: tuple[Dataset, Dataset], names: tuple[str, str], path: AnyPath
 ) -> tuple[Outcome, list[Difference]]:
     """Write the page of two runs.
 
@@ -373,7 +373,7 @@ def _table(found: Sequence[Difference]) -> Table:
         (d.signal, f"{plain(d.rms)} {d.unit}", f"{plain(d.largest)} {d.unit}", f"{d.time:g} s")
         for d in found[:MOST_DIFFERENCES]
     ]
-    return Table(tuple(rows), ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
+    return Table(rows, ("Signal", "rms", "Largest", "At"), (1, 2, 3)) if rows else Table(())
 
 
 def _details(pair: Pair) -> tuple[Detail, ...]:

@@ -60,4 +60,4 @@ def key_figures(
                 )
             )
     figures += [(f"Predicted by {what}", ", ".join(said)) for what, *said in texts(predictions)]
-    return Table(tuple(figures))
+    return Table(figures)

@@ -1,6 +1,5 @@
 """The page of several scenarios: what happened, what must hold, measured values, verdict."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -10,6 +9,7 @@ from shipcosim.report.run.page import Digest
 from shipcosim.report.theme.pages import render
 from shipcosim.report.theme.views import Fact, Outcome, Page
 from shipcosim.series import write_file
+from shipcosim.ssp import AnyPath
 
 
 class ScenarioRow(NamedTuple):
@@ -60,9 +60,7 @@ def overview_outcome(rows: Sequence[ScenarioRow]) -> Outcome:
     return Outcome("passed", "PASS", f"All {len(rows)} scenarios hold.")
 
 
-def write_overview(
-    rows: Sequence[ScenarioRow], path: str | os.PathLike[str], *, title: str
-) -> None:
+def write_overview(rows: Sequence[ScenarioRow], path: AnyPath, *, title: str) -> None:
     """Write the page of several scenarios.
 
     Parameters
@@ -80,5 +78,5 @@ def write_overview(
         If the file cannot be written.
     """
     facts = (Fact("Scenarios", str(len(rows))),)
-    page = OverviewPage(title, facts, overview_outcome(rows), (), (), tuple(rows))
+    page = OverviewPage(title=title, facts=facts, outcome=overview_outcome(rows), rows=tuple(rows))
     write_file(path, render("run/templates/overview.html.jinja", page).encode())

@@ -1,6 +1,5 @@
 """The page of a run: its contents, and functions that write or summarise it."""
 
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -21,10 +20,10 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, thinned
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Link, Outcome, Page, Table
+from shipcosim.report.theme.views import Fact, Link, Outcome, Page, Table, known_facts
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.series import write_file
-from shipcosim.ssp import System
+from shipcosim.ssp import AnyPath, System
 
 EXACT = 1e9  # steps of the time axis
 BYTES_FOR_SIGNALS = 750_000  # of a page that shall stay below 1.5 MB
@@ -83,7 +82,7 @@ class Digest(NamedTuple):
 
 def write_report(
     table: Dataset,
-    path: str | os.PathLike[str],
+    path: AnyPath,
     *,
     scenario: Scenario | None = None,
     verdicts: Sequence[Verdict] = (),
@@ -201,7 +200,7 @@ def _facts(table: Dataset, scenario: Scenario | None) -> tuple[Fact, ...]:
         facts.append(("Step size", f"{table.attrs['step_size']} s"))
     if "engine" in table.attrs:
         facts.append(("Engine", str(table.attrs["engine"])))
-    return tuple(Fact(name, text) for name, text in facts if text)
+    return known_facts(facts)
 
 
 def links(runs: Sequence[Run], sections: Sequence[Section]) -> tuple[Link, ...]:

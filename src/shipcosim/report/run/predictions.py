@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -18,6 +17,8 @@ from shipcosim.series import write_file
 if TYPE_CHECKING:
     import pandas
     from xarray import Dataset
+
+    from shipcosim.ssp import AnyPath
 
 MOST_DRAWN = 1200  # predictions in the scene
 UNITS = {
@@ -297,7 +298,7 @@ def _shares(shares: Mapping[str, float]) -> str:
     return f"{' and '.join(said)} within the regions" if said else "no regions"
 
 
-def write_predictions(predictions: pandas.DataFrame, path: str | os.PathLike[str]) -> None:
+def write_predictions(predictions: pandas.DataFrame, path: AnyPath) -> None:
     """Write a table of predictions as CSV, units in its header.
 
     Raises

@@ -1,5 +1,7 @@
 """Remarks on a run: warnings, failures, values that are not finite, a ship that cannot hold."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from xarray import Dataset
@@ -62,14 +64,21 @@ def _not_finite(shown: Dataset) -> list[str]:
 
 def _failures(shown: Dataset, roles: Roles) -> list[str]:
     """Failures during the run, with their times."""
-    begin: dict[float, list[str]] = {}
     # Components that fail at the same time share a sentence.
-    for component, signal in roles.flagged("failed").items():
-        if signal in shown and (failed := shown[signal].values > 0.5).any():
-            begin.setdefault(shown["time"].values[np.argmax(failed)], []).append(component)
+    begin = _first_times(shown, roles.flagged("failed"))
     return [
         f"Failed from {time:g} s on: {', '.join(components)}." for time, components in begin.items()
     ]
+
+
+def _first_times(shown: Dataset, flags: Mapping[str, str]) -> dict[float, list[str]]:
+    """Names of signals by the time at which they are first set; `flags` maps names to signals."""
+    begin: dict[float, list[str]] = {}
+    for name, signal in flags.items():
+        is_set = shown[signal].values > 0.5 if signal in shown else np.zeros(0, bool)
+        if is_set.any():
+            begin.setdefault(shown["time"].values[np.argmax(is_set)], []).append(name)
+    return begin
 
 
 def _rejected(shown: Dataset, roles: Roles) -> list[str]:
@@ -107,13 +116,13 @@ def _reckoned(shown: Dataset, roles: Roles) -> list[str]:
 
 def _alarms(shown: Dataset, roles: Roles) -> list[str]:
     """Alarms and their times: signals that end in _alarm or _faulty."""
-    begin: dict[float, list[str]] = {}
-    for component, connectors in roles.connectors.items():
-        for signal in (
-            join(component, name) for name in connectors if name.endswith(("_alarm", "_faulty"))
-        ):
-            if signal in shown and (on := shown[signal].values > 0.5).any():
-                begin.setdefault(shown["time"].values[np.argmax(on)], []).append(signal)
+    signals = [
+        join(component, name)
+        for component, connectors in roles.connectors.items()
+        for name in connectors
+        if name.endswith(("_alarm", "_faulty"))
+    ]
+    begin = _first_times(shown, dict(zip(signals, signals, strict=True)))
     return [f"Alarm from {time:g} s on: {', '.join(begin[time])}." for time in sorted(begin)]
 
 

@@ -4,6 +4,7 @@ import json
 import re
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
+from os.path import commonprefix
 from typing import Any
 
 import numpy as np
@@ -201,7 +202,7 @@ def _nearest(north: str, headings: list[str]) -> str | None:
     """Heading of the same component; for `north`, which is always a position, the nearest one."""
     # Nearest in the tree of components: the longest common path.
     path = north.split(".")[:-1]
-    shared = {name: _shared(path, name.split(".")[:-1]) for name in headings}
+    shared = {name: len(commonprefix([path, name.split(".")[:-1]])) for name in headings}
     best = max(headings, key=lambda name: (shared[name], -name.count(".")), default=None)
     # A bare x of another component may be anything: then no heading is taken.
     if best is None or (
@@ -209,14 +210,6 @@ def _nearest(north: str, headings: list[str]) -> str | None:
     ):
         return None
     return best
-
-
-def _shared(path: list[str], other: list[str]) -> int:
-    """Number of leading steps that two paths share."""
-    return next(
-        (k for k, (a, b) in enumerate(zip(path, other, strict=False)) if a != b),
-        min(len(path), len(other)),
-    )
 
 
 def _loads(pose: Pose, names: list[str]) -> int:

@@ -1,6 +1,5 @@
 """The page of sea trials: tracks, features before and after, causes, and what would tell them apart."""
 
-import os
 from collections import Counter
 from dataclasses import dataclass
 
@@ -14,9 +13,8 @@ from shipcosim.report.sea_trials.words import (
     separation_table,
     sets_table,
 )
-from shipcosim.report.theme.pages import render
-from shipcosim.report.theme.views import Fact, Figure, KeyFigure, Link, Page, Table
-from shipcosim.series import write_file
+from shipcosim.report.theme.pages import render as render_template
+from shipcosim.report.theme.views import Figure, FigurePage, KeyFigure, Link, Table, facts_of
 
 SECTIONS = {
     "tracks": "Tracks",
@@ -33,21 +31,18 @@ KEY_FEATURES = {
 
 
 @dataclass(frozen=True)
-class SeaTrialPage(Page):
+class SeaTrialPage(FigurePage):
     """What the page of sea trials shows.
 
     Attributes
     ----------
-    key_figures : tuple of KeyFigure
-    figures, tracks, errors, manoeuvres : tuple of Figure
-        All figures; tracks of circles; errors of features; what manoeuvres would tell.
+    tracks, errors, manoeuvres : tuple of Figure
+        Tracks of circles; errors of features; what manoeuvres would tell.
     sets, held_out, features, separations : Table
     steps : tuple of str
         What to sail next.
     """
 
-    key_figures: tuple[KeyFigure, ...]
-    figures: tuple[Figure, ...]
     tracks: tuple[Figure, ...]
     errors: tuple[Figure, ...]
     manoeuvres: tuple[Figure, ...]
@@ -58,27 +53,9 @@ class SeaTrialPage(Page):
     steps: tuple[str, ...]
 
 
-def write_sea_trials(
-    found: SeaTrialStudy, path: str | os.PathLike[str], facts: dict[str, str]
-) -> None:
-    """Write the page of sea trials.
-
-    Parameters
-    ----------
-    found : SeaTrialStudy
-    path : path
-        HTML file; it is there completely or not at all.
-    facts : dict of str to str
-        Shown below the title.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(
-        path, render("sea_trials/templates/sea_trials.html.jinja", _page(found, facts)).encode()
-    )
+def render(found: SeaTrialStudy, facts: dict[str, str]) -> str:
+    """The page of sea trials as HTML; `facts` are shown below its title."""
+    return render_template("sea_trials/templates/sea_trials.html.jinja", _page(found, facts))
 
 
 def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
@@ -94,12 +71,11 @@ def _page(found: SeaTrialStudy, facts: dict[str, str]) -> SeaTrialPage:
     there = {"tracks": circles, "judged": bool(found.held_out), "next": bool(found.separations)}
     return SeaTrialPage(
         title="Sea trials",
-        facts=tuple(Fact(name, text) for name, text in facts.items()),
+        facts=facts_of(facts),
         outcome=outcome(found),
         links=tuple(
             Link(anchor, title) for anchor, title in SECTIONS.items() if there.get(anchor, True)
         ),
-        data=tuple(figure.drawn for figure in figures),
         key_figures=_key_figures(found),
         figures=figures,
         tracks=tracks,

@@ -44,7 +44,7 @@ def sets_table(found: SeaTrialStudy) -> Table:
         (said(one.label), told(one), f"{one.evidence - first:+.1f}".replace("-", "−"))
         for one in shown
     ]
-    return Table(tuple(rows), ("Causes", "Estimates", "Nats"), (2,))
+    return Table(rows, ("Causes", "Estimates", "Nats"), (2,))
 
 
 def told(one: SetOfCauses) -> str:
@@ -63,7 +63,7 @@ def held_out_table(found: SeaTrialStudy) -> Table:
     sides = list(found.held_out.items())
     names = list(dict.fromkeys(name for _, one in sides for name in one.before))
     rows = [(name, *(_errors(one, name) for _, one in sides)) for name in names]
-    return Table(tuple(rows), ("Feature", *(f"Fitted on circles to {side}" for side, _ in sides)))
+    return Table(rows, ("Feature", *(f"Fitted on circles to {side}" for side, _ in sides)))
 
 
 def _errors(one, name):
@@ -88,9 +88,7 @@ def features_table(found: SeaTrialStudy) -> Table:
                 )
             )
             at += 1
-    return Table(
-        tuple(rows), ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to")
-    )
+    return Table(rows, ("Trial", "Feature", "Measured", "As modelled", "With causes", "Repeats to"))
 
 
 def _read(name, value):
@@ -156,7 +154,7 @@ def separation_table(found: SeaTrialStudy) -> Table:
         for one in found.separations
     ]
     return Table(
-        tuple(rows), ("Manoeuvre", "Min", *(f"{said(a)} / {said(b)}" for a, b in found.pairs)), (1,)
+        rows, ("Manoeuvre", "Min", *(f"{said(a)} / {said(b)}" for a, b in found.pairs)), (1,)
     )
 
 

@@ -23,8 +23,8 @@ from shipcosim.report.study.static import NAMES, bases_of
 from shipcosim.report.study.statistics import distribution, pareto_front
 from shipcosim.report.study.tables import Column, StudyTables
 from shipcosim.report.theme import palette
-from shipcosim.report.theme.figures import line, rounded
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.figures import evenly, line, polar_axes, rounded
+from shipcosim.report.theme.views import Figure, PlotlyDict
 
 TALL = 380  # px
 POLAR = 420
@@ -61,14 +61,29 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
         str(view.get("note") or note),
         how_gathered(frame, radius, groups),
         left_out(frame, series),
+        in_part(size),
     ]
     title = f"{size.name} by direction"
-    return _figure(view, title, size.unit, traces, {"polar": _polar_axes(traces)}, notes, POLAR)
+    # A little more room than the largest radius.
+    most = max((r for trace in traces for r in trace["r"] if r is not None), default=1.0)
+    axes = polar_axes(range=[0, 1.08 * most if most > 0 else 1.0], nticks=6)
+    return _figure(view, title, size.unit, traces, {"polar": axes}, notes, POLAR)
+
+
+def in_part(column: Column) -> str:
+    """Sentence on values of which the study tells a part; empty if there are none."""
+    open_ = sorted({text for text in column.ranges if not text.lstrip("-").isdigit()})
+    if not open_:
+        return ""
+    listed = ", ".join(open_[:4])
+    return (
+        f"Drawn is the last case that is held; not every case was run, so it stands for {listed}."
+    )
 
 
 def _around(
     one: SeriesOfRows, degrees: NDArray, points: NDArray, *, with_band: bool, fill: float | None
-) -> list[dict[str, Any]]:
+) -> list[PlotlyDict]:
     """A curve around the ship, closed if directions go all around, and the band of its interval."""
     # Closed if no gap is much larger than the mean spacing.
     closed = len(degrees) > 2 and np.diff(
@@ -78,17 +93,14 @@ def _around(
     theta = rounded([*degrees, *degrees[end]])
     # The curve itself, filled for the first series only.
     curve = {
-        **{
-            "type": "scatterpolar",
-            "mode": "lines+markers",
-            "name": one.label or "all",
-            "theta": theta,
-        },
-        **{
-            "r": rounded([*points[:, 0], *points[end, 0]]),
-            "hovertemplate": "%{r:.3~g} from %{theta}",
-        },
-        **{"line": {"color": one.colour, "width": 2}, "marker": {"size": 4}},
+        "type": "scatterpolar",
+        "mode": "lines+markers",
+        "name": one.label or "all",
+        "theta": theta,
+        "r": rounded([*points[:, 0], *points[end, 0]]),
+        "hovertemplate": "%{r:.3~g} from %{theta}",
+        "line": {"color": one.colour, "width": 2},
+        "marker": {"size": 4},
     }
     if fill is not None and closed:
         curve |= {"fill": "toself", "fillcolor": palette.faded(one.colour, fill)}
@@ -112,7 +124,7 @@ def _around(
 
 def _beside(
     tables: StudyTables, view: Mapping[str, Any], series: Sequence[SeriesOfRows]
-) -> list[dict[str, Any]]:
+) -> list[PlotlyDict]:
     """Curves from `about` for the same quantity and series, such as static capability."""
     # Only curves of the bases that the view asks for.
     colours = {one.label: one.colour for one in series}
@@ -129,12 +141,12 @@ def _beside(
             degrees = np.degrees(np.asarray(one["angle"], float))
             found.append(
                 {
-                    **{"type": "scatterpolar", "mode": "lines", "name": str(one["name"])},
-                    **{
-                        "theta": rounded([*degrees, degrees[0]]),
-                        "hovertemplate": "%{r:.3~g} from %{theta}",
-                    },
-                    **{"r": rounded([*one["radius_values"], one["radius_values"][0]])},
+                    "type": "scatterpolar",
+                    "mode": "lines",
+                    "name": str(one["name"]),
+                    "theta": rounded([*degrees, degrees[0]]),
+                    "hovertemplate": "%{r:.3~g} from %{theta}",
+                    "r": rounded([*one["radius_values"], one["radius_values"][0]]),
                     "line": {
                         "color": colours[str(one["series"])],
                         "width": 2,
@@ -143,29 +155,6 @@ def _beside(
                 }
             )
     return found
-
-
-def _polar_axes(traces: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
-    # A little more room than the largest radius.
-    most = max((r for trace in traces for r in trace["r"] if r is not None), default=1.0)
-    return {
-        "bgcolor": "@card",
-        "angularaxis": {
-            "rotation": 90,
-            "direction": "clockwise",
-            "dtick": 30,
-            "ticksuffix": "°",
-            **look,
-        },
-        "radialaxis": {
-            "range": [0, 1.08 * most if most > 0 else 1.0],
-            "angle": 45,
-            "tickangle": 45,
-            "nticks": 6,
-            **look,
-        },
-    }
 
 
 def curves(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
@@ -216,7 +205,7 @@ def _steps(
     largest: float,
     *,
     with_band: bool,
-) -> list[dict[str, Any]]:
+) -> list[PlotlyDict]:
     # Prolong the last step to the right edge of the figure.
     x = np.concatenate([reached, [largest]])
     y = np.concatenate([share, share[-1:] if len(share) else [0.0]])
@@ -232,7 +221,7 @@ def _steps(
     curve["line"] |= {"shape": "hv"}
     if not with_band:
         return [curve]
-    look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
+    look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
     # Band of the distribution, within 0 and 1.
     low, high = (
         line("", x, np.clip(y + k * half, 0, 1), one.colour, width=0, **look) for k in (-1, 1)
@@ -289,7 +278,7 @@ def bars(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
     return _figure(view, title, unit, traces, _bar_axes(is_upright), notes, height)
 
 
-def _bar_axes(is_upright: bool) -> dict[str, Any]:
+def _bar_axes(is_upright: bool) -> PlotlyDict:
     """Axes: long names stand next to horizontal bars, the first one on top."""
     if is_upright:
         return {"barmode": "group", "xaxis": {"type": "category"}}
@@ -298,7 +287,7 @@ def _bar_axes(is_upright: bool) -> dict[str, Any]:
 
 def _bar(
     name: str, categories: Sequence[str], points: NDArray, colour: str, is_upright: bool
-) -> dict[str, Any]:
+) -> PlotlyDict:
     # Upright or horizontal bars with the same data.
     along, across = ("y", "x") if is_upright else ("x", "y")
     made = {"type": "bar", "name": name, across: list(categories), along: rounded(points[:, 0])}
@@ -434,7 +423,7 @@ def _dots(
     rows: NDArray,
     third: Column | None,
     look: Mapping[str, Any],
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """Dots, each with the number of its run where it stands for one."""
     marker = {"opacity": 0.7, "line": {"width": 0}} | dict(look)
     # A third quantity sets the size of the dots.
@@ -466,10 +455,10 @@ def _drawn(column: Column, rows: NDArray) -> list[Any]:
 def _even(rows: NDArray, share: float | None = None) -> NDArray:
     """Evenly thinned rows."""
     most = MOST_DOTS if share is None else max(int(share * len(rows)), 1)
-    return rows if len(rows) <= most else rows[np.linspace(0, len(rows) - 1, most).astype(int)]
+    return rows if len(rows) <= most else rows[evenly(len(rows), most)]
 
 
-def _axes(x: Column, y: Column) -> dict[str, Any]:
+def _axes(x: Column, y: Column) -> PlotlyDict:
     return {"xaxis": {"title": {"text": x.titled}}, "yaxis": {"title": {"text": y.titled}}}
 
 
@@ -477,7 +466,7 @@ def _figure(
     view: Mapping[str, Any],
     title: str,
     unit: str,
-    traces: Sequence[dict[str, Any]],
+    traces: Sequence[PlotlyDict],
     layout: Mapping[str, Any],
     notes: Sequence[str],
     height: int,
@@ -507,7 +496,7 @@ def distance_figure(
     traces = []
     for one, (low, middle, high) in spread:
         # Band between the outer quantiles, then the median on top.
-        look: dict[str, Any] = {"showlegend": False, "hoverinfo": "skip"}
+        look: PlotlyDict = {"showlegend": False, "hoverinfo": "skip"}
         top = line("", time, high, one.colour, width=0, **look)
         traces += [line("", time, low, one.colour, width=0, **look)]
         traces += [top | {"fill": "tonexty", "fillcolor": palette.faded(one.colour, 0.15)}]

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.report.study.statistics import mean_interval, wilson
+from shipcosim.report.study.statistics import mean_interval
 from shipcosim.report.study.tables import FACTOR, Column, StudyTables, columns_of, label
 from shipcosim.report.theme import palette
+from shipcosim.sweep.summary import wilson
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -209,7 +210,7 @@ def gathered(frame: Frame, value: str, rows: NDArray) -> Point:
     known = column.values[rows]
     known = known[np.isfinite(known)]
     if column.is_truth and len(known):
-        return Point(float(known.mean()), *wilson(int(known.sum()), len(known)))
+        return Point(*wilson(int(known.sum()), len(known)))
     return Point(*mean_interval(known))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
@@ -15,10 +14,10 @@ from shipcosim.report.study.frames import Lacking, narrowed
 from shipcosim.report.study.tables import Column, StudyTables, columns_of, signed
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import most_rows, packed_series
-from shipcosim.report.theme.pages import render
+from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import Figure, KeyFigure, Link, Page, Table
-from shipcosim.series import write_file
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
@@ -97,22 +96,9 @@ class StudyPage(Page):
     text: str
 
 
-def write_study(tables: StudyTables, path: str | os.PathLike[str]) -> None:
-    """Write the page of a study.
-
-    Parameters
-    ----------
-    tables : StudyTables
-        What the study left.
-    path : path
-        HTML file; it is there completely or not at all.
-
-    Raises
-    ------
-    ShipcosimError
-        If the file cannot be written.
-    """
-    write_file(path, render("study/templates/study.html.jinja", page_of(tables)).encode())
+def render(tables: StudyTables) -> str:
+    """The page of a study as HTML."""
+    return render_template("study/templates/study.html.jinja", page_of(tables))
 
 
 def page_of(tables: StudyTables) -> StudyPage:
@@ -196,7 +182,7 @@ def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
     # The others evenly spaced.
     others = np.flatnonzero(~failed)
     room = min(most - len(parts[0]), len(others))
-    parts.append(others[np.unique(np.linspace(0, len(others) - 1, room).astype(int))])
+    parts.append(others[evenly(len(others), room)])
     return np.sort(np.concatenate(parts))
 
 
@@ -294,6 +280,8 @@ def _summary(columns: Mapping[str, Column]) -> Table:
 
 def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> str:
     """A cell of the summary, with its interval if it has one."""
+    if column.ranges:
+        return column.text_at(row)
     # Value first, then both ends in brackets.
     cell = _cell(column, column.values[row])
     ends = [

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 
 ADDRESS = "127.0.0.1"
 HEADER = "X-Shipcosim"
@@ -87,16 +87,12 @@ def study_server(
         If there is no page in the folder, or the port is taken.
     """
     if not (folder / "report.html").is_file():
-        raise ShipcosimError(
-            Problem(str(folder), "There is no report.html to be shown.", "Run the study first.")
-        )
+        raise error_at(str(folder), "There is no report.html to be shown.", "Run the study first.")
     try:
         return StudyServer(folder, runs, simulate, port)
     except (OSError, OverflowError) as error:
         text = f"Port {port} cannot be used: {getattr(error, 'strerror', None) or error}."
-        raise ShipcosimError(
-            Problem("--port", text, "Choose another, or leave it to the system.")
-        ) from error
+        raise error_at("--port", text, "Choose another, or leave it to the system.") from error
 
 
 def page_of_run(folder: Path, run: int) -> Path:

@@ -55,8 +55,12 @@ def static_curves(
     # A curve for each case, basis and radius.
     curves = [
         {
-            **{"radius": radius, "basis": basis, "dash": DASHES[basis], "series": case.name},
-            **{"name": f"{case.name}: {NAMES[basis]}", "angle": DIRECTIONS.tolist()},
+            "radius": radius,
+            "basis": basis,
+            "dash": DASHES[basis],
+            "series": case.name,
+            "name": f"{case.name}: {NAMES[basis]}",
+            "angle": DIRECTIONS.tolist(),
             "radius_values": numbers.tolist(),
         }
         for radius in dict.fromkeys(str(view.get("radius")) for view in asking)

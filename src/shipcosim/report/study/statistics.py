@@ -11,38 +11,6 @@ LEVEL = 0.95
 BINS = 10
 
 
-def wilson(count: int, of: int) -> tuple[float, float]:
-    """95 % interval of a share by Wilson's score.
-
-    Parameters
-    ----------
-    count, of : int
-        So many of how many.
-
-    Returns
-    -------
-    (float, float)
-
-    References
-    ----------
-    Wilson, Probable inference, the law of succession, and statistical inference, J. Am. Stat. Assoc. 22, 1927.
-
-    Examples
-    --------
-    >>> [round(end, 3) for end in wilson(9, 10)]
-    [0.596, 0.982]
-    """
-    # Without runs anything is possible.
-    if not of:
-        return 0.0, 1.0
-    # Wilson's score: centre (p + z^2/2n) / (1 + z^2/n), never beyond 0 and 1.
-    share = count / of
-    more = Z * Z / of
-    middle = (share + more / 2) / (1 + more)
-    half = Z * np.sqrt(share * (1 - share) / of + more / (4 * of)) / (1 + more)
-    return max(float(middle - half), 0.0), min(float(middle + half), 1.0)
-
-
 def mean_interval(values: ArrayLike) -> tuple[float, float, float]:
     """Mean and its normal 95 % interval; no interval for a single value.
 

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.study.static import static_curves
 from shipcosim.report.theme.display import READ_AS
+from shipcosim.sweep.storage import read_part
+from shipcosim.sweep.summary import RANGE
 
 if TYPE_CHECKING:
     from pandas import DataFrame, Series
@@ -78,7 +80,6 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     command : str
         What a user types to make this study.
     """
-    import pandas
 
     # Tracks, static capability, and runs that have a page.
     folder = swept.folder
@@ -93,7 +94,7 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
         about={**swept.about, "beside": beside, "remarks": remarks, "ship": _ship(swept)},
         runs=swept.runs,
         summary=swept.summary,
-        tracks=pandas.read_parquet(tracks) if tracks.is_file() else None,
+        tracks=read_part(tracks) if tracks.is_file() else None,
         tables=swept.tables,
         pages=sorted(int(match[1]) for match in found if match),
         command=command,
@@ -127,6 +128,8 @@ class Column:
         Of what is no number, in their order.
     is_truth : bool
         Whether it is true or false.
+    ranges : tuple of str
+        Of a value that a study tells in part, as it runs not every case: ``">= 4"``, ``"1 to 3"``; else empty.
     """
 
     name: str
@@ -136,6 +139,11 @@ class Column:
     values: NDArray
     labels: tuple[str, ...] = ()
     is_truth: bool = False
+    ranges: tuple[str, ...] = ()
+
+    def text_at(self, row: int) -> str:
+        """Value of a row as text for readers; what is known of it where not every case was run."""
+        return self.ranges[row] if self.ranges else self.text(self.values[row])
 
     @property
     def is_number(self) -> bool:
@@ -219,10 +227,17 @@ def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str,
     for name, one in list(known.items()):
         for end in ("low", "high"):
             known.setdefault(f"{name}_{end}", one)
-    names = [str(name) for name in frame.columns if name not in ("run", "error", "input")]
-    return {
-        name: column_of(name, cast("Series", frame[name]), known.get(name, {})) for name in names
+    there = [str(name) for name in frame.columns]
+    names = [name for name in there if name not in ("run", "error", "input")]
+    found = {
+        name: column_of(name, cast("Series", frame[name]), known.get(name, {}))
+        for name in names
+        if name.removesuffix(RANGE) == name or name.removesuffix(RANGE) not in there
     }
+    for name, column in found.items():
+        if f"{name}{RANGE}" in there:
+            found[name] = replace(column, ranges=tuple(map(str, frame[f"{name}{RANGE}"])))
+    return found
 
 
 def column_of(name: str, values: Series, said: Mapping[str, Any]) -> Column:

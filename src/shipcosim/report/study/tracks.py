@@ -13,6 +13,7 @@ from shipcosim.report.run.track import hull_outline, symbol_size
 from shipcosim.report.study.figures import distance_figure
 from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, left_out, series_of
 from shipcosim.report.study.tables import StudyTables, columns_of
+from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import packed_series
 from shipcosim.report.theme.views import Figure
 
@@ -75,10 +76,15 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
     # Circles and figure use the distance from the start.
     distance = np.hypot(tracks.north, tracks.east)
     circles = [float(radius) for radius in view.get("circles") or _circles(distance)]
-    drawn = _chosen(series)
+    # Rows of the drawn tracks: equally many of each series.
+    most = MOST_TRACKS // max(len(series), 1)
+    drawn = [one.rows[evenly(len(one.rows), most)] if len(one.rows) else one.rows for one in series]
     note = f"North up, each from where it began. Drawn are {sum(map(len, drawn))} of {sum(len(s.rows) for s in series)} "
     note += "tracks, with her outline at the time shown; shaded: where all of them were, the darker the longer."
-    said = [str(view.get("note") or note), left_out(frame, [*series, *_without(frame, series)])]
+    # Rows without a track, which do not count as left out.
+    there = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
+    without = [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
+    said = [str(view.get("note") or note), left_out(frame, [*series, *without])]
     # Quantiles over all tracks, not only over the drawn ones.
     spread = [(one, _spread(distance[one.rows])) for one in series if len(one.rows)]
     return TracksView(
@@ -88,12 +94,6 @@ def tracks_view(tables: StudyTables, view: Mapping[str, Any]) -> TracksView:
         data=_data(tables, tracks, series, drawn, circles),
         distance=distance_figure(tracks.time, spread),
     )
-
-
-def _without(frame: Frame, series: Sequence[SeriesOfRows]) -> list[SeriesOfRows]:
-    """Rows without a track, which do not count as left out."""
-    there = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
-    return [SeriesOfRows("", "", np.setdiff1d(np.arange(frame.rows), there))]
 
 
 def _read(tables: StudyTables) -> _Tracks:
@@ -113,7 +113,7 @@ def _read(tables: StudyTables) -> _Tracks:
     for k, name in enumerate(names[:3]):
         full[k, row[row >= 0], column[row >= 0]] = table[name].to_numpy(float)[row >= 0]
     # Evenly fewer times, first and last included.
-    kept = np.unique(np.linspace(0, len(stamps) - 1, MOST_TIMES).astype(int))
+    kept = evenly(len(stamps), MOST_TIMES)
     north, east, psi = full[:, :, kept]
     # Each track relative to its first known position.
     first = [
@@ -129,17 +129,6 @@ def _circles(distance: NDArray) -> list[float]:
     power = 10.0 ** np.floor(np.log10(max(most, 0.1)))
     return [r for r in np.outer([0.1, 1.0], [1.0, 2.0, 5.0]).ravel() * power if r <= most][-3:] or [
         power
-    ]
-
-
-def _chosen(series: Sequence[SeriesOfRows]) -> list[NDArray]:
-    """Rows of the drawn tracks: equally many of each series."""
-    most = MOST_TRACKS // max(len(series), 1)
-    return [
-        one.rows[np.unique(np.linspace(0, len(one.rows) - 1, min(most, len(one.rows))).astype(int))]
-        if len(one.rows)
-        else one.rows
-        for one in series
     ]
 
 

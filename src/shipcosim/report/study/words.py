@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shipcosim.report.study.statistics import explained, wilson
+from shipcosim.report.study.statistics import explained
 from shipcosim.report.study.tables import (
     FACTOR,
     QUANTITY,
@@ -21,6 +21,7 @@ from shipcosim.report.study.tables import (
 )
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Fact, KeyFigure, Outcome, Table
+from shipcosim.sweep.summary import wilson
 
 MOST_FIGURES = 4
 MOST_ERRORS = 50
@@ -73,12 +74,12 @@ def _of_summary(summary: Mapping[str, Column]) -> str:
     name = found.description or found.name.replace("_", " ")
     # One row, one value everywhere, or a range with the factors of its ends.
     if len(found.values) == 1:
-        return f"{_capital(name)}: {found.text(found.values[0])}."
+        return f"{_capital(name)}: {found.text_at(0)}."
     low = int(np.nanargmin(found.values))
     high = int(np.nanargmax(found.values))
     if found.values[low] == found.values[high]:
-        return f"{_capital(name)}: {found.text(found.values[low])} everywhere."
-    ends = [f"{found.text(found.values[row])} ({_where(summary, row)})" for row in (low, high)]
+        return f"{_capital(name)}: {found.text_at(low)} everywhere."
+    ends = [f"{found.text_at(row)} ({_where(summary, row)})" for row in (low, high)]
     return f"{_capital(name)}: from {ends[0]} to {ends[1]}."
 
 
@@ -99,7 +100,7 @@ def _of_runs(runs: Mapping[str, Column]) -> str:
     known = found.values[np.isfinite(found.values)]
     name = _capital(found.description or found.name)
     if found.is_truth:
-        low, high = wilson(int(known.sum()), len(known))
+        _, low, high = wilson(int(known.sum()), len(known))
         return f"{name}: {percent(known.mean())} of runs (95 % interval {percent(low)} to {percent(high)})."
     low, middle, high = np.quantile(known, [0.0, 0.5, 0.9])
     most = found.text(known.max())
@@ -133,10 +134,13 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
     name = column.description or column.name.replace("_", " ")
     # A share, the range of a summary, or the value that nine of ten runs stay below.
     if column.is_truth:
-        low, high = wilson(int(known.sum()), len(known))
+        _, low, high = wilson(int(known.sum()), len(known))
         return KeyFigure(
             percent(known.mean()), f"{name}; 95 % interval {percent(low)} to {percent(high)}"
         )
+    if column.ranges:
+        ends = [column.text_at(int(end(column.values))) for end in (np.nanargmin, np.nanargmax)]
+        return KeyFigure(ends[0] if ends[0] == ends[1] else f"{ends[0]} … {ends[1]}", name)
     if column.role == SUMMARY:
         low = column.text(known.min())
         high = column.text(known.max())
@@ -169,7 +173,7 @@ def quantities_table(runs: Mapping[str, Column]) -> Table:
         "no value",
         "varies most with",
     )
-    return Table(tuple(rows), head, tight=(0, 2, 3, 4, 5, 6))
+    return Table(rows, head, tight=(0, 2, 3, 4, 5, 6))
 
 
 def _varies_with(column: Column, causes: Sequence[Column]) -> str:
@@ -227,7 +231,7 @@ def varied_table(study: Mapping[str, Any]) -> Table:
     for signal, how in (_given(_given(study).get("tune") or {}).get("of") or {}).items():
         ends = f"sought from {how['low']} to {how['high']}{' in the logarithm' if how.get('log') else ''}"
         rows.append((str(how.get("name") or signal), _with_others(signal, how), ends))
-    return Table(tuple(rows), ("name", "what it sets", "values"), tight=(0,))
+    return Table(rows, ("name", "what it sets", "values"), tight=(0,))
 
 
 def _with_others(signal: str, how: Mapping[str, Any]) -> str:
@@ -306,7 +310,7 @@ def measured_table(study: Mapping[str, Any]) -> Table:
     """Quantities of each run, and summaries over similar runs."""
     rows = [(str(one.get("name", "")), _quantity(one)) for one in _parts(study, "quantity")]
     rows += [(str(one.get("name", "")), _summary(one)) for one in _parts(study, "summary")]
-    return Table(tuple(rows), ("name", "what it is"), tight=(0,))
+    return Table(rows, ("name", "what it is"), tight=(0,))
 
 
 def _quantity(one: Mapping[str, Any]) -> str:

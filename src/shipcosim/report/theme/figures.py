@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from shipcosim.report.theme import palette
+from shipcosim.report.theme.views import PlotlyDict
 
-TIME: dict[str, Any] = {"ticksuffix": " s", "showticksuffix": "first"}
+TIME: PlotlyDict = {"ticksuffix": " s", "showticksuffix": "first"}
 """Axis of time. [s]"""
 MOST_POINTS = 3000
 """Points of a curve: five for each pixel of a figure's width."""
@@ -66,6 +67,17 @@ def thinned_curve(x: ArrayLike, y: ArrayLike, most: int = MOST_POINTS) -> tuple[
     return np.insert(x[rows], breaks, np.nan), np.insert(y[rows], breaks, np.nan)
 
 
+def evenly(count: int, most: int) -> NDArray:
+    """Rows to draw of so many, evenly fewer where there are more than `most`; first and last among them.
+
+    Examples
+    --------
+    >>> evenly(9, 3).tolist(), evenly(2, 3).tolist()
+    ([0, 4, 8], [0, 1])
+    """
+    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(int))
+
+
 def _told_apart(values: NDArray) -> list[float | None]:
     """Numbers with five significant digits, more where they differ by little, as late times."""
     # Additional digits as the size exceeds the span: 100000.1 and 100000.2 must differ.
@@ -84,7 +96,7 @@ def line(
     width: float = 1.5,
     dash: str = "solid",
     **more: Any,
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """A curve, thinned where it has more points than a figure shows; the colour is one of `palette`."""
     # Thinned to what a figure can show, so that pages stay small.
     x, y = thinned_curve(x, y)
@@ -95,21 +107,30 @@ def line(
 
 def bars(
     name: str, categories: Sequence[str], sizes: ArrayLike, colour: str, unit: str
-) -> dict[str, Any]:
+) -> PlotlyDict:
     """Upright bars, one for each category."""
     return {
-        **{
-            "type": "bar",
-            "name": name,
-            "x": list(categories),
-            "y": rounded(sizes, 3),
-            "marker": {"color": colour},
-        },
+        "type": "bar",
+        "name": name,
+        "x": list(categories),
+        "y": rounded(sizes, 3),
+        "marker": {"color": colour},
         "hovertemplate": f"%{{y:.3~g}} {unit}",
     }
 
 
-def limit(x: float) -> dict[str, Any]:
+def polar_axes(**radial: Any) -> PlotlyDict:
+    """Axes of a polar plot: bow up, clockwise, as on a nautical chart; `radial` says more of the radial axis."""
+    look = {"gridcolor": palette.FAINT, "linecolor": palette.FAINT, "tickcolor": palette.FAINT}
+    angular = {"rotation": 90, "direction": "clockwise", "dtick": 30, "ticksuffix": "°"}
+    return {
+        "bgcolor": "@card",
+        "angularaxis": angular | look,
+        "radialaxis": radial | {"angle": 45, "tickangle": 45} | look,
+    }
+
+
+def limit(x: float) -> PlotlyDict:
     """A dotted upright line across the figure."""
     look = {"color": palette.VERMILLION, "dash": "dot", "width": 1.5}
     return {"type": "line", "x0": x, "x1": x, "y0": 0, "y1": 1, "yref": "paper", "line": look}

@@ -1,8 +1,11 @@
 """Records that all page templates fill in: texts and figures without any HTML."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
+
+PlotlyDict = dict[str, Any]
+"""A trace of a figure, or a part of its layout, as plotly has it."""
 
 
 class Fact(NamedTuple):
@@ -10,6 +13,16 @@ class Fact(NamedTuple):
 
     name: str
     text: str
+
+
+def facts_of(texts: Mapping[str, str]) -> tuple[Fact, ...]:
+    """Facts from texts by their names."""
+    return tuple(Fact(name, text) for name, text in texts.items())
+
+
+def known_facts(facts: Iterable[tuple[str, str]]) -> tuple[Fact, ...]:
+    """Facts from names and texts; those without a text are left out."""
+    return tuple(Fact(name, text) for name, text in facts if text)
 
 
 class KeyFigure(NamedTuple):
@@ -41,9 +54,12 @@ class Link:
 class Table:
     """A table of texts; the columns numbered in `tight` do not wrap."""
 
-    rows: tuple[tuple[str, ...], ...]
+    rows: Sequence[tuple[str, ...]]
     head: tuple[str, ...] = ()
     tight: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "rows", tuple(self.rows))
 
 
 @dataclass(frozen=True)
@@ -65,7 +81,7 @@ class Figure:
 
     title: str
     unit: str
-    traces: tuple[dict[str, Any], ...]
+    traces: tuple[PlotlyDict, ...]
     layout: dict[str, Any] = field(default_factory=dict)
     note: str = ""
     height: int | None = None
@@ -76,7 +92,7 @@ class Figure:
         return {"data": self.traces, "layout": self.layout}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Page:
     """Contents of every page.
 
@@ -96,5 +112,23 @@ class Page:
     title: str
     facts: tuple[Fact, ...]
     outcome: Outcome
-    links: tuple[Link, ...]
-    data: Mapping[str, Any] | tuple[Any, ...]
+    links: tuple[Link, ...] = ()
+    data: Mapping[str, Any] | tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class FigurePage(Page):
+    """A page whose script draws its figures.
+
+    Attributes
+    ----------
+    key_figures : tuple of KeyFigure
+    figures : tuple of Figure
+        All of the page, in the order of `data`.
+    """
+
+    key_figures: tuple[KeyFigure, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "data", tuple(figure.drawn for figure in self.figures))

@@ -1,17 +1,16 @@
 """Bind parameter set files to elements of an SSD, and unbind them."""
 
-from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
 
 from shipcosim.errors import suggestion
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.elements import element_named
-from shipcosim.ssp.xml.document import children
+from shipcosim.ssp.xml.document import AnyPath, children
 from shipcosim.ssp.xml.markup import add, drop, ensure
 
 
-def bind(draft: Draft, source: str | PathLike[str], element: str, prefix: str | None) -> None:
+def bind(draft: Draft, source: AnyPath, element: str, prefix: str | None) -> None:
     """Bind a parameter set to an element; see `SystemStructure.bind`."""
     # A file in the package is bound by its own address; any other is copied into it.
     inside = (draft.path.parent / source).resolve()
@@ -23,7 +22,7 @@ def bind(draft: Draft, source: str | PathLike[str], element: str, prefix: str | 
     add(listed, "ssd:ParameterBinding", source=uri, prefix=prefix)
 
 
-def unbind(draft: Draft, source: str | PathLike[str], element: str) -> None:
+def unbind(draft: Draft, source: AnyPath, element: str) -> None:
     """Remove the binding of a parameter set from an element; see `SystemStructure.unbind`."""
     listed = children(
         element_named(draft, element), "ssd:ParameterBindings", "ssd:ParameterBinding"

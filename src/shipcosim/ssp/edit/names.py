@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import lxml.etree as etree
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 from shipcosim.ssp.flatten.ports import SOURCES_OUTSIDE
 from shipcosim.ssp.read.structure import KIND_NAMES
 from shipcosim.ssp.xml.document import child, children, local
@@ -201,12 +201,10 @@ def _refuse_if_elsewhere(
         remedy = (
             "A connection stays within one system: go through connectors of the systems between."
         )
-        raise ShipcosimError(
-            Problem(where, f"{signal} is in another system than the other end.", remedy)
-        )
+        raise error_at(where, f"{signal} is in another system than the other end.", remedy)
     # The first part of its name is no element here.
     if _names_an_element(reading):
         names = [part.get("name", "") for part in parts(system)]
         element = signal.partition(".")[0]
         found = f"There is no element '{element}' in {system.get('name')}."
-        raise ShipcosimError(Problem(where, found, suggestion(element, names)))
+        raise error_at(where, found, suggestion(element, names))

@@ -1,20 +1,19 @@
 """Open system structures for viewing and editing: from a file, or empty."""
 
-import tempfile
 from collections.abc import Iterable
-from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.ssp.edit.draft import Draft
 from shipcosim.ssp.edit.system_structure import SystemStructure
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.read.package import SYSTEM_STRUCTURE, Package, open_package
 from shipcosim.ssp.read.parameters import has_root
-from shipcosim.ssp.xml.document import Document, Findings, child, children
+from shipcosim.ssp.xml.document import AnyPath, Document, Findings, child, children
+from shipcosim.temporary import temporary_folder
 
 EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SSP1/SystemStructureDescription"
   version="1.0" name="">
@@ -23,9 +22,7 @@ EMPTY = """<ssd:SystemStructureDescription xmlns:ssd="http://ssp-standard.org/SS
 """
 
 
-def read(
-    path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] | None = None
-) -> SystemStructure:
+def read(path: AnyPath, *, fmus: Iterable[AnyPath] | None = None) -> SystemStructure:
     """Read a system structure to look at it, change it, run it, write it.
 
     Parameters
@@ -49,7 +46,7 @@ def read(
     findings = Findings()
     if osp_file(path):
         found = "An OspSystemStructure.xml cannot be edited."
-        raise ShipcosimError(Problem(str(path), found, "`simulate` and `read_system` take it."))
+        raise error_at(str(path), found, "`simulate` and `read_system` take it.")
     package = open_package(
         path, findings, library.fmus(path, build=False) if fmus is None else fmus
     )
@@ -78,7 +75,7 @@ def new(name: str) -> SystemStructure:
     SystemStructure
     """
     # A package in a temporary folder, until it is written.
-    folder = tempfile.TemporaryDirectory(prefix="shipcosim-")
+    folder = temporary_folder()
     root = etree.fromstring(EMPTY.encode())
     for element in (root, *children(root, "ssd:System")):
         element.set("name", name)

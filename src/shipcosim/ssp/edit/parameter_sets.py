@@ -234,7 +234,7 @@ class Sets:
                 names.follow(one.binding, "prefix", drop)
             elif not one.shared:
                 listed = children(one.root, "ssv:Parameters", "ssv:Parameter")
-                if any([names.follow(part, "name", remove_parameter) for part in listed]):
+                if any(names.follow(part, "name", remove_parameter) for part in listed):
                     self.keep(one.file, one.root)
 
     def _rename_targets(self, mapping: etree._Element, names: "_Names") -> None:
@@ -243,10 +243,7 @@ class Sets:
         if root is None:
             return
         if any(
-            [
-                names.follow(part, "target", root.remove)
-                for part in children(root, "ssm:MappingEntry")
-            ]
+            names.follow(part, "target", root.remove) for part in children(root, "ssm:MappingEntry")
         ):
             self.keep(file, root)
 

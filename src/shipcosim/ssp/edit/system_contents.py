@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from os import PathLike
 from pathlib import Path
 from typing import Self
 
@@ -16,7 +15,7 @@ from shipcosim.ssp.edit.start_values import StartValues
 from shipcosim.ssp.flatten.system import Component, System
 from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.xml.annotations import step_sizes
-from shipcosim.ssp.xml.document import children
+from shipcosim.ssp.xml.document import AnyPath, children
 
 
 class SystemContents:
@@ -178,7 +177,7 @@ class SystemContents:
         """Copy the system; both can then be changed independently."""
         return type(self)(self._draft.copy())
 
-    def write(self, path: str | PathLike[str], *, fmus: bool = True) -> None:
+    def write(self, path: AnyPath, *, fmus: bool = True) -> None:
         """Write the system with all its files; unchanged parts stay byte by byte the same.
 
         Parameters

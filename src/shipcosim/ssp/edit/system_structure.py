@@ -5,7 +5,6 @@ geometry, descriptions, files of any kind in the package.
 """
 
 from collections.abc import Iterable
-from os import PathLike
 from pathlib import Path
 
 from shipcosim.errors import suggestion
@@ -15,7 +14,7 @@ from shipcosim.ssp.edit.system_contents import SystemContents
 from shipcosim.ssp.fmu.reader import read_fmu
 from shipcosim.ssp.read.structure import KIND_NAMES
 from shipcosim.ssp.xml.definitions import read_units
-from shipcosim.ssp.xml.document import children
+from shipcosim.ssp.xml.document import AnyPath, children
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import find_unit
 
@@ -40,7 +39,7 @@ class SystemStructure(SystemContents):
     def add_component(
         self,
         name: str,
-        fmu: str | PathLike[str],
+        fmu: AnyPath,
         *,
         kinds: Iterable[str] = ("input", "output"),
         implementation: str | None = None,
@@ -221,9 +220,7 @@ class SystemStructure(SystemContents):
         with self.changes():
             self.parameters.put(name, value, unit, description, tolerance)
 
-    def bind(
-        self, source: str | PathLike[str], element: str = "", *, prefix: str | None = None
-    ) -> None:
+    def bind(self, source: AnyPath, element: str = "", *, prefix: str | None = None) -> None:
         """Bind a parameter set in a file to an element or, without one, to the outermost system; the last one wins.
 
         Parameters
@@ -243,7 +240,7 @@ class SystemStructure(SystemContents):
         with self.changes():
             bindings.bind(self._draft, source, element, prefix)
 
-    def unbind(self, source: str | PathLike[str], element: str = "") -> None:
+    def unbind(self, source: AnyPath, element: str = "") -> None:
         """Remove the binding of a parameter set in a file from an element.
 
         Parameters

@@ -1,22 +1,19 @@
 """Write parameter sets, and pack systems into an .ssp."""
 
-import os
 from collections.abc import Iterable, Mapping
-from contextlib import suppress
 from copy import deepcopy
-from os import PathLike
 from pathlib import Path
 from urllib.parse import quote
 
 import lxml.etree as etree
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.ssp.edit.parameter_sets import write_value
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.read.package import open_package
 from shipcosim.ssp.read.parameters import ParameterValue
-from shipcosim.ssp.xml.archive import write_archive
-from shipcosim.ssp.xml.document import Findings, qualified
+from shipcosim.ssp.xml.archive import replaced, write_archive
+from shipcosim.ssp.xml.document import AnyPath, Findings, qualified
 from shipcosim.ssp.xml.markup import add, ensure, to_bytes
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import find_unit
@@ -59,14 +56,12 @@ def parameter(
     # A unit must be convertible, or the value has no meaning.
     defined = find_unit(unit)
     if defined is not None and defined.exponents is None:
-        raise ShipcosimError(
-            Problem(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
-        )
+        raise error_at(name, f"The unit '{unit}' is not known.", "Spell it as in FMI: 'kg.m2/s'.")
     kind = "Real" if unit is not None and type(value) is int else KIND_OF[type(value)]
     return ParameterValue(name, kind, value, defined, description, tolerance=tolerance)
 
 
-def write_ssv(path: str | PathLike[str], name: str, values: Iterable[ParameterValue]) -> None:
+def write_ssv(path: AnyPath, name: str, values: Iterable[ParameterValue]) -> None:
     """Write a parameter set; complete or not at all.
 
     Parameters
@@ -98,21 +93,11 @@ def write_file(path: Path, data: bytes) -> None:
     ShipcosimError
         If it cannot be written.
     """
-    # Write next to the file, then replace it in one step.
-    partial = path.with_name(path.name + ".part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(path) as partial:
         partial.write_bytes(data)
-        os.replace(partial, path)
-    except OSError as error:
-        with suppress(OSError):
-            partial.unlink()
-        raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
 
 
-def pack(
-    folder: str | PathLike[str], fmus: Iterable[str | PathLike[str]], out: str | PathLike[str]
-) -> None:
+def pack(folder: AnyPath, fmus: Iterable[AnyPath], out: AnyPath) -> None:
     """Pack a folder with a SystemStructure.ssd and its FMUs into an .ssp; the same input gives the same bytes.
 
     Parameters

@@ -17,7 +17,7 @@ from shipcosim.ssp.flatten.system import Component, System
 from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
-from shipcosim.ssp.read.structure import Experiment, Structure
+from shipcosim.ssp.read.structure import Structure
 from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Findings, read_document
 
@@ -96,7 +96,10 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
     connections = connect(tree, findings)
     settings = Settings(tree, findings)
     settings.apply()
-    experiment = _experiment(structure)
+    experiment = structure.experiment
+    experiment = replace(
+        experiment, step_size=experiment.step_size or structure.system.annotated_step_size
+    )
     components = with_whole_steps(components_of(tree, settings), experiment.step_size, findings)
     _check_names(tree, findings)
     for component in components.values():
@@ -159,13 +162,6 @@ def _is_given(connection: Connection, tree: Hierarchy) -> bool:
     return owner is None and tree.ports[Key((), name)].kind in ("parameter", "structuralParameter")
 
 
-def _experiment(structure: Structure) -> Experiment:
-    experiment = structure.experiment
-    return replace(
-        experiment, step_size=experiment.step_size or structure.system.annotated_step_size
-    )
-
-
 def _check_names(tree: Hierarchy, findings: Findings) -> None:
     """Report components with the same full name, which results could not tell apart."""
     seen = {}
@@ -176,6 +172,10 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
                 element.place, f"Two components have the full name '{name}'.", "Rename one of them."
             )
         seen[name] = element
+    for key, port in tree.ports.items():
+        if key.path == () and port.owner == "system" and key.name == "time":
+            found = "A connector of the system is called 'time', as the time of the results."
+            findings.error(port.place, found, "Rename it.")
 
 
 def remark_unconnected(

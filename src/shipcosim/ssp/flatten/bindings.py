@@ -8,7 +8,13 @@ from shipcosim.ssp.flatten.array_elements import element_values
 from shipcosim.ssp.flatten.hierarchy import ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Setting
 from shipcosim.ssp.fmu.description import FmuDescription
-from shipcosim.ssp.read.parameters import MappingEntry, ParameterSet, ParameterValue
+from shipcosim.ssp.read.parameters import (
+    MappingEntry,
+    ParameterSet,
+    ParameterValue,
+    read_mapping,
+    read_parameter_set,
+)
 from shipcosim.ssp.read.structure import Binding
 
 
@@ -42,11 +48,11 @@ def take_bindings(
         if document is None:
             continue
         # Prefix and mapping are alternatives of renaming: the mapping refers to prefixed names.
-        values = tree.library.parameter_set(document)
+        values = tree.library.parsed(read_parameter_set, document)
         mapping = None
         if binding.mapping is not None:
             content = tree.library.content(binding.mapping, place, fmu)
-            mapping = () if content is None else tree.library.mapping(content)
+            mapping = () if content is None else tree.library.parsed(read_mapping, content)
         if mapping is None:
             tree.settings += _settings(tree, values, path, binding.prefix, near)
         else:

@@ -3,6 +3,7 @@
 from shipcosim.errors import it_has, suggestion
 from shipcosim.ssp.flatten.hierarchy import Dictionaries, ElementPath, Hierarchy, Surroundings
 from shipcosim.ssp.flatten.ports import Key, Port, Wire
+from shipcosim.ssp.read.parameters import read_dictionary
 from shipcosim.ssp.read.structure import DictionaryReference, SystemElement
 
 
@@ -30,7 +31,7 @@ def dictionaries_of(
     found = {}
     for name, source in element.dictionaries.items():
         document = tree.library.content(source, place)
-        entries = {} if document is None else tree.library.dictionary(document)
+        entries = {} if document is None else tree.library.parsed(read_dictionary, document)
         found[name] = (*path, "", name), entries
     return found
 

@@ -19,7 +19,6 @@ from shipcosim.ssp.read.structure import (
     Binding,
     ComponentElement,
     DictionaryReference,
-    Link,
     Structure,
     SystemElement,
 )
@@ -87,23 +86,20 @@ def _take_system(
         else:
             _take_component(tree, part, inner, place)
     for link in element.links:
-        _take_connection(tree, link, element, path)
+        # Wires of a connection; one per element for arrays.
+        owners = [
+            tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in link.ends
+        ]
+        start, end = (
+            known.get(name, ()) for known, (_, name) in zip(owners, link.ends, strict=True)
+        )
+        for single in element_links(link, start, end, tree.findings):
+            wire = wire_of(single, element, path, tree)
+            tree.wires += [] if wire is None else [wire]
     # Bindings from the inside out: outer values are applied later and win.
     take_bindings(tree, element.bindings, path, place)
     for bindings, outer in outer_bindings:
         take_bindings(tree, bindings, path, outer)
-
-
-def _take_connection(
-    tree: Hierarchy, link: Link, element: SystemElement, path: ElementPath
-) -> None:
-    """Wires of a connection; one per element for arrays."""
-    ends = ((link.start_element, link.start_connector), (link.end_element, link.end_connector))
-    owners = [tree.arrays.get(path if owner is None else (*path, owner), {}) for owner, _ in ends]
-    start, end = (known.get(name, ()) for known, (_, name) in zip(owners, ends, strict=True))
-    for single in element_links(link, start, end, tree.findings):
-        wire = wire_of(single, element, path, tree)
-        tree.wires += [] if wire is None else [wire]
 
 
 def _take_component(

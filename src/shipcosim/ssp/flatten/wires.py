@@ -61,10 +61,7 @@ def wire_of(link: Link, system: SystemElement, path: ElementPath, tree: Hierarch
     """
     ends = [
         End(element, name, Key(path if element is None else (*path, element), name))
-        for element, name in (
-            (link.start_element, link.start_connector),
-            (link.end_element, link.end_connector),
-        )
+        for element, name in link.ends
     ]
     # Both ends are checked before returning, so that both are reported.
     exist = [_exists(end, ends, link, system, tree) for end in ends]

@@ -3,7 +3,6 @@
 Reference: FMI 1.0 for co-simulation and for model exchange, FMI 2.0.4 and FMI 3.0.1, section 2 of each.
 """
 
-from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
@@ -14,11 +13,19 @@ from shipcosim.ssp.fmu.fmi1 import interfaces_of
 from shipcosim.ssp.fmu.variables import read_variables
 from shipcosim.ssp.xml.archive import entries, read_entry
 from shipcosim.ssp.xml.definitions import note_units, read_units
-from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, local, parse, parts_of
+from shipcosim.ssp.xml.document import (
+    LARGEST_FILE,
+    AnyPath,
+    Document,
+    Findings,
+    local,
+    parse,
+    parts_of,
+)
 from shipcosim.ssp.xml.validation import validate
 
 
-def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescription:
+def read_fmu(path: AnyPath, shown: str | None = None) -> FmuDescription:
     """Read the description of an FMU without running any of it.
 
     Parameters
@@ -45,7 +52,7 @@ def read_fmu(path: str | PathLike[str], shown: str | None = None) -> FmuDescript
 
 
 def describe_fmu(
-    path: str | PathLike[str], findings: Findings, shown: str | None = None
+    path: AnyPath, findings: Findings, shown: str | None = None
 ) -> FmuDescription | None:
     """Description of an FMU, or None if it cannot be read; problems are collected.
 
@@ -119,6 +126,8 @@ def _description(
     n_states = int(root.get("numberOfContinuousStates") or 0) or len(
         [part for part in derivatives if local(part)]
     )
+    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
+    experiment = {name: float(text) for name, text in given.items()}
     return FmuDescription(
         path=path,
         fmi_version=version,
@@ -130,7 +139,7 @@ def _description(
         interfaces=interfaces_of(root) if version == "1.0" else _interfaces(root),
         units=read_units(parts_of(root, "UnitDefinitions")),
         platforms=tuple(sorted(platforms)),
-        experiment=_experiment(root),
+        experiment=experiment,
         n_states=n_states,
         n_event_indicators=int(root.get("numberOfEventIndicators") or len(_indicators(root))),
     )
@@ -144,8 +153,3 @@ def _interfaces(root: etree._Element) -> dict[str, dict[str, str]]:
 def _indicators(root: etree._Element) -> list[etree._Element]:
     """Event indicators that FMI 3.0 lists."""
     return [part for part in parts_of(root, "ModelStructure") if local(part) == "EventIndicator"]
-
-
-def _experiment(root: etree._Element) -> dict[str, float]:
-    given = next((dict(part.attrib) for part in root if local(part) == "DefaultExperiment"), {})
-    return {name: float(text) for name, text in given.items()}

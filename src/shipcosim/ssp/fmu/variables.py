@@ -8,7 +8,7 @@ import lxml.etree as etree
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.fmu.fmi1 import is_negated, items_of, traits_of
 from shipcosim.ssp.xml.document import Document, Findings, local, parts_of
-from shipcosim.ssp.xml.values import KINDS, Value, read_value
+from shipcosim.ssp.xml.values import KINDS, Value, read_value, typed_part
 
 Sizes = Mapping[str, tuple[str, str | None]]
 """Name and start value of the variables by value reference, for dimensions of arrays that are given by one of them."""
@@ -80,7 +80,7 @@ def _type_element(element: etree._Element) -> etree._Element | None:
     """The element that carries type, unit, start and bounds."""
     if local(element) != "ScalarVariable":
         return element if local(element) in KINDS else None
-    return next((part for part in element if local(part) in KINDS), None)
+    return typed_part(element)
 
 
 def _variable(

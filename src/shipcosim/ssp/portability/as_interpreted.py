@@ -5,7 +5,6 @@ Refusals and crashes are not considered; see `shipcosim.ssp.portability.support_
 
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, replace
-from os import PathLike
 
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.flatten.system import Component, System
@@ -14,6 +13,7 @@ from shipcosim.ssp.portability.connection_features import linear_without_factor
 from shipcosim.ssp.portability.structure_features import hints_of_others, model_exchange_asked
 from shipcosim.ssp.portability.subject import Subject, subject_of
 from shipcosim.ssp.read.parameters import ParameterValue, Transformation
+from shipcosim.ssp.xml.document import AnyPath
 from shipcosim.ssp.xml.values import Value
 
 
@@ -33,7 +33,7 @@ class Taken:
     system: System
 
 
-def told_set(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()) -> str | None:
+def told_set(path: AnyPath, *, fmus: Iterable[AnyPath] = ()) -> str | None:
     """Name of the first parameter set on a component, which ecos is given, or None.
 
     Parameters
@@ -50,7 +50,7 @@ def told_set(path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] =
 
 
 def taken_by(
-    host: str, path: str | PathLike[str], *, fmus: Iterable[str | PathLike[str]] = ()
+    host: str, path: AnyPath, *, fmus: Iterable[AnyPath] = ()
 ) -> tuple[list[Taken], System | None]:
     """Deviations in how a tool interprets a system, and the system with all of them.
 
@@ -132,7 +132,7 @@ def _connections(host: str, subject: Subject, system: System) -> tuple[str, Syst
     # Connections of the file with the transformation that is written.
     links = {}
     for link, _, _ in subject.links:
-        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
+        ends = link.ends
         how = link.transformation
         linear = how if how is not None and how.kind == "Linear" else Transformation()
         links[ends] = (linear.factor, linear.offset), link.place

@@ -2,14 +2,13 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from os import PathLike
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, error_at, suggestion
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.portability.subject import Subject, subject_of
 from shipcosim.ssp.portability.support_table import FEATURES, HOSTS, TOLD, Feature
-from shipcosim.ssp.xml.document import Findings, read_document
+from shipcosim.ssp.xml.document import AnyPath, Findings, read_document
 
 
 def check_host(host: str) -> None:
@@ -21,16 +20,14 @@ def check_host(host: str) -> None:
         If it is not one of HOSTS.
     """
     if host not in HOSTS:
-        raise ShipcosimError(
-            Problem(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS))
-        )
+        raise error_at(f"--for {host}", "Nothing is known of this tool.", suggestion(host, HOSTS))
 
 
 def check_for(
     host: str,
-    path: str | PathLike[str],
+    path: AnyPath,
     *,
-    fmus: Iterable[str | PathLike[str]] = (),
+    fmus: Iterable[AnyPath] = (),
     components: Mapping[str, Path] | None = None,
 ) -> list[Problem]:
     """Features of a file that a tool would ignore, misread, refuse or crash on.
@@ -84,7 +81,7 @@ def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem
 
 
 def _osp_subject(
-    path: Path, fmus: Iterable[str | PathLike[str]], components: Mapping[str, Path] | None
+    path: Path, fmus: Iterable[AnyPath], components: Mapping[str, Path] | None
 ) -> Subject | None:
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings, components)

@@ -30,10 +30,7 @@ def undeclared_connectors(subject: Subject) -> Found:
         for connector in getattr(part, "connectors", ())
     }
     for link, _, _ in subject.links:
-        for end in (
-            (link.start_element, link.start_connector),
-            (link.end_element, link.end_connector),
-        ):
+        for end in link.ends:
             if end not in declared:
                 yield link.place, f"{'.'.join(filter(None, end))} is not declared as a connector"
 
@@ -93,8 +90,7 @@ def parameter_connections(subject: Subject) -> Found:
     # Connections that act at initialisation only.
     initial = {(c.source, c.target): c for c in subject.system.connections if c.initial}
     for link, _, _ in subject.links:
-        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
-        if ends in initial or ends[::-1] in initial:
+        if link.ends in initial or link.ends[::-1] in initial:
             yield link.place, ""
 
 
@@ -117,8 +113,8 @@ def unit_conversions(subject: Subject) -> Found:
     # The flat connection includes unit conversions; the written one does not.
     flat = {(c.source, c.target): c for c in subject.system.connections}
     for link, _, _ in subject.links:
-        ends = (link.start_element, link.start_connector), (link.end_element, link.end_connector)
-        whole = flat.get(ends) or flat.get((ends[1], ends[0]))
+        start, end = link.ends
+        whole = flat.get((start, end)) or flat.get((end, start))
         how = link.transformation
         if whole is None or (how is not None and how.kind != "Linear"):
             continue

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from os import PathLike
 from pathlib import Path
 
 import lxml.etree as etree
@@ -25,7 +24,7 @@ from shipcosim.ssp.read.structure import (
     SystemElement,
 )
 from shipcosim.ssp.read.structure_reader import read_structure
-from shipcosim.ssp.xml.document import Document, Findings, local
+from shipcosim.ssp.xml.document import AnyPath, Document, Findings, local
 from shipcosim.ssp.xml.values import KINDS, SSP_1_TYPES
 
 Found = Iterator[tuple[str, str]]
@@ -139,8 +138,8 @@ class Subject:
 
 
 def subject_of(
-    path: str | PathLike[str],
-    fmus: Iterable[str | PathLike[str]] = (),
+    path: AnyPath,
+    fmus: Iterable[AnyPath] = (),
     components: Mapping[str, Path] | None = None,
 ) -> Subject | None:
     """Subject of an SSP, or None if it has errors.

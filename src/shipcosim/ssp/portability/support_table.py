@@ -47,7 +47,7 @@ class Feature:
 
 
 def _both(verdict: str) -> dict[str, str]:
-    return {host: verdict for host in HOSTS}
+    return dict.fromkeys(HOSTS, verdict)
 
 
 def _libcosim(verdict: str) -> dict[str, str]:

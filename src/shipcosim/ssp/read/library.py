@@ -7,14 +7,6 @@ from typing import Any, Protocol
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.read.package import Package, open_package, read_in_component
-from shipcosim.ssp.read.parameters import (
-    DictionaryEntry,
-    MappingEntry,
-    ParameterSet,
-    read_dictionary,
-    read_mapping,
-    read_parameter_set,
-)
 from shipcosim.ssp.read.structure import Source, Structure
 from shipcosim.ssp.read.structure_reader import read_structure
 from shipcosim.ssp.xml.document import Document, Findings
@@ -143,23 +135,9 @@ class Library:
     def _inside(self, fmu: FmuDescription, source: Source) -> Document | None:
         return read_in_component(fmu, source.uri or "", source.place, self.findings)
 
-    def parameter_set(self, document: Document) -> ParameterSet:
-        """Parameter set of a document."""
-        return self._once(
-            ("set", id(document.root)), lambda: read_parameter_set(document, self.findings)
-        )
-
-    def mapping(self, document: Document) -> tuple[MappingEntry, ...]:
-        """Entries of a parameter mapping."""
-        return self._once(
-            ("mapping", id(document.root)), lambda: read_mapping(document, self.findings)
-        )
-
-    def dictionary(self, document: Document) -> dict[str, DictionaryEntry]:
-        """Entries of a signal dictionary by name."""
-        return self._once(
-            ("dictionary", id(document.root)), lambda: read_dictionary(document, self.findings)
-        )
+    def parsed(self, read: Callable[[Document, Findings], Any], document: Document) -> Any:
+        """What `read_parameter_set`, `read_mapping` or `read_dictionary` reads from a document."""
+        return self._once((read, id(document.root)), lambda: read(document, self.findings))
 
     def fmu(self, file: Path, package: Package) -> FmuDescription | None:
         """Description of an FMU, or None."""

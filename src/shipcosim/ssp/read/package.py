@@ -3,7 +3,6 @@
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from os import PathLike
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
@@ -11,7 +10,15 @@ from shipcosim.errors import ShipcosimError, it_has, suggestion
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.addresses import meant
 from shipcosim.ssp.xml.archive import read_entry, unpack
-from shipcosim.ssp.xml.document import LARGEST_FILE, Document, Findings, parsed, read_document
+from shipcosim.ssp.xml.document import (
+    LARGEST_FILE,
+    AnyPath,
+    Document,
+    Findings,
+    parsed,
+    read_document,
+)
+from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
@@ -50,7 +57,7 @@ class Package:
     located: dict[str, Path] = field(default_factory=dict, repr=False, compare=False)
     moved: dict[str, str] = field(default_factory=dict, repr=False, compare=False)
 
-    def show(self, path: str | PathLike[str]) -> str:
+    def show(self, path: AnyPath) -> str:
         """Name of a file of the package for messages."""
         path = Path(path).resolve()
         folder = self.folder.resolve()
@@ -68,7 +75,7 @@ class Package:
         """The SSD, or None if it cannot be read."""
         return self.read(self.folder / self.ssd, findings)
 
-    def read(self, path: str | PathLike[str], findings: Findings) -> Document | None:
+    def read(self, path: AnyPath, findings: Findings) -> Document | None:
         """Document of one of the package's files."""
         held = self.held.get(Path(path).resolve())
         return (
@@ -183,9 +190,9 @@ class Package:
 
 
 def open_package(
-    path: str | PathLike[str],
+    path: AnyPath,
     findings: Findings,
-    fmus: Iterable[str | PathLike[str]] = (),
+    fmus: Iterable[AnyPath] = (),
     shown: str | None = None,
 ) -> Package | None:
     """Open the package of a path, or None with an error.
@@ -218,7 +225,7 @@ def open_package(
         return None
     if path.suffix.lower() == ".ssd":
         return Package(path.parent, str(Path(shown).parent), path.name, fmus)
-    unpacked = tempfile.TemporaryDirectory(prefix="shipcosim-")
+    unpacked = temporary_folder()
     try:
         unpack(path, unpacked.name, shown)
     except ShipcosimError as error:

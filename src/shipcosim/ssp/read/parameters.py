@@ -5,7 +5,6 @@ Reference: System Structure and Parameterization 1.0, sections 4.5, 6, 7 and 8.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from os import PathLike
 
 import lxml.etree as etree
 
@@ -13,6 +12,7 @@ from shipcosim.ssp.read.attributes import attribute
 from shipcosim.ssp.xml.definitions import note_units, read_enumerations, read_units
 from shipcosim.ssp.xml.document import (
     NAMESPACES,
+    AnyPath,
     Document,
     Findings,
     children,
@@ -23,7 +23,7 @@ from shipcosim.ssp.xml.document import (
 )
 from shipcosim.ssp.xml.mend import mend
 from shipcosim.ssp.xml.validation import validate
-from shipcosim.ssp.xml.values import KINDS, Value, read_value
+from shipcosim.ssp.xml.values import KINDS, Value, read_value, typed_part
 from shipcosim.units import Unit, find_unit
 
 TOLERANCE = "shipcosim.tolerance"
@@ -99,7 +99,7 @@ class ParameterSet:
     file: str = ""
 
 
-ParameterSets = str | PathLike[str] | ParameterSet | Iterable[str | PathLike[str] | ParameterSet]
+ParameterSets = AnyPath | ParameterSet | Iterable[AnyPath | ParameterSet]
 """Parameter sets given for a run: one or several, each read already or the path of its .ssv."""
 
 
@@ -227,7 +227,7 @@ def _parameter(
     document: Document, element: etree._Element, units: Mapping[str, Unit], findings: Findings
 ) -> ParameterValue | None:
     name = element.get("name", "")
-    typed = next((part for part in element if local(part) in KINDS), None)
+    typed = typed_part(element)
     if typed is None or not name:
         findings.error(
             document.place(element, name),
@@ -408,7 +408,7 @@ def read_dictionary(document: Document, findings: Findings) -> dict[str, Diction
     entries = {}
     # Names must differ; entries without a type are left out.
     for element in children(root, "ssb:DictionaryEntry"):
-        typed = next((part for part in element if local(part) in KINDS), None)
+        typed = typed_part(element)
         if element.get("name") in entries:
             place = document.place(element, element.get("name"))
             findings.error(place, "The dictionary has this entry already.", "Names must differ.")

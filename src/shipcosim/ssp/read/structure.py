@@ -93,6 +93,11 @@ class Link:
     start_indices: tuple[int, ...] = ()
     end_indices: tuple[int, ...] = ()
 
+    @property
+    def ends(self) -> tuple[tuple[str | None, str], tuple[str | None, str]]:
+        """Element and connector of the start, and of the end."""
+        return (self.start_element, self.start_connector), (self.end_element, self.end_connector)
+
 
 @dataclass(frozen=True)
 class Source:

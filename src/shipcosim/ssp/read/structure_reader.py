@@ -34,7 +34,7 @@ from shipcosim.ssp.xml.document import (
 )
 from shipcosim.ssp.xml.schemas import is_slip
 from shipcosim.ssp.xml.validation import validate
-from shipcosim.ssp.xml.values import KINDS
+from shipcosim.ssp.xml.values import KINDS, typed_part
 from shipcosim.units import find_unit
 
 
@@ -163,7 +163,7 @@ class _Reader:
 
     def connector(self, element: etree._Element, owner: str) -> Connector:
         # The type is an element; without one the SSD leaves it open.
-        typed = next((part for part in element if local(part) in KINDS), None)
+        typed = typed_part(element)
         name = element.get("name", "")
         kind = element.get("kind", "")
         place = self.place(element, f"{owner}.{name}")

@@ -6,12 +6,12 @@ import struct
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Mapping
-from contextlib import suppress
-from os import PathLike
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.ssp.xml.document import AnyPath
 
 MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
@@ -33,9 +33,7 @@ CANNOT = (
 )  # sizes and places that a damaged directory states can be absurd
 
 
-def unpack(
-    path: str | PathLike[str], folder: str | PathLike[str], shown: str | None = None
-) -> None:
+def unpack(path: AnyPath, folder: AnyPath, shown: str | None = None) -> None:
     """Unpack an archive into a folder, within the limits and not outside the folder.
 
     Parameters
@@ -63,12 +61,12 @@ def unpack(
             raise _damaged(shown, error) from None
         except OSError as error:
             found = f"Cannot be unpacked into {folder}: {error.strerror}."
-            raise ShipcosimError(
-                Problem(shown, found, "Make room there, or name another folder in TMPDIR.")
+            raise error_at(
+                shown, found, "Make room there, or name another folder in TMPDIR."
             ) from None
 
 
-def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
+def entries(path: AnyPath, shown: str | None = None) -> list[str]:
     """Names of an archive's files, read without unpacking.
 
     Raises
@@ -82,9 +80,7 @@ def entries(path: str | PathLike[str], shown: str | None = None) -> list[str]:
         return [entry.filename for entry in archive.infolist() if not entry.is_dir()]
 
 
-def read_entry(
-    path: str | PathLike[str], name: str, limit: int, shown: str | None = None
-) -> bytes | None:
+def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -> bytes | None:
     """Bytes of one file of an archive, or None if it is missing.
 
     Parameters
@@ -113,20 +109,20 @@ def read_entry(
             return None
         # The stated size first: a large file is never read.
         if archive.getinfo(name).file_size > limit:
-            raise ShipcosimError(Problem(shown, f"{name} is larger than {limit >> 20} MiB."))
+            raise error_at(shown, f"{name} is larger than {limit >> 20} MiB.")
         try:
             return archive.read(name)
         except CANNOT as error:
             raise _damaged(shown, error) from None
 
 
-def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
+def _opened(path: AnyPath, shown: str) -> zipfile.ZipFile:
     try:
         archive = zipfile.ZipFile(path)
     except BROKEN as error:
         raise _damaged(shown, error) from None
     except OSError as error:
-        raise ShipcosimError(Problem(shown, f"Cannot be read: {error.strerror}.")) from None
+        raise error_at(shown, f"Cannot be read: {error.strerror}.") from None
     # The first entry must start at 0: otherwise this is the tail of another archive.
     if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:
         archive.close()  # cut off within an archive that it contains, whose directory was taken for its own
@@ -135,10 +131,8 @@ def _opened(path: str | PathLike[str], shown: str) -> zipfile.ZipFile:
 
 
 def _damaged(shown: str, error: object) -> ShipcosimError:
-    return ShipcosimError(
-        Problem(
-            shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."
-        )
+    return error_at(
+        shown, f"Damaged or incomplete archive: {error}.", "Build, copy or export it again."
     )
 
 
@@ -199,7 +193,7 @@ def _unsafe(entry: zipfile.ZipInfo) -> str | None:
     return None
 
 
-def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None:
+def write_archive(path: AnyPath, files: Mapping[str, bytes]) -> None:
     """Write an archive whose bytes depend only on names and contents; complete or not at all.
 
     Parameters
@@ -214,23 +208,34 @@ def write_archive(path: str | PathLike[str], files: Mapping[str, bytes]) -> None
     ShipcosimError
         If it cannot be written.
     """
-    path = Path(path)
+    # Fixed order, date and attributes: the same files give the same bytes.
+    with replaced(Path(path)) as partial, zipfile.ZipFile(partial, "w") as archive:
+        for name in sorted(files):
+            entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
+            entry.create_system = 3
+            entry.external_attr = 0o644 << 16
+            # FMUs and SSPs are compressed already.
+            entry.compress_type = (
+                zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
+            )
+            archive.writestr(entry, files[name], compresslevel=9)
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Path of a file to write, which then replaces another in one step; its folder is made if needed.
+
+    Raises
+    ------
+    ShipcosimError
+        If it cannot be written.
+    """
     partial = path.with_name(path.name + ".part")
     try:
-        # Fixed order, date and attributes: the same files give the same bytes.
         path.parent.mkdir(parents=True, exist_ok=True)
-        with zipfile.ZipFile(partial, "w") as archive:
-            for name in sorted(files):
-                entry = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))
-                entry.create_system = 3
-                entry.external_attr = 0o644 << 16
-                # FMUs and SSPs are compressed already.
-                entry.compress_type = (
-                    zipfile.ZIP_STORED if name.endswith((".fmu", ".ssp")) else zipfile.ZIP_DEFLATED
-                )
-                archive.writestr(entry, files[name], compresslevel=9)
+        yield partial
         os.replace(partial, path)
     except OSError as error:
         with suppress(OSError):
             partial.unlink()
-        raise ShipcosimError(Problem(str(path), f"Cannot be written: {error.strerror}.")) from None
+        raise error_at(str(path), f"Cannot be written: {error.strerror}.") from None

@@ -37,6 +37,10 @@ UNDECLARED = "Namespace prefix"
 LARGEST_FILE = 64 * 2**20  # bytes; the largest model descriptions in the wild are a few MB
 
 
+AnyPath = str | PathLike[str]
+"""A path as users give it."""
+
+
 class Findings:
     """Problems collected so far, so that a user sees all of them at once."""
 
@@ -268,7 +272,7 @@ def parse(
     return root
 
 
-def read_document(path: str | PathLike[str], shown: str, findings: Findings) -> Document | None:
+def read_document(path: AnyPath, shown: str, findings: Findings) -> Document | None:
     """Document of a file on disk, or None with an error.
 
     Parameters

@@ -4,6 +4,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import lxml.etree as etree
+
+from shipcosim.ssp.xml.document import local
+
 KINDS = {
     "Real": "Real",
     "Float64": "Real",
@@ -87,3 +91,8 @@ def text_of(value: Value) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     return value.hex() if isinstance(value, bytes) else str(value)
+
+
+def typed_part(element: etree._Element) -> etree._Element | None:
+    """Element within another that carries its type, as <Real>; None without one."""
+    return next((part for part in element if local(part) in KINDS), None)

@@ -16,7 +16,7 @@ from shipcosim.diagnose.reference.reference import read_reference
 from shipcosim.diagnose.reference.remaining_errors import remaining_errors
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.errors import ShipcosimError
-from shipcosim.report.calibration.page import write_calibration
+from shipcosim.report.calibration.page import render
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def made(tmp_path_factory):
     logs, told = [ships.logs(3)["well"], longer], []
     ship = calibrate(logs, twin.system(), progress=lambda step, *_: told.append(step), out=folder)
     assert list(dict.fromkeys(told)) == list(steps_of(logs))
-    write_calibration(ship, folder / "report.html")
+    (folder / "report.html").write_text(render(ship), encoding="utf-8")
     return ship, folder
 
 

@@ -17,7 +17,7 @@ from shipcosim.diagnose.joint_pipeline import JointDiagnosis, _unusable, diagnos
 from shipcosim.diagnose.reference.common_findings import Shared
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.errors import ShipcosimError
-from shipcosim.report.joint.page import render, write_joint
+from shipcosim.report.joint.page import render
 from shipcosim.report.joint.words import outcome
 from truth import draw
 
@@ -213,7 +213,7 @@ def test_the_common_cause_and_nothing_else_is_in_the_extended_system(lost):
 
 def test_the_page_says_the_cause_its_sizes_and_the_errors_of_each_log(lost, tmp_path, capsys):
     found, *_ = lost
-    write_joint(found, tmp_path / "report.html")
+    (tmp_path / "report.html").write_text(render(found), encoding="utf-8")
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     for text in (
         "the starboard thruster delivers",

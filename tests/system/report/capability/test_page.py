@@ -7,7 +7,7 @@ import pytest
 from shipcosim.capability import capability_of, notation, read_vessel
 from shipcosim.capability.conditions import CONDITIONS
 from shipcosim.library import build_stale
-from shipcosim.report.capability.page import write_capability
+from shipcosim.report.capability.page import render
 from shipcosim.ships import read_ship
 from shipcosim.ssp import read_system
 
@@ -21,7 +21,7 @@ def capability(root):
 @pytest.fixture(scope="module")
 def file(capability, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "report.html"
-    write_capability(capability, path)
+    path.write_text(render(capability), encoding="utf-8")
     return path
 
 

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from shipcosim.report.study import StudyTables
-from shipcosim.report.study.statistics import wilson
+from shipcosim.sweep.summary import wilson
 
 LOST = ["intact", "bow lost", "port lost"]
 COLUMNS = [
@@ -178,7 +178,7 @@ def made_up_summary(runs):
     rows = []
     for (direction, wind, lost), some in runs.groupby(["direction", "wind", "lost"], sort=False):
         known = some["held"].dropna().astype(bool)
-        low, high = wilson(int(known.sum()), len(known))
+        _, low, high = wilson(int(known.sum()), len(known))
         row = {
             "direction": direction,
             "wind": wind,

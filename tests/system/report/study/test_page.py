@@ -9,7 +9,7 @@ from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.report.study import StudyTables, write_study
+from shipcosim.report.study import StudyTables, render
 from shipcosim.report.study.page import page_of
 from shipcosim.report.study.server import study_server
 
@@ -22,7 +22,7 @@ def tables(study_of):
 @pytest.fixture(scope="module")
 def file(tables, tmp_path_factory):
     path = tmp_path_factory.mktemp("study") / "report.html"
-    write_study(tables, path)
+    path.write_text(render(tables), encoding="utf-8")
     return path
 
 
@@ -164,7 +164,7 @@ def test_view_that_cannot_be_drawn_says_why_and_the_others_are(tables):
 
 
 def test_same_study_makes_the_same_page(study_of, file, tmp_path):
-    write_study(study_of(6), tmp_path / "again.html")
+    (tmp_path / "again.html").write_text(render(study_of(6)), encoding="utf-8")
     assert (tmp_path / "again.html").read_bytes() == file.read_bytes()
 
 
@@ -228,7 +228,7 @@ def test_texts_from_files_stay_texts(tables, browse, tmp_path):
             "command": f"shipcosim sweep {evil}",
         }
     )
-    write_study(hostile, tmp_path / "evil.html")
+    (tmp_path / "evil.html").write_text(render(hostile), encoding="utf-8")
     page = browse(tmp_path / "evil.html")
     page.ask("study.show(0)")
     assert page.errors() == [] and page.ask("return document.images.length") == 0
@@ -338,7 +338,7 @@ def test_failed_run_shows_its_error(page, shown):
 @pytest.fixture(scope="module")
 def large(study_of, tmp_path_factory):
     path = tmp_path_factory.mktemp("large") / "report.html"
-    write_study(study_of(300, with_tracks=False), path)
+    path.write_text(render(study_of(300, with_tracks=False)), encoding="utf-8")
     return path
 
 
@@ -359,7 +359,7 @@ def test_page_without_room_for_all_keeps_failed_runs_and_says_what_it_lacks(
     tables, tmp_path, browse, monkeypatch
 ):
     monkeypatch.setattr("shipcosim.report.study.page.BYTES_FOR_RUNS", 4000)
-    write_study(tables, tmp_path / "thin.html")
+    (tmp_path / "thin.html").write_text(render(tables), encoding="utf-8")
     page = browse(tmp_path / "thin.html")
     assert "holds 500 of 648 runs" in page.text("#thinning")
     failed = tables.runs["run"][tables.runs["error"] != ""].tolist()
@@ -381,7 +381,9 @@ def test_studies_of_hardly_any_run_have_a_page(study_of, browse, tmp_path, count
         "tracks": None,
         "tables": {},
     }
-    write_study(with_views(tables, *tables.study["view"], **few), tmp_path / "few.html")
+    (tmp_path / "few.html").write_text(
+        render(with_views(tables, *tables.study["view"], **few)), encoding="utf-8"
+    )
     page = browse(tmp_path / "few.html")
     assert page.errors() == [] and page.text("#count") == f"{count} of {count} runs are chosen"
 
@@ -391,7 +393,9 @@ def test_study_whose_runs_all_failed_has_a_page(study_of, browse, tmp_path):
     runs = tables.runs.assign(
         error="vessel: no", excursion=np.nan, power=np.nan, time_to_3_m=np.nan, held=None
     )
-    write_study(with_views(tables, runs=runs, summary=pd.DataFrame()), tmp_path / "failed.html")
+    (tmp_path / "failed.html").write_text(
+        render(with_views(tables, runs=runs, summary=pd.DataFrame())), encoding="utf-8"
+    )
     page = browse(tmp_path / "failed.html")
     assert page.errors() == [] and "108 of 108 runs failed" in page.text("#verdict")
 

@@ -13,7 +13,9 @@ EVIL = "</script><script>document.title='owned'</script>&amp;\"'"
 
 def page(data):
     """A page whose texts all are hostile."""
-    return Page(EVIL, (Fact(EVIL, EVIL),), Outcome("passed", EVIL, EVIL), (), data)
+    return Page(
+        title=EVIL, facts=(Fact(EVIL, EVIL),), outcome=Outcome("passed", EVIL, EVIL), data=data
+    )
 
 
 def test_texts_are_escaped_wherever_they_stand():

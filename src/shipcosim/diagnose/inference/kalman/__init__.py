@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 __all__ = ["log_likelihoods", "smoothed", "weights", "whitened"]
 
@@ -43,8 +43,8 @@ def library() -> ctypes.CDLL:
     except OSError as error:
         there = sorted(one.stem for end in SUFFIXES.values() for one in FOLDER.glob(f"*{end}"))
         remedy = f"There are filters for {', '.join(there)}; compile.py beside them makes others."
-        raise ShipcosimError(
-            Problem(str(file), f"The diagnosis cannot load its filter: {error}.", remedy)
+        raise error_at(
+            str(file), f"The diagnosis cannot load its filter: {error}.", remedy
         ) from error
 
 

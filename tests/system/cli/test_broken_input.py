@@ -1,0 +1,158 @@
+"""Broken and hostile input: one error with file and place, no control characters, nothing left behind."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from shipcosim.cosim.slaves.unpacked import UnpackedFmus
+from shipcosim.errors import Problem, ShipcosimError, printable, reading
+from shipcosim.native.compiler import is_intact, keep_digest
+from shipcosim.scenario.locations import line_of
+from shipcosim.series import make_table, read_table, write_table
+from shipcosim.temporary import temporary_folder
+
+HEAD = "time [{unit}],north [m],east [m],heading [deg],surge [m/s],sway [m/s],yaw_rate [deg/s]\n"
+# Names as FMI and SSP allow them: any text but those that end in what a header has for a unit.
+NAMES = st.text(
+    st.characters(min_codepoint=32, max_codepoint=0x2FF, exclude_categories=("Cc", "Cs", "Zs")),
+    min_size=1,
+    max_size=20,
+)
+
+
+@given(text=st.text())
+@settings(max_examples=200, deadline=None)
+def test_no_control_character_is_left_in_a_problem(text):
+    shown = str(Problem(text, text, text))
+    assert all(c in "\n\t" or c.isprintable() or ord(c) > 0x9F for c in shown)
+    assert "\x1b" not in shown and printable(printable(text)) == printable(text)
+
+
+@given(names=st.lists(NAMES, min_size=1, max_size=4, unique=True))
+@settings(max_examples=60, deadline=None)
+@pytest.mark.parametrize("ending", [".nc", ".csv"])
+def test_every_name_comes_back_from_a_file(tmp_path_factory, ending, names):
+    names = [name for name in names if name != "time"]
+    times = np.arange(3.0)
+    path = tmp_path_factory.mktemp("names") / f"table{ending}"
+    columns = [(name, times + k, "m", "") for k, name in enumerate(names)]
+    write_table(make_table(times, columns), path)
+    back = read_table(path)
+    assert {str(name) for name in back.data_vars} == set(names)
+    for name, values, *_ in columns:
+        assert np.array_equal(back[name], values)
+
+
+@pytest.mark.parametrize("name", ["a/b", "/", ".", "..", "a.b/c", "%2F", "a//b"])
+def test_names_that_netcdf_cannot_have_are_kept(tmp_path, name):
+    table = make_table(np.arange(2.0), [(name, np.arange(2.0), "m", "")])
+    write_table(table, tmp_path / "table.nc")
+    assert list(read_table(tmp_path / "table.nc").data_vars) == [name]
+
+
+@pytest.mark.parametrize(
+    "error", [ValueError("x"), OSError(5, "Input/output error"), KeyError("k")]
+)
+def test_whatever_a_library_raises_names_the_file(error):
+    with pytest.raises(ShipcosimError, match=r"^log\.csv: cannot be read: "), reading("log.csv"):
+        raise error
+
+
+@given(
+    unit=st.sampled_from(["s", "ms", "us", "ns"]),
+    step=st.sampled_from([1e-9, 1e-6, 1e-3, 0.1, 1.0]),
+    begin=st.sampled_from([0.0, 1.7e9, 1.7e12, 1.7e15, 1.7e18]),
+)
+@settings(max_examples=40, deadline=None)
+def test_a_wrong_unit_of_time_is_said_in_little_memory(call_check, unit, step, begin):
+    rows = "".join(f"{begin + step * k!r},{0.1 * k},{0.2 * k},20,0.2,0,0\n" for k in range(60))
+    size = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}[unit]
+    found = call_check(HEAD.format(unit=unit) + rows)
+    if begin / size > 4.2e9 or step / size < 2e-4:
+        assert any(problem.severity == "error" for problem in found)
+    assert not any("fault of shipcosim" in str(problem) for problem in found)
+
+
+@pytest.fixture(scope="module")
+def call_check(tmp_path_factory):
+    """Function: what the check of a log with this text finds."""
+    from shipcosim.checks import check_any
+
+    path = tmp_path_factory.mktemp("log") / "log.csv"
+
+    def check(text):
+        path.write_text(text, encoding="utf-8")
+        try:
+            return check_any(str(path))
+        except ShipcosimError as error:
+            return error.problems
+
+    return check
+
+
+def test_lines_of_many_keys_are_found_once():
+    text = "".join(f"[[events]]\ntime = {k}\n" for k in range(3000))
+    began = time.process_time()
+    lines = [line_of(text, ("events", k, "time")) for k in range(3000)]
+    assert lines == [2 * k + 2 for k in range(3000)]
+    assert time.process_time() - began < 5.0
+
+
+def test_a_damaged_library_of_the_cache_is_seen(tmp_path):
+    made = tmp_path / "made.so"
+    path = tmp_path / "library.so"
+    made.write_bytes(b"\x7fELF" + bytes(1000))
+    keep_digest(made, path)
+    made.rename(path)
+    assert is_intact(path)
+    for content in (b"", path.read_bytes()[:300], path.read_bytes() + b"x"):
+        path.write_bytes(content)
+        assert not is_intact(path)
+
+
+def test_a_damaged_fmu_of_the_cache_is_unpacked_again(call, monkeypatch, tmp_path, project):
+    call("build")
+    own_fmu = project / "build" / "fmus" / "lag.fmu"
+    monkeypatch.setenv("SHIPCOSIM_CACHE", str(tmp_path / "cache"))
+    with UnpackedFmus() as unpacked:
+        folder = unpacked.folder(own_fmu)
+    scripts = [path for path in folder.rglob("*.py") if path.stat().st_size]
+    content = scripts[0].read_bytes()
+    scripts[0].write_bytes(b"")
+    with UnpackedFmus() as unpacked:
+        assert unpacked.folder(own_fmu) == folder
+    assert scripts[0].read_bytes() == content
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such question")
+def test_folders_of_dead_processes_are_cleared_away(tmp_path):
+    code = (
+        "import os, sys, pathlib; from shipcosim.temporary import temporary_folder;"
+        "f = temporary_folder(pathlib.Path(sys.argv[1])); os._exit(0)"
+    )
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=True)
+    assert len(list(tmp_path.iterdir())) == 1
+    with temporary_folder(tmp_path) as own:
+        assert [path.name for path in tmp_path.iterdir()] == [Path(own).name]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the guard uses C's list of Linux")
+def test_a_library_that_calls_exit_is_no_run_that_went_well():
+    code = (
+        "import ctypes; from shipcosim.cli.exit_guard import guard_exit, release_exit;"
+        "guard_exit(); {}ctypes.CDLL(None).exit(0)"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-c", code.format("")], capture_output=True, text=True, check=False
+    )
+    assert ended.returncode == 1 and "--isolate" in ended.stderr
+    released = [sys.executable, "-c", code.format("release_exit(0);")]
+    done = subprocess.run(released, capture_output=True, text=True, check=False)
+    assert done.returncode == 0 and not done.stderr
