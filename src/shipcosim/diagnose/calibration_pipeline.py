@@ -1,12 +1,9 @@
 """From logs of a ship that is well to her own parameter set, and the reference that other logs are held against."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from threadpoolctl import threadpool_limits
 
@@ -14,8 +11,15 @@ import shipcosim
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
-from shipcosim.diagnose.pipeline import Progress, given_system, problem_of, read_measurements
+from shipcosim.diagnose.pipeline import (
+    AnySystem,
+    Progress,
+    given_system,
+    problem_of,
+    read_measurements,
+)
 from shipcosim.diagnose.reference.calibration import (
     calibrated_to,
     causes_beside,
@@ -30,12 +34,7 @@ from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remai
 from shipcosim.diagnose.reference.several_logs import SeveralLogs
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.errors import Problem, ShipcosimError, error_at
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.ssp import AnyPath, System, SystemStructure
-
+from shipcosim.ssp import AnyPath, System
 
 READING = "are the logs right?"
 
@@ -92,7 +91,7 @@ class CalibratedShip:
         return tuple(one for one in self.reference.numbers if one.std > 0.8 * scale * one.tolerance)
 
 
-def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
     """What `calibrate` tells its progress function, in order, with the time that it typically takes. [s]"""
     many = len(logs)
     return {
@@ -104,8 +103,8 @@ def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
 
 
 def calibrate(
-    logs: Sequence[AnyPath | xarray.Dataset],
-    system: AnyPath | SystemStructure | System,
+    logs: Sequence[LogSource],
+    system: AnySystem,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
     progress: Progress | None = None,
@@ -188,8 +187,8 @@ def _check_usable(found: dict[str, Identification]) -> None:
                 )
             )
         comparison = one.comparison
-        problems += [Problem(name, why) for why in (comparison.obstacles if comparison else ())]
-        for finding in comparison.findings if comparison else ():
+        problems += [Problem(name, why) for why in comparison.obstacles]
+        for finding in comparison.findings:
             what = f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well."
             problems.append(
                 Problem(name, what, "Diagnose the log, and calibrate the extended system.")
@@ -198,7 +197,7 @@ def _check_usable(found: dict[str, Identification]) -> None:
         raise ShipcosimError(problems)
 
 
-def log_names(logs: Sequence[AnyPath | xarray.Dataset]) -> list[str]:
+def log_names(logs: Sequence[LogSource]) -> list[str]:
     """Names of logs, each its own: those of their files, with a number where two are alike."""
     if not logs:
         raise error_at("logs", "There are none.", "Give at least one log.")
@@ -215,7 +214,7 @@ def _stem(log, number):
 
 
 def problems_of(
-    logs: Sequence[AnyPath | xarray.Dataset],
+    logs: Sequence[LogSource],
     system: System,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,

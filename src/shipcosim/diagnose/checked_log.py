@@ -1,19 +1,14 @@
 """A log as read, with the ship that it is held against, and with the faults that its own channels show."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+import xarray
+
+from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.hypotheses.catalogue import Cause
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.repair import repaired
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
-    from shipcosim.diagnose.hypotheses.catalogue import Cause
-    from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)

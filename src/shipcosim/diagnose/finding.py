@@ -1,8 +1,9 @@
 """What a diagnosis names: causes with their parameters, candidates, and where simulation and log differ."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
+
+Segment = tuple[float, float]
+"""First and last time of a part of a log. [s]"""
 
 
 def label_of(cause: str, component: str | None) -> str:
@@ -55,7 +56,7 @@ class Finding:
     kind: str = "physics"
     probability: float = 1.0
     parameters: dict[str, ParameterEstimate] = field(default_factory=dict)
-    segments: tuple[tuple[float, float], ...] = ()
+    segments: tuple[Segment, ...] = ()
     channels: tuple[str, ...] = ()
     onset: float | None = None
     note: str = ""

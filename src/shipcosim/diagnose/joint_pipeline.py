@@ -13,25 +13,33 @@ From the verdict to the gain, `diagnose_jointly`: the system with the common cau
 with what the other logs say of them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.compared import compared, ratio_finding
+from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
 from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
-from shipcosim.diagnose.pipeline import Progress, causes_in, given_system, problem_of
+from shipcosim.diagnose.pipeline import (
+    AnySystem,
+    Progress,
+    causes_in,
+    prepared_system,
+    problem_of,
+    ship_by,
+)
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.common_findings import (
     Shared,
@@ -51,25 +59,15 @@ from shipcosim.diagnose.reference.held_out import (
 from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
 from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
-from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
-from shipcosim.diagnose.reference.reference import read_reference, with_reference
+from shipcosim.diagnose.reference.reference import Reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.ship.thrusters import with_thrust
-from shipcosim.temporary import temporary_folder
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.comparison.gains import CommonRatio
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.reference.reference import Reference
-    from shipcosim.ssp import AnyPath, System, SystemStructure
+from shipcosim.ssp import AnyPath, System
 
 
-def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
+def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
     """What `diagnose_jointly` tells its progress function, in order, with the time that it typically takes. [s]"""
     names = log_names(logs)
     return {
@@ -83,8 +81,8 @@ def steps_of(logs: Sequence[AnyPath | xarray.Dataset]) -> dict[str, float]:
 
 
 def diagnose_jointly(
-    logs: Sequence[AnyPath | xarray.Dataset],
-    system: AnyPath | SystemStructure | System,
+    logs: Sequence[LogSource],
+    system: AnySystem,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
     progress: Progress | None = None,
@@ -112,14 +110,7 @@ def diagnose_jointly(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    folder = None
-    if out is None:
-        folder = temporary_folder()
-        out = folder.name
-    given = given_system(system)
-    if reference is not None:
-        reference = read_reference(reference)
-        given = with_calibrated_numbers(given, reference, out)
+    given, reference, out, folder = prepared_system(system, reference, out)
     found = find_common_causes(logs, given.given, channels, causes, say, reference)
     say("extending the system")
     of_ship = [shared.what for shared in found.findings if shared.what.component not in found.logs]
@@ -169,7 +160,7 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
 
 
 def find_common_causes(
-    logs: Sequence[AnyPath | xarray.Dataset],
+    logs: Sequence[LogSource],
     system: System,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
@@ -203,11 +194,7 @@ def find_common_causes(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    ship = (
-        ship_model_of(system)
-        if reference is None
-        else with_reference(ship_model_of(system), reference)
-    )
+    ship = ship_by(system, reference)
     with threadpool_limits(1):
         problems = problems_of(logs, system, channels, causes, say, reference=reference)
         alone = {}
@@ -255,8 +242,7 @@ def _unusable(one: Diagnosis) -> str:
     """Why a log says nothing of the ship; empty where it does."""
     if any(finding.alternatives for finding in one.findings):
         return "Its channels may be misread, and it does not tell which."
-    comparison = _identification(one).comparison
-    return " ".join(comparison.obstacles) if comparison is not None else ""
+    return " ".join(_identification(one).comparison.obstacles)
 
 
 def _together(
@@ -270,9 +256,7 @@ def _together(
     }
     comparisons = {name: one.comparison for name, one in usable.items()}
     comparisons |= {name: compared(checked(one)).comparison for name, one in read.items()}
-    ratios = ratio_of_logs(
-        {name: one.ratio for name, one in comparisons.items() if one is not None and one.ratio}
-    )
+    ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one.ratio})
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
     say("all logs together")
@@ -304,8 +288,7 @@ def _relabelled(
     found: dict[str, list[Finding]] = {}
     for fault in (one for one in faults if is_of_thrusters(one.what)):
         for name in (name for name in usable if name not in fault.logs):
-            comparison = usable[name].comparison
-            if leans_to(comparison.labels if comparison else None, fault.what):
+            if leans_to(usable[name].comparison.labels, fault.what):
                 found.setdefault(name, []).append(fault.what)
     return found
 

@@ -27,12 +27,9 @@ From the verdict to the gain, `diagnose`:
     completed          Diagnosis       errors, gain, and all that the page shows
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
-import xarray
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
@@ -45,7 +42,7 @@ from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_crude
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
-from shipcosim.diagnose.log.runs import run_as_log
+from shipcosim.diagnose.log.runs import LogSource, run_as_log
 from shipcosim.diagnose.log_faults.corrections import corrected, with_right_inputs
 from shipcosim.diagnose.reference.change_since_reference import with_sizes_at_reference
 from shipcosim.diagnose.reference.parameter_set import with_calibrated_numbers
@@ -58,6 +55,9 @@ from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import AnyPath, System, SystemStructure, read
 from shipcosim.temporary import temporary_folder
+
+AnySystem = AnyPath | SystemStructure | System
+"""A system in whichever form."""
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""
@@ -76,8 +76,8 @@ of half an hour, on one core. [s]"""
 
 
 def diagnose(
-    log: AnyPath | xarray.Dataset,
-    system: AnyPath | SystemStructure | System,
+    log: LogSource,
+    system: AnySystem,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
     progress: Progress | None = None,
@@ -115,14 +115,7 @@ def diagnose(
         Data, system or causes that cannot be used.
     """
     say = progress or (lambda *_: None)
-    folder = None
-    if out is None:
-        folder = temporary_folder()
-        out = folder.name
-    given = given_system(system)
-    if reference is not None:
-        reference = read_reference(reference)
-        given = with_calibrated_numbers(given, reference, out)
+    given, reference, out, folder = prepared_system(system, reference, out)
     found = find_causes(log, given.given, channels, causes, say, reference)
     say("what does the simulation get wrong")
     basis = found.basis
@@ -138,7 +131,25 @@ def diagnose(
     return replace(completed(found, predicted, extended, simulated), folder=folder)
 
 
-def given_system(system: AnyPath | SystemStructure | System) -> ExtendedSystem:
+def prepared_system(
+    system: AnySystem, reference: AnyPath | Reference | None, out: AnyPath | None
+) -> tuple[ExtendedSystem, Reference | None, AnyPath, object]:
+    """A system with the numbers of a reference, that reference, and a folder for what is written.
+
+    The last entry keeps a temporary folder alive; None where `out` is given.
+    """
+    folder = None
+    if out is None:
+        folder = temporary_folder()
+        out = folder.name
+    given = given_system(system)
+    if reference is not None:
+        reference = read_reference(reference)
+        given = with_calibrated_numbers(given, reference, out)
+    return given, reference, out, folder
+
+
+def given_system(system: AnySystem) -> ExtendedSystem:
     """A system in whichever form, to be extended."""
     if isinstance(system, System):
         return ExtendedSystem(system, system.file)
@@ -147,7 +158,7 @@ def given_system(system: AnyPath | SystemStructure | System) -> ExtendedSystem:
 
 
 def find_causes(
-    log: AnyPath | xarray.Dataset,
+    log: LogSource,
     system: System,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
@@ -202,18 +213,23 @@ def causes_in(
 
 
 def read_measurements(
-    log: AnyPath | xarray.Dataset,
+    log: LogSource,
     system: System,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
     reference: Reference | None = None,
 ) -> ReadLog:
     """A log by the roles of its columns, with the ship of a system or of a reference, and the causes of a catalogue."""
-    ship = ship_model_of(system)
-    ship = ship if reference is None else with_reference(ship, reference)
+    ship = ship_by(system, reference)
     log = run_as_log(log, ship.vessel, ship.thrusters) if channels is None else log
     drives = {name: ship.drives(name) for name in ship.thrusters}
     return ReadLog(read_log(log, channels, drives), ship, read_catalogue(causes))
+
+
+def ship_by(system: System, reference: Reference | None) -> ShipModel:
+    """The ship of a system, as a reference knows her where there is one."""
+    ship = ship_model_of(system)
+    return ship if reference is None else with_reference(ship, reference)
 
 
 def problem_of(read: ReadLog) -> Identification:
@@ -224,7 +240,7 @@ def problem_of(read: ReadLog) -> Identification:
 def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     """The way of a log to its verdict, stage by stage."""
     progress("how does the ship answer?")
-    if problem.comparison is not None and problem.comparison.obstacles:
+    if problem.comparison.obstacles:
         return judged(with_causes(problem))
     identification = with_learnt_form(corrected(problem))
     progress("which causes explain it?")

@@ -1,14 +1,11 @@
 """A log as a system replays it, and as the system extended by a diagnosis does: `replay_log`."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-
-import xarray
 
 from shipcosim.diagnose.checked_log import checked
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.remarks import handled
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.ship.inputs import CHANNELS, record_of
 from shipcosim.diagnose.ship.instruments import Instruments
@@ -39,7 +36,7 @@ class LogReplay:
 
 
 def replay_log(
-    log: AnyPath | xarray.Dataset,
+    log: LogSource,
     systems: dict[str, System],
     channels: AnyPath | None = None,
     *,

@@ -1,28 +1,21 @@
 """What a diagnosis says: causes with their parameters, verdict and gain, as diagnosis.json holds them."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING
+
+import xarray
 
 from shipcosim.diagnose.experiment.design import ExperimentDesign
-from shipcosim.diagnose.explanation.summary import LoadForm
+from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre
+from shipcosim.diagnose.explanation.summary import Evidence, LoadForm
+from shipcosim.diagnose.explanation.verdict import JudgedLog
+from shipcosim.diagnose.extension.extend import Extension
+from shipcosim.diagnose.extension.extended_system import NumberChange
 from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre
-    from shipcosim.diagnose.explanation.summary import Evidence
-    from shipcosim.diagnose.explanation.verdict import JudgedLog
-    from shipcosim.diagnose.extension.extend import Extension
-    from shipcosim.diagnose.extension.extended_system import NumberChange
-    from shipcosim.diagnose.hypotheses.catalogue import Cause
-    from shipcosim.diagnose.validation.missing_force import MissingForce
-    from shipcosim.diagnose.validation.summary import PredictionErrors
-    from shipcosim.diagnose.validation.tracks import Tracks
-    from shipcosim.ssp import System
-
+from shipcosim.diagnose.hypotheses.catalogue import Cause
+from shipcosim.diagnose.validation.missing_force import MissingForce
+from shipcosim.diagnose.validation.summary import PredictionErrors
+from shipcosim.diagnose.validation.tracks import Tracks
+from shipcosim.ssp import System
 
 SCHEMA = "shipcosim-diagnosis/1"
 

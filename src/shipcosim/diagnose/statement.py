@@ -1,7 +1,5 @@
 """What is said of a log: its diagnosis from the verdict on, and with the errors, the gain and what the page shows."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,17 +25,15 @@ def stated(log: JudgedLog) -> Diagnosis:
     if any(
         fault.alternatives for fault in found.faults
     ):  # of a log that may be misread, nothing is said of the ship
-        errors = comparison.errors if comparison else None
         return Diagnosis(
             "ambiguous",
             found.faults,
             not_testable=untestable_causes(log),
-            baseline=errors,
+            baseline=comparison.errors,
             basis=log,
         )
-    beyond_doubt = comparison.findings if comparison else ()
-    of_log = (*found.faults, *found.misconnections, *beyond_doubt)
-    if comparison and judgement.verdict == "unknown":
+    of_log = (*found.faults, *found.misconnections, *comparison.findings)
+    if judgement.verdict == "unknown":
         of_log = (*of_log, *comparison.found_without())
     seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
     rivals = (
@@ -56,11 +52,11 @@ def stated(log: JudgedLog) -> Diagnosis:
         judgement.indistinguishable,
         tuple(cause for cause in untestable_causes(log) if not _is_said(cause, seen, log)),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
-        comparison.errors if comparison else None,
-        discrepancies=comparison.told(judgement.verdict) if comparison else (),
+        comparison.errors,
+        discrepancies=comparison.told(judgement.verdict),
         form=form_of,
-        obstacles=comparison.obstacles if comparison else (),
-        remarks=comparison.remarks if comparison else (),
+        obstacles=comparison.obstacles,
+        remarks=comparison.remarks,
         basis=log,
     )
 
@@ -68,22 +64,17 @@ def stated(log: JudgedLog) -> Diagnosis:
 def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:
     """Whether a cause, or all that it could say, is said in other words."""
     found = log.explained.identification
-    if cause in seen or found.comparison is None or cause not in found.causes:
+    if cause in seen or cause not in found.causes:
         return cause in seen
     return found.comparison.spoken_for(found.causes[cause], seen, found.causes)
 
 
 def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
     """What the crude model gains over the craft's own horizon, where it is named and was measured."""
-    comparison = log.explained.identification.comparison
-    if (
-        not found.has_crude
-        or comparison is None
-        or comparison.crude is None
-        or comparison.crude.errors is None
-    ):
+    crude = log.explained.identification.comparison.crude
+    if not found.has_crude or crude is None or crude.errors is None:
         return None
-    return comparison.crude.errors.as_gain()
+    return crude.errors.as_gain()
 
 
 def completed(

@@ -5,17 +5,15 @@ explained by whatever else may act: the model's load of the water with any size,
 of the axes, wind, and a steady force. Damping takes energy away, in whatever model: its coefficients have one sign.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.commanded import moving_mass
-from shipcosim.diagnose.comparison.regression import regressed
+from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
+from shipcosim.diagnose.comparison.measured_force import Felt
+from shipcosim.diagnose.comparison.regression import Regression, regressed
 from shipcosim.diagnose.comparison.thresholds import (
     BLOCK_WIDTHS,
     LEAST_COMMANDED,
@@ -24,14 +22,9 @@ from shipcosim.diagnose.comparison.thresholds import (
     TURNED_ROUND,
     WEAKER_WAY,
 )
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.comparison.regression import Regression
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
-
+from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
 
 AXES = ("surge", "sway", "yaw")
 _OF_HULL = 3  # columns of the water's load: the model's, and linear and quadratic damping
@@ -118,6 +111,21 @@ class Axis:
             (self.smoothed(load) for load in commanded.thrusters.values()), np.zeros(self.felt.size)
         )
 
+    def by_way(self, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> np.ndarray:
+        """Force of all thrusters where they push ahead, and where they push astern, (2, n) array."""
+        loads = commanded.thrusters.items()
+        return np.stack(
+            [
+                sum((self.smoothed(load * (ahead[name] == way)) for name, load in loads), 0.0)
+                for way in (True, False)
+            ]
+        )
+
+    def is_changed(self, commanded: Commanded, other: Commanded) -> bool:
+        """Whether two readings of the commands differ here by more than a tenth of the usual force."""
+        apart = np.abs(self.total(other) - self.total(commanded)).max()
+        return bool(apart > 0.1 * self.size)
+
     def is_driven(self, commanded: Commanded) -> bool:
         """Whether the thrusters are commanded to do something on this axis, beside what is felt."""
         total = self.total(commanded)
@@ -172,7 +180,7 @@ class Axis:
     @property
     def felt_unit(self) -> float:
         """Root mean square of the felt force."""
-        return float(np.sqrt((self.felt**2).mean())) + 1e-30
+        return root_mean_square(self.felt) + 1e-30
 
     def both_ways(self, ahead: np.ndarray, astern: np.ndarray) -> AxisFit:
         """The same by what thrusters do ahead and astern, neither way much weaker than the other.
@@ -254,7 +262,7 @@ def axes_of(felt: Felt, commanded: Commanded, model: ShipModel) -> list[Axis]:
     wind = np.zeros_like(commanded.hull) if commanded.wind is None else commanded.wind
     for i, (listed, sign) in enumerate(rest_of(motion, commanded)):
         rest = kernel.smooth(listed)[:, rows].T
-        size = float(np.sqrt((kernel.smooth(thrust[i])[rows] ** 2).mean())) + 1e-9
+        size = root_mean_square(kernel.smooth(thrust[i])[rows]) + 1e-9
         hull, air = (kernel.smooth(load[i])[rows] for load in (commanded.hull, wind))
         found.append(Axis(i, force[i][rows], hull, air, rest, sign, size, rows, felt, block))
     return found

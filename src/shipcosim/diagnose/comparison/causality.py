@@ -5,13 +5,12 @@ commanded goes with what is felt in either sense. But only what a thruster does 
 of the motion, past commands say more of the next velocity if they are those that the ship obeys.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.commanded import Commanded
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     CAUSAL_ORDER,
     CAUSAL_STEP,
@@ -19,10 +18,6 @@ from shipcosim.diagnose.comparison.thresholds import (
     HUBER,
 )
 from shipcosim.diagnose.numerics import least_squares
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
 
 
 def causal_support(felt: Felt, commanded: Sequence[Commanded], unit: float) -> np.ndarray:

@@ -1,20 +1,15 @@
 """The loads that a model has on the ship along the measured motion: of each thruster, of the wind, of the hull."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.ship.dynamics import loads
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Load, Motion
 from shipcosim.models.ship.hull import hull_loads
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Load, Motion
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,9 @@
 """The stage between the checks of a log and its identification: what is grossly wrong, and where to start."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.checked_log import CheckedLog
 from shipcosim.diagnose.comparison.axes import axes_of
@@ -19,29 +17,22 @@ from shipcosim.diagnose.comparison.crude_model import (
 )
 from shipcosim.diagnose.comparison.discrepancies import discrepancies_of, is_of_damping
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
-from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
-from shipcosim.diagnose.comparison.labels import read_labels
+from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio, common_ratio, gains_of
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError
+from shipcosim.diagnose.comparison.labels import Labels, read_labels
 from shipcosim.diagnose.comparison.measured_force import felt_by
-from shipcosim.diagnose.comparison.missing_loads import missing_loads
+from shipcosim.diagnose.comparison.missing_loads import MissingLoad, missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
 from shipcosim.diagnose.finding import Discrepancy, Finding
+from shipcosim.diagnose.hypotheses.catalogue import Cause
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
 from shipcosim.diagnose.log.repair import repaired
 from shipcosim.diagnose.ship.inputs import first_motion, record_of
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.stretches import in_stretches
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.label_hypotheses import LabelError
-    from shipcosim.diagnose.comparison.labels import Labels
-    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
-    from shipcosim.diagnose.hypotheses.catalogue import Cause
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)
@@ -71,8 +62,8 @@ class LogComparison:
         What the model lacks by axis, largest first; empty where the log has too few usable rows.
     """
 
-    errors: dict[str, list[float]]
-    discrepancies: tuple[Discrepancy, ...]
+    errors: dict[str, list[float]] = field(default_factory=dict)
+    discrepancies: tuple[Discrepancy, ...] = ()
     gains: tuple[AxisGain, ...] = ()
     labels: Labels | None = None
     ratio: CommonRatio | None = None

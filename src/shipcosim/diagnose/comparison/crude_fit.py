@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,8 +16,9 @@ from shipcosim.diagnose.comparison.crude_model import (
     crude_numbers,
 )
 from shipcosim.diagnose.comparison.errors import starts_of
-from shipcosim.diagnose.comparison.gains import common_ratio, gains_of
+from shipcosim.diagnose.comparison.gains import CommonRatio, common_ratio, gains_of
 from shipcosim.diagnose.comparison.label_hypotheses import ahead_of
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     COMMON_SPREAD,
     CRUDE_BLOCK,
@@ -35,18 +35,13 @@ from shipcosim.diagnose.comparison.thresholds import (
     ROUND_MODEL,
     TYPICAL_CURRENT,
 )
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.inference.thresholds import DRAWS
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.gains import CommonRatio
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _STEP = 1e-3  # of a logarithm, for derivatives
 _DAMPED = np.array([0.0, 0.3, 3.0, 30.0])  # shares of the diagonal that steps are damped by

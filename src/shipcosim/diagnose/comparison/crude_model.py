@@ -1,21 +1,17 @@
 """The crude model of a ship: thrust and damping over inertia as factors on the model's, where they predict better."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.gains import is_beyond
 from shipcosim.diagnose.comparison.thresholds import SURE_OF_RATIO
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import with_thrust
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _ONLY_RATIO = "Thrust and inertia cannot be told apart: only their ratio is known."
 _ONLY_DAMPING = "Damping and inertia cannot be told apart: only their ratio is known."
@@ -45,7 +41,7 @@ class CrudeNumber:
 
     def differs(self, least: float) -> bool:
         """Whether it differs from 1 by a factor of more than `least` for sure."""
-        return abs(np.log(self.estimate)) - SURE_OF_RATIO * self.std / self.estimate > np.log(least)
+        return is_beyond(self.estimate, self.std, least, SURE_OF_RATIO)
 
     def values(self, model: ShipModel, factor: Any) -> dict[str, Any]:
         """Numbers of the ship with a factor, a float or an array, on what the model has."""

@@ -1,13 +1,13 @@
 """What differs between commanded and felt force, in words with sizes, the largest first, and what remains."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.missing_loads import FORCES
+from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio, is_beyond
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError
+from shipcosim.diagnose.comparison.labels import Labels
+from shipcosim.diagnose.comparison.missing_loads import FORCES, MissingLoad
 from shipcosim.diagnose.comparison.regression import regressed
 from shipcosim.diagnose.comparison.thresholds import (
     LEAST_DAMPING,
@@ -18,13 +18,6 @@ from shipcosim.diagnose.comparison.thresholds import (
     TOLD,
 )
 from shipcosim.diagnose.finding import Discrepancy
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio
-    from shipcosim.diagnose.comparison.label_hypotheses import LabelError
-    from shipcosim.diagnose.comparison.labels import Labels
-    from shipcosim.diagnose.comparison.missing_loads import MissingLoad
-
 
 _DAMPING = "damping in"
 
@@ -109,9 +102,7 @@ def _wrong_signs(labels: Labels, gains: Sequence[AxisGain]) -> Iterator[Discrepa
         std = float(fit.std[0])
         if gain >= -SURE_OF_GAIN * std or fit.support < LEAST_SUPPORT or fit.share < TOLD:
             continue
-        because = bool(why) and bool(
-            np.abs(before - axis.total(labels.best.commanded)).max() > 0.1 * axis.size
-        )
+        because = bool(why) and axis.is_changed(labels.logged.commanded, labels.best.commanded)
         if (
             one.is_balanced and not because
         ):  # a way that is weaker makes the sum of both look reversed
@@ -192,9 +183,7 @@ def _damping(one: AxisGain) -> Iterator[Discrepancy]:
         axis.block,
     )
     support = 0.5 * left.independent * np.log(left.squares / fit.squares)
-    far = abs(np.log(max(damping, 0.01))) - SURE_OF_GAIN * std / max(damping, 0.01) > np.log(
-        MENTIONED
-    )
+    far = is_beyond(max(damping, 0.01), std, MENTIONED, SURE_OF_GAIN)
     if support > LEAST_SUPPORT and far and damping > max(SURE_OF_GAIN * std, LEAST_DAMPING):
         text = f"{_DAMPING} {axis.name} over inertia {damping:.2f} of the model's"
         yield Discrepancy(

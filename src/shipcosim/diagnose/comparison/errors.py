@@ -1,11 +1,8 @@
 """Simulated against measured: errors of open-loop predictions from smoothed measurements, over a craft's own times."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     ANSWER,
     FEWEST_STARTS,
@@ -15,16 +12,13 @@ from shipcosim.diagnose.comparison.thresholds import (
     SHORTEST_ANSWER,
 )
 from shipcosim.diagnose.inference.predictions import missing, predicted, replayable
+from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.time_scales import response_times
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _LADDER = np.array([1.0, 2.0, 3.0, 6.0, 10.0])
 
@@ -89,8 +83,8 @@ def errors_of(record: Record, felt: Felt, model: ShipModel) -> dict[str, list[fl
     off = missing(readings(found, ship), seen, rows + np.array(counts)[:, None])
     return {
         "horizon_s": [count * record.step for count in counts],
-        "position_error_m": [float(np.sqrt(np.mean(one**2))) for one in off["position"]],
-        "heading_error_deg": [float(np.sqrt(np.mean(one**2))) for one in off["heading"]],
+        "position_error_m": [root_mean_square(one) for one in off["position"]],
+        "heading_error_deg": [root_mean_square(one) for one in off["heading"]],
     }
 
 

@@ -1,13 +1,12 @@
 """How large the commanded force is beside the felt one: on each axis, of each thruster, and as a common ratio."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.axes import Axis, AxisFit
+from shipcosim.diagnose.comparison.commanded import Commanded
 from shipcosim.diagnose.comparison.thresholds import (
     COMMON_SPREAD,
     LEAST_SUPPORT,
@@ -19,10 +18,12 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_SPREAD,
     TOLD,
 )
+from shipcosim.diagnose.numerics import root_mean_square
 
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis, AxisFit
-    from shipcosim.diagnose.comparison.commanded import Commanded
+
+def is_beyond(ratio: float, std: float, least: float, deviations: float) -> bool:
+    """Whether a ratio is surely more than a factor away from 1, by so many standard deviations."""
+    return bool(abs(np.log(ratio)) - deviations * std / ratio > np.log(least))
 
 
 @dataclass(frozen=True)
@@ -123,9 +124,7 @@ class AxisGain:
 
     def differs(self, least: float) -> bool:
         """Whether the gain differs from 1 by a factor of more than `least` for sure."""
-        return self.gain <= 0.0 or abs(
-            np.log(self.gain)
-        ) - SURE_OF_GAIN * self.std / self.gain > np.log(least)
+        return self.gain <= 0.0 or is_beyond(self.gain, self.std, least, SURE_OF_GAIN)
 
 
 def gains_of(
@@ -164,9 +163,9 @@ def _gain(axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]) -> 
             std = float(middle * np.sqrt(half**2 + (std / gain) ** 2 + (most_std / most) ** 2))
             gain = middle
     other = axis.felt - axis.hull - axis.wind
-    size = float(np.sqrt((total**2).mean()))
+    size = root_mean_square(total)
     correlation = float(np.corrcoef(other, total)[0, 1]) if total.std() > 0.0 else 0.0
-    error = float(np.sqrt(((other - total) ** 2).mean())) / size
+    error = root_mean_square(other - total) / size
     each = dict(zip(names, map(float, apart.gains), strict=True))
     each_std = dict(zip(names, map(float, apart.std), strict=True))
     ways, support = _by_way(axis, commanded, ahead)
@@ -178,13 +177,7 @@ def _by_way(
     axis: Axis, commanded: Commanded, ahead: Mapping[str, np.ndarray]
 ) -> tuple[tuple | None, float]:
     """Gains of thrust ahead and astern, and what they support that are not negative; None where the log lacks a way."""
-    loads = commanded.thrusters.items()
-    ways = np.stack(
-        [
-            sum((axis.smoothed(load * (ahead[n] == way)) for n, load in loads), 0.0)
-            for way in (True, False)
-        ]
-    )
+    ways = axis.by_way(commanded, ahead)
     sizes = np.sqrt((ways**2).mean(1))
     if sizes.min() < LEAST_WAY * sizes.max():
         return None, 0.0
@@ -210,7 +203,7 @@ class CommonRatio:
 
     def differs(self, least: float) -> bool:
         """Whether it differs from 1 by a factor of more than `least` for sure."""
-        return abs(np.log(self.ratio)) - SURE_OF_RATIO * self.std / self.ratio > np.log(least)
+        return is_beyond(self.ratio, self.std, least, SURE_OF_RATIO)
 
 
 def common_ratio(gains: Sequence[AxisGain]) -> CommonRatio | None:

@@ -1,15 +1,14 @@
 """Ways to read the channels of thrusters: as logged, reversed, exchanged, and what each makes of the commands."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.axes import Axis
+from shipcosim.diagnose.comparison.commanded import Commanded, commanded_by, late
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     CHANGE_COST,
     LAG_COST,
@@ -18,15 +17,10 @@ from shipcosim.diagnose.comparison.thresholds import (
     LEAST_SUPPORT,
     MOST_CHANGES,
 )
+from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)
@@ -207,15 +201,5 @@ def support_of(commanded: Commanded, ahead: dict[str, np.ndarray], axes: Sequenc
     total = 0.0
     for axis in axes:
         if axis.is_driven(commanded):
-            ways = [
-                sum(
-                    (
-                        axis.smoothed(load * (ahead[name] == way))
-                        for name, load in commanded.thrusters.items()
-                    ),
-                    0.0,
-                )
-                for way in (True, False)
-            ]
-            total += axis.both_ways(*map(np.asarray, ways)).support
+            total += axis.both_ways(*axis.by_way(commanded, ahead)).support
     return total

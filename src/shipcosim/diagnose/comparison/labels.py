@@ -10,19 +10,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.comparison.axes import Axis
 from shipcosim.diagnose.comparison.causality import causal_support
-from shipcosim.diagnose.comparison.commanded import commanded_by, late
+from shipcosim.diagnose.comparison.commanded import Commanded, commanded_by, late
 from shipcosim.diagnose.comparison.label_hypotheses import (
     LabelHypothesis,
     changes_of,
     driven,
     reading,
 )
-from shipcosim.diagnose.comparison.likelihood import blocks_of, likelihood_of, smoothed
+from shipcosim.diagnose.comparison.likelihood import Blocks, blocks_of, likelihood_of, smoothed
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
     ALIKE,
@@ -41,15 +42,9 @@ from shipcosim.diagnose.comparison.thresholds import (
     TOLD,
     UNLIKELIER,
 )
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.likelihood import Blocks
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)
@@ -231,12 +226,8 @@ def _by_agreement(weighed: Sequence[_Weighed]) -> Labels | None:
 def _is_contradicted(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Axis]) -> bool:
     """Whether on an axis where a reading differs from the logged one that has surely the wrong sign."""
     for axis in axes:
-        total = axis.total(logged.commanded)
-        if (
-            axis.is_driven(logged.commanded)
-            and np.abs(axis.total(best.commanded) - total).max() > 0.1 * axis.size
-        ):
-            fit = axis.compared(total[None])
+        if axis.is_driven(logged.commanded) and axis.is_changed(logged.commanded, best.commanded):
+            fit = axis.compared(axis.total(logged.commanded)[None])
             if (
                 fit.gains[0] < -OPPOSITE * fit.std[0]
                 and fit.support > LEAST_SUPPORT
@@ -250,11 +241,7 @@ def _explained(best: LabelHypothesis, logged: LabelHypothesis, axes: Sequence[Ax
     """Largest share of the felt force that a reading explains on an axis where it differs from the logged one."""
     shares = [0.0]
     for axis in axes:
-        differs = (
-            np.abs(axis.total(best.commanded) - axis.total(logged.commanded)).max()
-            > 0.1 * axis.size
-        )
-        if differs and axis.is_driven(best.commanded):
+        if axis.is_changed(logged.commanded, best.commanded) and axis.is_driven(best.commanded):
             shares.append(axis.explained(_each(axis, best.commanded)).share)
     return max(shares)
 

@@ -5,16 +5,15 @@ gain small or let the thrusters differ, and pays for both; where each axis has a
 says that the thrusters do nothing there.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.comparison.axes import rest_of
 from shipcosim.diagnose.comparison.causality import blocks
-from shipcosim.diagnose.comparison.commanded import moving_mass
+from shipcosim.diagnose.comparison.commanded import Commanded, moving_mass
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.regression import bounded
 from shipcosim.diagnose.comparison.thresholds import (
     CAUSAL_ORDER,
@@ -29,13 +28,8 @@ from shipcosim.diagnose.comparison.thresholds import (
     THRUSTER_WIDTH,
     WAY_WIDTH,
 )
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.smoothing import froude_time
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _ROUNDS = 5  # of coefficients and autocorrelation in turn
 _LOG_GAINS = np.linspace(np.log(0.05), np.log(8.0), 81)

@@ -1,20 +1,14 @@
 """The motion and the acceleration that a log shows, smoothed without any model of the ship."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.comparison.thresholds import KERNEL, SHORTEST_KERNEL
-from shipcosim.diagnose.ship.inputs import averaged
+from shipcosim.diagnose.ship.inputs import Record, averaged
 from shipcosim.diagnose.ship.smoothing import Kernel, froude_time, is_measured, unsmoothed
 from shipcosim.models.core.kinematics import to_body
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Motion
 
 
 @dataclass(frozen=True)

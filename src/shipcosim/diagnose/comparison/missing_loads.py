@@ -1,14 +1,13 @@
 """What the motion needs against what the model gives on each axis, whatever the cause: no large error goes unsaid."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.axes import AXES
+from shipcosim.diagnose.comparison.axes import AXES, Axis
+from shipcosim.diagnose.comparison.commanded import Commanded
+from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     ABOVE_NOISE,
     GOES_WITH,
@@ -18,13 +17,8 @@ from shipcosim.diagnose.comparison.thresholds import (
     STEADY,
 )
 from shipcosim.diagnose.finding import Discrepancy
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.axes import Axis
-    from shipcosim.diagnose.comparison.commanded import Commanded
-    from shipcosim.diagnose.comparison.measured_force import Felt
-    from shipcosim.diagnose.ship.model import ShipModel
-
+from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.ship.model import ShipModel
 
 FORCES = {"surge": "surge force", "sway": "side force", "yaw": "yaw moment"}
 _SENSES = {
@@ -160,15 +154,15 @@ def _missing(axis: Axis, commanded: Commanded, noise: float, predicted: float) -
     thrust = axis.total(commanded)
     given = thrust + axis.hull + axis.wind
     off = axis.felt - given
-    parts = max(_rms(one) for one in (thrust, axis.hull, axis.wind))
-    both = _rms(axis.felt) * _rms(given)
+    parts = max(root_mean_square(one) for one in (thrust, axis.hull, axis.wind))
+    both = root_mean_square(axis.felt) * root_mean_square(given)
     correlation = float((axis.felt * given).mean() / both) if both > 0.0 else 0.0
     blocks = max(off.size / axis.block, 1.0)
-    missing = _rms(off)
+    missing = root_mean_square(off)
     return MissingLoad(
         AXES[axis.number],
-        _rms(axis.felt),
-        _rms(given),
+        root_mean_square(axis.felt),
+        root_mean_square(given),
         missing,
         float(off.mean()),
         correlation,
@@ -189,7 +183,3 @@ def _noise(felt: Felt, model: ShipModel) -> np.ndarray:
     rows = kernel.width / kernel.step
     rates = white / kernel.step / np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
     return np.diag(model.mass_matrix) * rates
-
-
-def _rms(series: np.ndarray) -> float:
-    return float(np.sqrt((series**2).mean()))

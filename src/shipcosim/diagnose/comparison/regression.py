@@ -1,7 +1,5 @@
 """Robust regression with coefficients that must not be negative, and errors honest about autocorrelation."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,11 +1,9 @@
 """Experiment design: every manoeuvre of the library is simulated in array form, and scored by what it separates."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -20,22 +18,19 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     step_for,
     true_wind,
 )
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, paths_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-from shipcosim.diagnose.inference.innovations import innovations
+from shipcosim.diagnose.inference.innovations import Noise, innovations
 from shipcosim.diagnose.inference.linearisation import linearise, rows_first
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.inputs import part_of
 from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.innovations import Noise
-    from shipcosim.diagnose.ship.model import ShipModel
 
 CLEAR = 10.0
 """Expected difference in log-evidence that separates two causes. [nats]
@@ -197,9 +192,7 @@ def _shared_columns(fits):
 
 
 def _own(fit):
-    turned = {
-        path for s in fit.hypotheses for parameter in s.parameters for path in parameter.paths
-    }
+    turned = paths_of(fit.hypotheses)
     turned |= {path for s in fit.hypotheses for path in s.definition.companions}
     return [column for column in fit.columns if column.gives_way(turned)]
 

@@ -3,24 +3,19 @@
 Lengths are proportional to the ship's, times to the root of her length: every ship meets the same accelerations.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.numerics import gaussian_filter
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.diagnose.ship.inputs import Inputs, Record
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
+from shipcosim.diagnose.ship.track_keeping import DpController
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.innovations import Noise
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.diagnose.ship.track_keeping import DpController
 
 LONGEST = 15.0
 """No manoeuvre takes longer. [min]"""

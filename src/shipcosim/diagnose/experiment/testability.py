@@ -1,10 +1,7 @@
 """What a log could not have shown, whatever is the matter: causes for which it has too little excitation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,9 +17,6 @@ from shipcosim.diagnose.log.mislabels import THRUSTER_LABELS
 from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.ship.model import ShipModel
-
-if TYPE_CHECKING:
-    pass
 
 
 def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
@@ -42,7 +36,7 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     )
     of_log = (*(() if is_testable(problem) else ("clock",)), *(() if judged else THRUSTER_LABELS))
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
-    if found.comparison is not None and found.comparison.obstacles:
+    if found.comparison.obstacles:
         return tuple(sorted({*of_log, *everywhere}))
     weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}

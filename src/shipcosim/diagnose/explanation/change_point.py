@@ -1,7 +1,5 @@
 """Whether a cause began during the log: the rows before it are then healthy, and the rest is diagnosed on its own."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -18,7 +16,7 @@ from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fit
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.parts import beside
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 from shipcosim.diagnose.inference.thresholds import (
     CHANGE_POINT_BLOCK,
     CHANGE_POINT_GAIN,
@@ -78,9 +76,7 @@ def change_point_of(problem: IdentificationProblem, fits: Sequence[Fit]) -> floa
         hypothesis for hypothesis in problem.hypotheses if hypothesis.definition.law != "turning"
     ]
     groups = [group for hypothesis in hypotheses for group in screening_regressors(hypothesis)]
-    linear = beside(
-        nothing.linear, problem.base_of([column for group in groups for column in group])
-    )
+    linear = beside(nothing.linear, problem.base_of(regressors_of(hypotheses)))
     span = problem.record.time.size * problem.record.step
     parts = int(np.clip(span / CHANGE_POINT_BLOCK, 8, MOST_CHANGE_POINT_BLOCKS))
     blocks = inner_products(linear, problem.noise, problem.record, parts).blocks

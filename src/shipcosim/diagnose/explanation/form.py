@@ -1,32 +1,26 @@
 """How far the form of a ship's loads differs from her model's, learnt from the log by evidence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, explain
 from shipcosim.diagnose.explanation.unmodelled import is_healthy
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.fitting import fitted, prepared
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import beside_likeliest, tuned_noise
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import regressors_of
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     FORM_COST,
     FORM_SCALES,
 )
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 
 
 def with_learnt_form(found: Identification) -> Identification:
@@ -101,15 +95,9 @@ def scores_by_scale(problem: IdentificationProblem, fit: Fit) -> dict[float, flo
     sizes = {
         path: size for path, size in problem.model.form_sizes.items() if path not in fit.values
     }
-    added = [
-        column
-        for hypothesis in wanted
-        for group in screening_regressors(hypothesis)
-        for column in group
-    ]
     of_form = [Regressor({path: size}) for path, size in sizes.items()]
     form = linearised_by_parts(fit.about, problem.record, fit.model, of_form, kept=False)
-    linear = beside(beside(fit.linear, form), problem.base_of(added))
+    linear = beside(beside(fit.linear, form), problem.base_of(regressors_of(wanted)))
     products = inner_products(linear, problem.noise, problem.record).products
     found = {}
     for scale in (0.0, *FORM_SCALES):

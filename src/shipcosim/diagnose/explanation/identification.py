@@ -1,18 +1,12 @@
 """A compared log as an identification problem, as which its causes are sought."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from shipcosim.diagnose.checked_log import CheckedLog
-from shipcosim.diagnose.comparison.compared import ComparedLog
+from shipcosim.diagnose.comparison.compared import ComparedLog, LogComparison
+from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.problem import identification_problem
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.comparison.compared import LogComparison
-    from shipcosim.diagnose.finding import Finding
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
 
 
 @dataclass(frozen=True)
@@ -25,13 +19,13 @@ class Identification(CheckedLog):
         Of the repaired log: noise and linearisation about the ship without a cause.
     misconnections : tuple of Finding
         Connections of the system that the log contradicts; `ship` has them put right.
-    comparison : LogComparison or None
-        Of simulated with measured, commanded with felt.
+    comparison : LogComparison
+        Of simulated with measured, commanded with felt; empty by default.
     """
 
     problem: IdentificationProblem
     misconnections: tuple[Finding, ...] = ()
-    comparison: LogComparison | None = None
+    comparison: LogComparison = LogComparison()
 
 
 def identified(checked: ComparedLog) -> Identification:

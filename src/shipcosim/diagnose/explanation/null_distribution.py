@@ -5,17 +5,15 @@ moves thrusters and weather together, and a ship that keeps still moves by its n
 and here nothing is wrong that could be one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, prepared
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME
+from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, Regressor
 from shipcosim.diagnose.inference.noise import waves_of
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import LOST_TRACK
@@ -24,10 +22,6 @@ from shipcosim.diagnose.ship.inputs import Record, first_motion, part_of
 from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.linearisation import Regressor
 
 
 def null_gains(

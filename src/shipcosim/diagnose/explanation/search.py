@@ -1,25 +1,18 @@
 """The sets of causes that explain a log best: hypotheses are screened, the likely ones fitted, others sought beside."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.unmodelled import is_healthy
-from shipcosim.diagnose.inference.fitting import fitted
-from shipcosim.diagnose.inference.screening import screened
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
+from shipcosim.diagnose.inference.screening import Gain, screened
 from shipcosim.diagnose.inference.workers import each
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.inference.screening import Gain
-
 
 STRAIN = (
     2.5  # tolerances off, from which on a number's cause is fitted whatever it gains at first sight
@@ -49,7 +42,7 @@ class ExplainedLog:
 
 def with_causes(found: Identification) -> ExplainedLog:
     """An identified log with the sets of causes that explain it, best first; none of a log that cannot tell causes."""
-    cannot_tell = found.comparison is not None and found.comparison.obstacles
+    cannot_tell = found.comparison.obstacles
     fits = tuple(explain(found.problem, most=0) if cannot_tell else explain(found.problem))
     return ExplainedLog(found, fits, is_healthy(found.problem, fits[0]))
 
@@ -101,9 +94,7 @@ def explain(
             first = likely if stage == 0 else likely // 2
             strained = _strained(fit)
             for place, (gain, hypothesis, values) in enumerate(gains):
-                if (place >= first or gain < least) and not any(
-                    strained & set(parameter.paths) for parameter in hypothesis.parameters
-                ):
+                if (place >= first or gain < least) and not strained & hypothesis.paths:
                     continue
                 hypotheses = (*fit.hypotheses, hypothesis)
                 key = names(hypotheses)
@@ -196,15 +187,12 @@ def _simpler(problem, hypotheses):
 
 def _value(parameter, hypothesis, fit):
     """What a fit says of a number: its own value, or the mean of those of the more general cause."""
-    if parameter.paths[0] in fit.values:
-        return fit.values[parameter.paths[0]]
+    if parameter.path in fit.values:
+        return fit.values[parameter.path]
     general = next(s for s in fit.hypotheses if s.definition.special == hypothesis.cause)
     place = hypothesis.parameters.index(parameter)
     return float(
         np.mean(
-            [
-                fit.values[k.paths[0]]
-                for k in general.parameters[place :: len(hypothesis.parameters)]
-            ]
+            [fit.values[k.path] for k in general.parameters[place :: len(hypothesis.parameters)]]
         )
     )

@@ -1,22 +1,15 @@
 """The evidence behind a verdict as values: what sets of causes gain, how large they are, what is left of the log."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.search import without_causes
-from shipcosim.diagnose.explanation.verdict import gained
+from shipcosim.diagnose.explanation.verdict import JudgedLog, gained
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.parts import explained
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.explanation.verdict import JudgedLog
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.ship.model import ShipModel
-
+from shipcosim.diagnose.ship.model import ShipModel
 
 MOVED = 2.0
 """Standard deviations, before and after the log, by which a number of the form has moved. [1]"""
@@ -166,7 +159,7 @@ def evidence_of(log: JudgedLog) -> Evidence:
 def _sizes(fit):
     for hypothesis in fit.hypotheses:
         for parameter in hypothesis.parameters:
-            path = parameter.paths[0]
+            path = parameter.path
             size = (fit.values[path] - parameter.neutral) / parameter.typical
             std = fit.std[path] / parameter.typical
             yield SizeEstimate(hypothesis.cause, hypothesis.component, parameter.name, size, std)

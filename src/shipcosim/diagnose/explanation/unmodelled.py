@@ -1,12 +1,9 @@
 """Unmodelled errors: whether a force on the ship, or an error of a channel, is left that no known cause explains."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.thresholds import (
@@ -23,10 +20,6 @@ from shipcosim.diagnose.inference.thresholds import (
 from shipcosim.diagnose.numerics import log_survival
 from shipcosim.diagnose.ship.environment import piecewise_linear_basis
 from shipcosim.diagnose.ship.measured_motion import readings
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-
 
 FORCES = ("slow", "with the heading", "periodic")
 """Kinds of unmodelled errors that push the ship."""

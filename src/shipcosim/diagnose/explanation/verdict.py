@@ -1,8 +1,6 @@
 """From fitted sets of causes to a verdict: what may be named, how sure, and what cannot be told apart."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -102,15 +100,14 @@ def judged(explained: ExplainedLog) -> JudgedLog:
     """The verdict on an explained log, by what its causes gain beyond what they gain on healthy logs like it."""
     problem = explained.identification.problem
     fits = explained.fits
-    comparison = explained.identification.comparison
-    if comparison is not None and comparison.obstacles:
+    if explained.identification.comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
     without_wind = problem.record.wind is None
     usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
     found = judge_against_healthy(
         fits,
         lambda fit: unmodelled_gains(problem, fit),
-        lambda fit: _largest_null_gains(problem, fit, fits),
+        lambda fit: null_gains(problem, fit.motion, fit.hypotheses),
         null={hypothesis.label: usual for hypothesis in problem.hypotheses} if usual else {},
         without_wind=without_wind,
     )
@@ -120,7 +117,7 @@ def judged(explained: ExplainedLog) -> JudgedLog:
 def judge_against_healthy(
     fits: Sequence[Any],
     gains_of: Callable[[Any], dict[str, float]],
-    healthy_gains: Callable[[Any], dict[str, float]],
+    healthy_gains: Callable[[Any], Mapping[str, Sequence[float] | np.ndarray]],
     *,
     null: dict[str, float],
     without_wind: bool,
@@ -161,9 +158,20 @@ def judge_against_healthy(
         judgement.verdict == "unknown"
         and judge([without_causes(fits)], unmodelled_beside).verdict == "unknown"
     )
-    simulated = {} if is_unknown else healthy_gains(judgement.fit)
-    if simulated:
-        null = {label: null.get(label, 0.0) + gain for label, gain in simulated.items()}
+    # Healthy logs are simulated where a cause gains so little that chance may give it.
+    fit = judgement.fit
+    if not is_unknown and any(
+        gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses
+    ):
+        null = {
+            label: null.get(label, 0.0)
+            + (
+                float(max(np.mean(values) + 3.0 * np.std(values), np.max(values)))
+                if len(values)
+                else NULL_GAIN_UNKNOWN
+            )
+            for label, values in healthy_gains(fit).items()
+        }
         judgement = judge(fits, unmodelled_beside, null)
     return judgement, unmodelled[judgement.fit], null
 
@@ -173,7 +181,7 @@ def with_crude_model(log: JudgedLog) -> JudgedLog:
     found = log.explained.identification
     comparison = found.comparison
     unclear = any(fault.alternatives for fault in found.faults)
-    if comparison is None or comparison.obstacles or comparison.findings or unclear:
+    if comparison.obstacles or comparison.findings or unclear:
         return log
     if log.judgement.verdict != "unknown" or comparison.ratio is None:
         return log
@@ -187,22 +195,6 @@ def usual_gain(model: ShipModel) -> float:
     if model.directions or not model.form_scale:
         return model.ordinary_errors.get(ANY_CAUSE, 0.0)
     return NULL_GAIN_OF_FORM
-
-
-def _largest_null_gains(problem, fit, fits):
-    """Largest gain of a fit's causes on simulated healthy logs, or mean and three deviations; where it could matter.
-
-    Where no healthy ship keeps to the log's track, as one that cannot go sideways, nobody knows: it is assumed.
-    """
-    if not any(gained(hypothesis, fit, fits) < FAR_ABOVE_NULL for hypothesis in fit.hypotheses):
-        return {}
-    found = null_gains(problem, fit.motion, fit.hypotheses)
-    return {
-        label: float(max(values.mean() + 3.0 * values.std(), values.max()))
-        if values.size
-        else NULL_GAIN_UNKNOWN
-        for label, values in found.items()
-    }
 
 
 def judge(
@@ -303,12 +295,11 @@ def _is_sized(hypothesis, fit):
     """Whether a cause is large enough to matter, clearly off neutral, and not at a bound."""
     parameters = hypothesis.parameters
     size = _size(hypothesis, fit)
-    std = np.hypot.reduce([fit.std[k.paths[0]] / k.typical for k in parameters]) / np.sqrt(
+    std = np.hypot.reduce([fit.std[k.path] / k.typical for k in parameters]) / np.sqrt(
         len(parameters)
     )
     at_bound = any(
-        fit.values[k.paths[0]] in k.bounds and fit.values[k.paths[0]] != k.neutral
-        for k in parameters
+        fit.values[k.path] in k.bounds and fit.values[k.path] != k.neutral for k in parameters
     )
     return not (size < hypothesis.definition.least or size < DEVIATIONS * std or at_bound)
 
@@ -322,7 +313,7 @@ def _exceeds_special(hypothesis, fit, fits):
     special = next((one for one in fitted if _is_special(one, hypothesis)), None)
     if special is None:
         return True
-    sizes = [fit.values[k.paths[0]] / k.typical for k in hypothesis.parameters]
+    sizes = [fit.values[k.path] / k.typical for k in hypothesis.parameters]
     beyond = np.ptp(np.reshape(sizes, (-1, len(special.parameters))), axis=0)
     return bool(np.linalg.norm(beyond) >= hypothesis.definition.least)
 
@@ -346,7 +337,7 @@ def _in_shape(hypothesis, fit):
 def _size(hypothesis, fit):
     """Of a cause in a fit, in units of its typical size."""
     return np.hypot.reduce(
-        [(fit.values[k.paths[0]] - k.neutral) / k.typical for k in hypothesis.parameters]
+        [(fit.values[k.path] - k.neutral) / k.typical for k in hypothesis.parameters]
     )
 
 
@@ -401,8 +392,8 @@ def _finding(hypothesis, fit, candidates):
     parameters = {
         # of the log, and of a model that knows no number better than within its tolerance
         k.name: ParameterEstimate(
-            fit.values[k.paths[0]] * k.factor,
-            float(abs(np.hypot(fit.std[k.paths[0]], k.tolerance) * k.factor)),
+            fit.values[k.path] * k.factor,
+            float(abs(np.hypot(fit.std[k.path], k.tolerance) * k.factor)),
             k.unit,
         )
         for k in hypothesis.parameters

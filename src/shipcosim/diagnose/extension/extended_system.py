@@ -1,21 +1,16 @@
 """The system extended by the findings of a diagnosis, with every number that differs from the given one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extend import Extension, extend
 from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import System, SystemStructure, read_system
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.ssp import AnyPath
+from shipcosim.ssp import AnyPath, System, SystemStructure, read_system
 
 
 @dataclass(frozen=True)

@@ -1,25 +1,21 @@
 """The catalogue of causes, read from one file each, and their hypotheses: each cause at each place of one ship."""
 
-from __future__ import annotations
-
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from pydantic import ValidationError
 
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import conversion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.ssp import AnyPath
+from shipcosim.ssp import AnyPath
 
 
 @dataclass(frozen=True)
@@ -46,6 +42,11 @@ class HypothesisParameter:
     tolerance: float
     bounds: tuple[float, float]
     factor: float
+
+    @property
+    def path(self) -> str:
+        """The first of the numbers, which stands for all of them."""
+        return self.paths[0]
 
 
 @dataclass(frozen=True)
@@ -75,12 +76,27 @@ class Hypothesis:
         """``thrust_loss of port``."""
         return label_of(self.cause, self.component)
 
+    @property
+    def paths(self) -> set[str]:
+        """All numbers of the ship that it changes."""
+        return {path for parameter in self.parameters for path in parameter.paths}
+
     def vector_of(self, parameter: HypothesisParameter) -> tuple[str, ...]:
         """Numbers that a parameter is a vector with, where the law is one of vectors that turn; else none."""
         if self.definition.law != "turning":
             return ()
         first = self.parameters.index(parameter) // 2 * 2
-        return tuple(other.paths[0] for other in self.parameters[first : first + 2])
+        return tuple(other.path for other in self.parameters[first : first + 2])
+
+
+def parameters_of(hypotheses: Iterable[Hypothesis]) -> list[HypothesisParameter]:
+    """Parameters of several hypotheses, in their order."""
+    return [parameter for one in hypotheses for parameter in one.parameters]
+
+
+def paths_of(hypotheses: Iterable[Hypothesis]) -> set[str]:
+    """Numbers of the ship that several hypotheses change."""
+    return {path for one in hypotheses for path in one.paths}
 
 
 def read_catalogue(folder: AnyPath | None = None) -> dict[str, Cause]:

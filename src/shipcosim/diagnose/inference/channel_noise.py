@@ -1,17 +1,12 @@
 """How noisy the channels can be at most, by what position and velocity agree upon, without any model of the ship."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from shipcosim.diagnose.inference.thresholds import NOISE_MARGIN, NOISE_WIDTHS, SOUND
+from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.smoothing import Kernel, is_measured, unsmoothed
 from shipcosim.models.core.kinematics import to_body
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record
 
 
 def most_white(record: Record) -> np.ndarray:
@@ -47,7 +42,7 @@ def most_white(record: Record) -> np.ndarray:
             if not is_measured(record, 3 + axis):
                 continue
             apart = np.sort(np.abs(kernel.smooth(speed) - other)[use])[: int(SOUND * use.sum())]
-            size = float(np.sqrt((apart**2).mean())) * NOISE_MARGIN
+            size = root_mean_square(apart) * NOISE_MARGIN
             of_speed = size * np.sqrt(2.0 * np.sqrt(np.pi) * rows)
             of_place = size * record.step * np.sqrt(4.0 * np.sqrt(np.pi) * rows**3)
             most[3 + axis], most[axis] = min(most[3 + axis], of_speed), min(most[axis], of_place)

@@ -5,14 +5,7 @@ cause that is present has θ ~ N(0, 1) in units of its typical size (slab). So s
 cause.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    pass
 
 
 def evidence(

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, parameters_of, paths_of
 from shipcosim.diagnose.inference.evidence import evidence
-from shipcosim.diagnose.inference.innovations import inner_products, smoothed
+from shipcosim.diagnose.inference.innovations import Gram, Noise, inner_products, smoothed
 from shipcosim.diagnose.inference.linearisation import Regressor
-from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.parts import InParts, explained, linearised_by_parts
+from shipcosim.diagnose.inference.regressors import regressors_of
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.instruments import NONLINEAR
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.innovations import Gram, Noise
-    from shipcosim.diagnose.inference.parts import InParts
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
 
 ROUNDS = 5
 _FAR = 3.0  # tolerances, beyond which nothing is linearised about
@@ -64,9 +60,7 @@ class IdentificationProblem:
     @property
     def basis(self) -> list[Regressor]:
         """All known numbers, and what every hypothesis is first sought by."""
-        return self.known(()) + [
-            column for s in self.hypotheses for group in screening_regressors(s) for column in group
-        ]
+        return self.known(()) + regressors_of(self.hypotheses)
 
     @property
     def linear(self) -> InParts:
@@ -82,12 +76,7 @@ class IdentificationProblem:
 
     def known(self, hypotheses: Sequence[Hypothesis]) -> list[Regressor]:
         """Columns of the numbers that are known within a tolerance, except those that these hypotheses change."""
-        taken = {
-            path
-            for hypothesis in hypotheses
-            for parameter in hypothesis.parameters
-            for path in parameter.paths
-        }
+        taken = paths_of(hypotheses)
         taken |= {path for hypothesis in hypotheses for path in hypothesis.definition.replaces}
         everyone = self.known_of or self.hypotheses
         taken |= {path for hypothesis in everyone for path in hypothesis.definition.companions}
@@ -246,7 +235,11 @@ def _fitted(problem, hypotheses, values, rounds):
         motion = fit.motion
         values = next_values(fit)
         about = tolerated(fit)
-        if _moved(fit, values) < 0.02 and last and abs(fit.score - last.score) < 1.0:
+        if (
+            largest_move(fit, values, fit.model.get) < 0.02
+            and last
+            and abs(fit.score - last.score) < 1.0
+        ):
             break
         last = fit
     return fit
@@ -261,11 +254,10 @@ def _impossible(problem, hypotheses, values, columns, about_it) -> Fit:
     return Fit(tuple(hypotheses), dict(values), spread, -np.inf, *rest, *about)
 
 
-def _moved(fit: Fit, values: Mapping[str, float]) -> float:
+def largest_move(fit: Fit, values: Mapping[str, float], value_of: Callable[[str], float]) -> float:
     """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
-    parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
     return max(
-        (abs(values[k.paths[0]] - fit.model.get(k.paths[0])) / k.typical for k in parameters),
+        (abs(values[k.path] - value_of(k.path)) / k.typical for k in parameters_of(fit.hypotheses)),
         default=0.0,
     )
 
@@ -278,11 +270,9 @@ def own_columns(
     found = [Regressor({path: problem.model.tolerances[path]}) for path in about]
     # The regressor of a parameter of a hypothesis.
     return found + [
-        Regressor(
-            dict.fromkeys(parameter.paths, parameter.typical), vector=one.vector_of(parameter)
-        )
+        Regressor(dict.fromkeys(of.paths, of.typical), vector=one.vector_of(of))
         for one in hypotheses
-        for parameter in one.parameters
+        for of in one.parameters
     ]
 
 
@@ -351,17 +341,17 @@ def linearised(
 
 def deviations(hypotheses: Sequence[Hypothesis], covariance: np.ndarray) -> dict[str, float]:
     """Standard deviation of each parameter of some hypotheses, whose columns are the last."""
-    parameters = [parameter for hypothesis in hypotheses for parameter in hypothesis.parameters]
+    parameters = parameters_of(hypotheses)
     found = np.sqrt(np.diag(covariance))[len(covariance) - len(parameters) :]
     return {
-        one.paths[0]: float(deviation * one.typical)
+        one.path: float(deviation * one.typical)
         for one, deviation in zip(parameters, found, strict=True)
     }
 
 
 def next_values(fit: Fit) -> dict[str, float]:
     """Values of the numbers at the posterior's mean, within their bounds."""
-    parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
+    parameters = parameters_of(fit.hypotheses)
     found = dict(fit.values)
     for parameter, theta in zip(
         parameters, fit.theta[fit.theta.size - len(parameters) :], strict=True
@@ -376,8 +366,7 @@ def bounded(hypotheses: Sequence[Hypothesis], values: Mapping[str, float]) -> di
     """Values with the numbers that some hypotheses turn within their bounds."""
     bounds = {
         path: parameter.bounds
-        for hypothesis in hypotheses
-        for parameter in hypothesis.parameters
+        for parameter in parameters_of(hypotheses)
         for path in parameter.paths
     }
     return {

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.inference import kalman
-from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES
-from shipcosim.diagnose.inference.parts import in_parts
+from shipcosim.diagnose.inference.linearisation import SLOW_STD, SLOW_TIME, STATES, Linear
+from shipcosim.diagnose.inference.parts import InParts, in_parts
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.models.control.wave_filter import wave_transition
 from shipcosim.models.core.motion import Motion
 
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.linearisation import Linear
-    from shipcosim.diagnose.inference.parts import InParts
-    from shipcosim.diagnose.ship.inputs import Record
-
-
+_SLOW = range(9, 12)  # states of slow errors
+_PLACE = range(12, 15)  # of what waves add to position and heading
+_SPEED = range(15, 18)  # and to the velocity
 WAVE_DAMPING = 0.1
 """Of the oscillator whose answer to white noise first-order wave motion resembles (Fossen 2011, section 8.2.6)."""
 
@@ -291,9 +289,9 @@ def _steady(noise: Noise, h: float) -> np.ndarray:
     """What of a transition is the same at all rows: slow errors fade, waves swing; (..., 18, 18)."""
     a, b, c, d = oscillation(noise, h)[0]
     W = np.zeros((*a.shape[:-1], STATES, STATES))
-    W[..., range(9, 12), range(9, 12)] = np.exp(-h / SLOW_TIME)
-    W[..., range(12, 15), range(12, 15)], W[..., range(12, 15), range(15, 18)] = a, b
-    W[..., range(15, 18), range(12, 15)], W[..., range(15, 18), range(15, 18)] = c, d
+    W[..., _SLOW, _SLOW] = np.exp(-h / SLOW_TIME)
+    W[..., _PLACE, _PLACE], W[..., _PLACE, _SPEED] = a, b
+    W[..., _SPEED, _PLACE], W[..., _SPEED, _SPEED] = c, d
     return W
 
 
@@ -305,10 +303,8 @@ def _process(noise: Noise, h: float) -> np.ndarray:
     slow = np.broadcast_to(SLOW_STD**2 * (1.0 - np.exp(-2.0 * h / SLOW_TIME)), jolt.shape)
     still = np.zeros(jolt.shape)
     Q = np.concatenate([place, jolt, walk, slow, still, still], axis=-1)[..., None] * np.eye(STATES)
-    _, (Q[..., range(12, 15), range(12, 15)], both, Q[..., range(15, 18), range(15, 18)]) = (
-        oscillation(noise, h)
-    )
-    Q[..., range(12, 15), range(15, 18)] = Q[..., range(15, 18), range(12, 15)] = both
+    _, (Q[..., _PLACE, _PLACE], both, Q[..., _SPEED, _SPEED]) = oscillation(noise, h)
+    Q[..., _PLACE, _SPEED] = Q[..., _SPEED, _PLACE] = both
     Q[..., 2, 5] = Q[..., 5, 2] = (
         0.5 * h * jolt[..., 2]
     )  # along surge and sway it would turn with the ship

@@ -4,23 +4,18 @@ About a motion near the measured one the ship is a linear system that varies in 
 rows of a log and over several logs; only the filter goes from row to row.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.ship.dynamics import loads, motion_rates, rate_difference
+from shipcosim.diagnose.ship.inputs import Inputs, Record
 from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.integrate import rk4
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Inputs, Record
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 STATES = 18
 """x, y, psi, u, v, r, an acceleration that nobody explains (3), slow errors of position and heading (3), what waves add

@@ -1,20 +1,13 @@
 """How noisy a log is: levels of its channels and of what jolts the ship, by maximum likelihood."""
 
-from __future__ import annotations
-
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.inference.innovations import Noise, log_likelihoods, oscillation
-from shipcosim.diagnose.inference.parts import explained
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.linearisation import Linear
-    from shipcosim.diagnose.inference.parts import InParts
-    from shipcosim.diagnose.ship.inputs import Record
-
+from shipcosim.diagnose.inference.linearisation import Linear
+from shipcosim.diagnose.inference.parts import InParts, explained
+from shipcosim.diagnose.ship.inputs import Record
 
 _GROUPS = (
     ("white", (0, 1)),

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.diagnose.inference.linearisation import Linear, linearise
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.linearisation import Regressor
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
-
+from shipcosim.diagnose.inference.linearisation import Linear, Regressor, linearise
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
 
 PART = 4096
 """Most rows of a part: as many as a processor's cache holds series of. A log of an hour at 1 Hz is one part."""

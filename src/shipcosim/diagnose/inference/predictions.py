@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.inference.innovations import innovations, smoothed
+from shipcosim.diagnose.inference.innovations import Noise, innovations, smoothed
 from shipcosim.diagnose.inference.linearisation import Linear, advanced, rows_first, runge_kutta
 from shipcosim.diagnose.inference.thresholds import FASTEST, FASTEST_TURN, REFERENCE_JOLTS
-from shipcosim.diagnose.ship.inputs import part_of
+from shipcosim.diagnose.ship.inputs import Record, part_of
 from shipcosim.diagnose.ship.instruments import LAGS
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.kinematics import to_body, to_ned
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.innovations import Noise
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 _FORCE = slice(6, 9)
 

@@ -1,16 +1,15 @@
 """The identification problem of a repaired log: which causes it could show, and how noisy it is."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
-from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of
+from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis, hypotheses_of, parameters_of
 from shipcosim.diagnose.inference.channel_noise import most_white
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted, prepared
+from shipcosim.diagnose.inference.innovations import Noise
 from shipcosim.diagnose.inference.noise import first_noise, tuned
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.inference.thresholds import (
@@ -19,16 +18,9 @@ from shipcosim.diagnose.inference.thresholds import (
     MOST_WALK,
     TUNED_BESIDE,
 )
-from shipcosim.diagnose.ship.inputs import first_motion, record_of
+from shipcosim.diagnose.ship.inputs import Record, first_motion, record_of
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.surrogate_building import with_surrogates
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.hypotheses.catalogue import Cause, Hypothesis
-    from shipcosim.diagnose.inference.innovations import Noise
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 def identification_problem(
@@ -61,9 +53,10 @@ def identification_problem(
             for hypothesis in everyone
             if hypothesis.definition.without_wind == "allowed for"
         ]
-        parameters = [parameter for hypothesis in allowed for parameter in hypothesis.parameters]
         unknown_wind = {
-            path: parameter.typical for parameter in parameters for path in parameter.paths
+            path: parameter.typical
+            for parameter in parameters_of(allowed)
+            for path in parameter.paths
         }
         ship = replace(ship, tolerances=ship.tolerances | unknown_wind)
     wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)

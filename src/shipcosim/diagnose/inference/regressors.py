@@ -1,19 +1,19 @@
 """Regressors by which a hypothesis is first sought in a log."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.linearisation import Regressor
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-
 
 DIRECTIONS = 12
 """Directions in which a vector is sought, evenly over the circle."""
+
+
+def regressors_of(hypotheses: Iterable[Hypothesis]) -> list[Regressor]:
+    """All regressors by which several hypotheses are first sought."""
+    return [column for one in hypotheses for group in screening_regressors(one) for column in group]
 
 
 def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
@@ -30,7 +30,7 @@ def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
         return [
             [Regressor({path: parameters[0].typical}) for path in hypothesis.definition.sought_by]
         ]
-    pair = (parameters[0].paths[0], parameters[1].paths[0])
+    pair = (parameters[0].path, parameters[1].path)
     size = parameters[0].typical
     angles = 2.0 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
     return [

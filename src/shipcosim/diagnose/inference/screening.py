@@ -1,22 +1,16 @@
 """Screening of hypotheses: what each would gain in log-evidence beside a fit, linearised once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside
-from shipcosim.diagnose.inference.regressors import screening_regressors
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-
+from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 
 Gain = tuple[float, "Hypothesis", dict[str, float]]
 """Gain in log-evidence of a hypothesis, and first values of its parameters."""
@@ -41,13 +35,7 @@ def screened(problem: IdentificationProblem, fit: Fit) -> list[Gain]:
         Gain, hypothesis, first values of the numbers that it changes; best first.
     """
     wanted = [s for s in problem.hypotheses if s not in fit.hypotheses]
-    added = [
-        column
-        for hypothesis in wanted
-        for group in screening_regressors(hypothesis)
-        for column in group
-    ]
-    linear = beside(fit.linear, problem.base_of(added))
+    linear = beside(fit.linear, problem.base_of(regressors_of(wanted)))
     products = inner_products(linear, problem.noise, problem.record).products
     return gains(products, fit.columns, fit.centre, wanted, fit.model.get)
 
@@ -117,7 +105,7 @@ def _together(
         first, grown = np.array([values[path] for path in hypothesis.definition.sought_by]).reshape(
             2, 2
         )
-        names = [parameter.paths[0] for parameter in hypothesis.parameters]
+        names = [parameter.path for parameter in hypothesis.parameters]
         ends = _one_way(first, first + grown)
         values = dict(zip(names, map(float, np.concatenate(ends)), strict=True))
     return float(scores[best] + np.log(np.exp(scores - scores[best]).mean())), values

@@ -4,8 +4,6 @@ They are threads: the compiled filter and NumPy's loops let others run meanwhile
 process. Each computation is the same as alone, so results are equal to the last digit however many run.
 """
 
-from __future__ import annotations
-
 import os
 import threading
 from collections.abc import Callable, Iterable

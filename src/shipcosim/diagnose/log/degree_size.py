@@ -1,7 +1,5 @@
 """Size of a degree on the earth."""
 
-from __future__ import annotations
-
 import numpy as np
 
 EQUATORIAL_RADIUS = 6378137.0  # [m, 1] WGS 84

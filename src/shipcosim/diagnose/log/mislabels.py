@@ -1,15 +1,13 @@
 """What a channel can be instead of what its label says, and how to put it right."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from shipcosim.angles import wrap_series
-from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.log.checks.samples import quantum
+from shipcosim.diagnose.finding import Finding, Segment
+from shipcosim.diagnose.log.checks.samples import noise_of, quantum
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
 
@@ -233,9 +231,7 @@ def possible(labels: Iterable[Mislabel], log: Container[str]) -> list[Mislabel]:
     return [label for label in labels if all(role in log for role in label.channels)]
 
 
-def finding_of(
-    mislabel: Mislabel, probability: float, segment: tuple[float, float] | None = None
-) -> Finding:
+def finding_of(mislabel: Mislabel, probability: float, segment: Segment | None = None) -> Finding:
     """The finding that a log has a mislabel, in a segment (from, to) [s] or throughout."""
     segments = (segment,) if segment else ()
     return Finding(
@@ -274,7 +270,7 @@ def mislabel_in(finding: Finding) -> Mislabel:
 
 
 def undone(
-    log: dict[str, np.ndarray], mislabel: Mislabel, segments: Sequence[tuple[float, float]]
+    log: dict[str, np.ndarray], mislabel: Mislabel, segments: Sequence[Segment]
 ) -> dict[str, np.ndarray]:
     """The log, a dict of arrays by role with `time`, with a mislabel undone in some segments, or throughout.
 
@@ -293,5 +289,5 @@ def undone(
 def _is_rounded_away(values):
     """Whether a channel's noise is less than half its resolution, so that errors of rounding do not average out."""
     values = values[np.isfinite(values)]
-    noise = np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0) if len(values) > 2 else 0.0
+    noise = noise_of(values) if len(values) > 2 else 0.0
     return bool(noise <= 0.5 * quantum(values))

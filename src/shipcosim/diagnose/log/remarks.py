@@ -1,17 +1,11 @@
 """What is ordinary in a log and handled without naming a fault: unordered rows, dropouts, outliers, uneven times."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.rows import usable_rows
 from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
-
-if TYPE_CHECKING:
-    import xarray
 
 
 def remarks(log: xarray.Dataset) -> list[str]:

@@ -1,13 +1,12 @@
 """A log as the simulation can use it: faults that were found undone or cut out, rows evenly spaced."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.angles import wrap_series
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
@@ -15,12 +14,6 @@ from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usu
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
-
 
 CUT_OUT = ("gap", "heading_wrap")
 
@@ -146,18 +139,21 @@ def _put_right(time, channels, findings):
         mislabel = mislabel_of(finding)
         if mislabel is not None and finding.segments:
             channels = undone(channels, mislabel, finding.segments)
+    cut_out = [finding for finding in findings if finding.cause in CUT_OUT]
+    channels = without_findings(channels, cut_out)
     channels.pop("time")
-    for role, bad in outliers(channels).items():
-        channels[role] = np.where(bad, np.nan, channels[role])
-    for finding in findings:
-        if finding.cause in CUT_OUT:
-            bad = inside(time, finding.segments)
-            channels |= {
-                role: np.where(bad, np.nan, channels[role])
-                for role in finding.channels
-                if role in channels
-            }
     return channels
+
+
+def without_findings(log: dict, findings: Sequence[Finding]) -> dict:
+    """A log without outliers, and without what findings say of their segments and channels."""
+    bad_rows = list(outliers(log).items())
+    for finding in findings:
+        here = inside(log["time"], finding.segments)
+        bad_rows += [(role, here) for role in finding.channels if role in log]
+    for role, bad in bad_rows:
+        log = log | {role: np.where(bad, np.nan, log[role])}
+    return log
 
 
 def _is_angle(name):

@@ -1,16 +1,12 @@
 """Rows of a log: which are usable, how far apart they are, which lie in some segments; its arrays."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
+from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.log.thresholds import UNEVEN
-
-if TYPE_CHECKING:
-    import xarray
 
 
 def usable_rows(time: np.ndarray) -> np.ndarray:
@@ -36,7 +32,7 @@ def usual_distance(time: np.ndarray) -> float:
     return float(np.quantile(spans, 0.95)) if np.median(off) > UNEVEN else step
 
 
-def inside(time: np.ndarray, segments: Sequence[tuple[float, float]]) -> np.ndarray:
+def inside(time: np.ndarray, segments: Sequence[Segment]) -> np.ndarray:
     """Which times are in one of the segments; all where there is none, (n,) array of bool."""
     if not segments:
         return np.ones(len(time), bool)

@@ -1,10 +1,7 @@
 """A run as a log: the table that `shipcosim run` and `simulate` leave, with the roles that its signals have."""
 
-from __future__ import annotations
-
 import gzip
 import hashlib
-import os
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
@@ -14,6 +11,10 @@ import xarray
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.series import make_table, read_columns
+from shipcosim.ssp import AnyPath
+
+LogSource = AnyPath | xarray.Dataset
+"""A log: a file, the folder of a run, or a table."""
 
 _SHIP = {
     "north": ("x", "m"),
@@ -37,9 +38,7 @@ _WAVES = {
 _NEEDED = ("north", "east", "heading")
 
 
-def run_as_log(
-    log: str | os.PathLike | xarray.Dataset, ship: str, thrusters: Collection[str]
-) -> str | os.PathLike | xarray.Dataset:
+def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSource:
     """A log by roles of the table of a run; any other log as it is.
 
     What the instruments of a perfect ship would show: her position, heading and velocity with the waves that she

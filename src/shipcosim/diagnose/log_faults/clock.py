@@ -4,12 +4,10 @@ With ρ true seconds per logged second, a step moves the ship ρ times as far, a
 Each block of a log has a column for its own ρ; where a run of blocks agrees on one, the clock was wrong.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor, fitted, prepared
@@ -17,6 +15,7 @@ from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import rows_first
 from shipcosim.diagnose.inference.parts import with_columns
 from shipcosim.diagnose.inference.screening import screened
+from shipcosim.diagnose.log.checks.clock import differences, nats_of_rate, sums_of_runs
 from shipcosim.diagnose.log.rows import inside
 from shipcosim.diagnose.log_faults.thresholds import (
     ASPECT_APART,
@@ -39,10 +38,6 @@ from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.ship.dynamics import motion_rates
 from shipcosim.models.core.motion import Motion
 
-if TYPE_CHECKING:
-    import xarray
-
-
 ASPECTS = [0, 1], [3, 4], [2], [5]  # states of the motion: way and speed, heading and rate of turn
 
 
@@ -54,17 +49,10 @@ class _Blocks:
     match: np.ndarray
     gram: np.ndarray
 
-    def of_runs(self):
-        """Match and energy of every run of blocks, from its first block to before its last: (k + 1, k + 1) arrays."""
-        matches = np.r_[0.0, np.cumsum(self.match)]
-        grams = np.pad(np.cumsum(np.cumsum(self.gram, axis=0), axis=1), ((1, 0), (1, 0)))
-        own = np.diag(grams)
-        return matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T
-
     def with_run(self, first, last):
         """Inner products of a run with every other: (k + 1, k + 1) array."""
         sums = np.r_[0.0, np.cumsum(self.gram[:, first:last].sum(axis=1))]
-        return sums[None, :] - sums[:, None]
+        return differences(sums)
 
 
 def clock_by_response(problem: IdentificationProblem) -> Finding | None:
@@ -143,11 +131,11 @@ def is_testable(problem: IdentificationProblem) -> bool:
     blocks = _blocks(problem, _edges(problem), problem.known(()))
     count = len(blocks.edges) - 1
     span = max(int(TYPICAL_SEGMENT / (blocks.edges[1] - blocks.edges[0])), 1)
-    energies = np.diagonal(blocks.of_runs()[1], offset=span)
+    energies = np.diagonal(sums_of_runs(blocks.match, blocks.gram)[1], offset=span)
     if not energies.size:  # the log is shorter than a typical segment
         return False
     energy = np.median(energies)
-    return bool(_nats(TYPICAL_RATE * energy, energy) - 2.0 * np.log(count) > CLOCK_GAIN)
+    return bool(nats_of_rate(TYPICAL_RATE * energy, energy) - 2.0 * np.log(count) > CLOCK_GAIN)
 
 
 def _edges(problem):
@@ -160,9 +148,9 @@ def _edges(problem):
 
 def _most_likely(blocks):
     """Gain of the likeliest runs of blocks, less the cost of choosing them, and the finding; 0 and None without."""
-    match, energy = blocks.of_runs()
+    match, energy = sums_of_runs(blocks.match, blocks.gram)
     count = len(blocks.edges) - 1
-    span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
+    span = differences(np.arange(count + 1))
     block = blocks.edges[1] - blocks.edges[0]
     allowed = (span * block >= SHORTEST_CLOCK) & (span <= LARGEST_SHARE * count)
     cost = 2.0 * np.log(count)
@@ -170,7 +158,7 @@ def _most_likely(blocks):
     runs = []
     for _ in range(MOST_SEGMENTS):
         at = _best(match, energy, allowed)
-        nats = _nats(match[at], energy[at]) - cost * (1 + len(runs))
+        nats = nats_of_rate(match[at], energy[at]) - cost * (1 + len(runs))
         if nats < gain + CLOCK_GAIN * (not runs) or np.isneginf(nats):
             break
         gain = nats
@@ -199,13 +187,8 @@ def _most_likely(blocks):
     return float(gain), Finding("clock", None, "data", 0.98, rate, segments, ("time",), note=note)
 
 
-def _nats(match, energy):
-    precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
-    return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2)
-
-
 def _best(match, energy, allowed):
-    nats = np.where(allowed, _nats(match, energy), -np.inf)
+    nats = np.where(allowed, nats_of_rate(match, energy), -np.inf)
     return np.unravel_index(np.argmax(nats), nats.shape)
 
 

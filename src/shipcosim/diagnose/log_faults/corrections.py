@@ -4,8 +4,6 @@ Each step leads from one identification to the next, and gives back the one that
 step is taken where the evidence for what is put right is larger than that for any cause that would leave it as it is.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -5,16 +5,16 @@ the log as it is: where the difference adds up most is about the segment in whic
 about a motion that is smoothed with it put right, on which every wrong row counts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
+from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.innovations import inner_products, innovations
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.parts import explained, linearised_by_parts
@@ -40,15 +40,8 @@ from shipcosim.diagnose.log_faults.thresholds import (
     SHORTEST_INPUT,
     WHOLE,
 )
-from shipcosim.diagnose.ship.inputs import record_of, with_inputs_of
+from shipcosim.diagnose.ship.inputs import Record, record_of, with_inputs_of
 from shipcosim.diagnose.ship.instruments import LAGS
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.ship.inputs import Record
 
 
 def suspected_inputs(
@@ -179,7 +172,7 @@ class _Relabelled:
         record = with_inputs_of(self.problem.record, log, self.problem.model)
         return linearised_by_parts(self.problem.motion, record, self.problem.model, [], kept=False)
 
-    def likelihood(self, ends: tuple[int, int], segment: Sequence[tuple[float, float]]) -> float:
+    def likelihood(self, ends: tuple[int, int], segment: Sequence[Segment]) -> float:
         """Log-likelihood with the mislabel undone in a segment [s] between two rows, up to a constant. [nats]"""
         problem = self.problem
         steps = len(self.right.transition)
@@ -223,7 +216,7 @@ def _mislabels(log, model):
 
 
 def with_label(
-    log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[tuple[float, float]] = ()
+    log: xarray.Dataset, mislabel: Mislabel, segments: Sequence[Segment] = ()
 ) -> xarray.Dataset:
     """A repaired log with a mislabel undone, in segments [s] or everywhere."""
     fixed = undone(arrays_of(log), mislabel, segments)

@@ -4,14 +4,14 @@ On a ship that hardly moves position against velocity says little, and at one he
 surge. By her equations of motion each label is as likely as the motion that it describes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
+from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.innovations import innovations, smoothed
 from shipcosim.diagnose.inference.noise import first_noise
 from shipcosim.diagnose.inference.parts import linearised_by_parts
@@ -36,13 +36,6 @@ from shipcosim.diagnose.log_faults.thresholds import (
 )
 from shipcosim.diagnose.ship.inputs import CHANNELS, first_motion, record_of
 from shipcosim.diagnose.ship.stretches import in_stretches
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
-
 
 LABELS = (HEADING_LABELS[0], *POSITION_LABELS)
 

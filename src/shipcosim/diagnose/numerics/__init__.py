@@ -7,6 +7,7 @@ from shipcosim.diagnose.numerics.bands import Bands
 from shipcosim.diagnose.numerics.chi_square import log_survival, survival
 from shipcosim.diagnose.numerics.filters import gaussian_filter, moving_average
 from shipcosim.diagnose.numerics.least_squares import least_squares
+from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
 from shipcosim.diagnose.numerics.splines import spline_integral
 from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
 
@@ -16,6 +17,7 @@ __all__ = [
     "least_squares",
     "log_survival",
     "moving_average",
+    "root_mean_square",
     "solve_tridiagonal",
     "spline_integral",
     "survival",

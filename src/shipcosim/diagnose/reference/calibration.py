@@ -1,7 +1,5 @@
 """The ship as her logs would have her, where she is known to be well: a fit of her numbers alone, and its reference."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -13,6 +11,7 @@ from shipcosim.diagnose.explanation.form import of_scale, scores_by_scale
 from shipcosim.diagnose.explanation.search import explain
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import admissible
+from shipcosim.diagnose.hypotheses.catalogue import paths_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.linearisation import Regressor
@@ -183,9 +182,7 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
 
 def _is_known_of_ship(column: Regressor, fit: JointFit) -> bool:
     """Whether a column is of known numbers of the ship, and of no cause."""
-    turned = {
-        path for one in fit.hypotheses for parameter in one.parameters for path in parameter.paths
-    }
+    turned = paths_of(fit.hypotheses)
     return not any(ShipModel.is_of_day(path) or path in turned for path in column.changes)
 
 

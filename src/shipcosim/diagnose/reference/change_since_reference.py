@@ -1,7 +1,5 @@
 """What has changed since a reference: the size of a cause at the reference beside what it is now."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -40,11 +38,10 @@ def with_sizes_at_reference(
         hypothesis = hypotheses.get(finding.label) if finding.kind == "physics" else None
         before = {
             of.name: ParameterEstimate(
-                known[path].estimate * of.factor, known[path].std * abs(of.factor), of.unit
+                known[of.path].estimate * of.factor, known[of.path].std * abs(of.factor), of.unit
             )
             for of in (hypothesis.parameters if hypothesis else ())
-            for path in of.paths[:1]
-            if path in known
+            if of.path in known
         }
         found.append(replace(finding, at_reference=before) if before else finding)
     return tuple(found)

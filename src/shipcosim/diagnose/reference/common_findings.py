@@ -1,26 +1,20 @@
 """What several logs of one ship have in common before any cause is sought: faults of the data, ratio, discrepancies."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
+import xarray
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
+from shipcosim.diagnose.comparison.labels import Labels
 from shipcosim.diagnose.comparison.thresholds import COMMON_SPREAD
 from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
 from shipcosim.diagnose.log.mislabels import DRIVES, mislabel_in, undone
 from shipcosim.diagnose.numerics import survival
 from shipcosim.diagnose.reference.thresholds import APART, SAME_RATIO
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.comparison.labels import Labels
-
 
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _What = TypeVar("_What", Finding, Discrepancy)

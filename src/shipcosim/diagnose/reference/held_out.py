@@ -1,19 +1,20 @@
 """What common causes gain in each log: the system extended by what the other logs say, co-simulated over this one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.extension.extend import extend
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
-from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, paths_of
+from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.inference.fitting import IdentificationProblem, fitted
 from shipcosim.diagnose.reference.joint_fit import JointFit, fitted_jointly
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log, values_in
 from shipcosim.diagnose.reference.thresholds import MOST_PIECES
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.cosimulation import Replayed
 from shipcosim.diagnose.validation.gain import calibrated
 from shipcosim.diagnose.validation.replays import findings_of
@@ -28,13 +29,6 @@ from shipcosim.diagnose.validation.tracks import (
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
 from shipcosim.temporary import temporary_folder
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.extension.extended_system import ExtendedSystem
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)
@@ -97,15 +91,10 @@ def sizes_without(
     known = [
         one for one in hypotheses if not is_in_one_log(one) or one.component in others.problems
     ]
-    fit = fitted_jointly(
-        others, known, {path: value for path, value in values.items() if _in(path, known)}, rounds=3
-    )
+    start = {path: value for path, value in values.items() if path in paths_of(known)}
+    fit = fitted_jointly(others, known, start, rounds=3)
     of_ship = {hypothesis.label for hypothesis in known if not is_in_one_log(hypothesis)}
     return [finding for finding in findings_of(fit) if finding.label in of_ship]
-
-
-def _in(path: str, hypotheses: Sequence[Hypothesis]) -> bool:
-    return any(path in parameter.paths for one in hypotheses for parameter in one.parameters)
 
 
 def sizes_by_log(
@@ -124,12 +113,8 @@ def sizes_by_log(
     found: dict[str, dict[str, dict[str, ParameterEstimate]]] = {}
     for name, problem in logs.problems.items():
         own = [one for _, one in logs.all_within(name, hypotheses)]
-        fit = fitted(
-            problem,
-            own,
-            {p: v for p, v in values_in(name, values).items() if _in(p, own)},
-            rounds=3,
-        )
+        start = {p: v for p, v in values_in(name, values).items() if p in paths_of(own)}
+        fit = fitted(problem, own, start, rounds=3)
         for finding, one in zip(findings_of(fit), own, strict=True):
             known = {of.name: of.tolerance * of.factor for of in one.parameters}
             found.setdefault(finding.label, {})[name] = {

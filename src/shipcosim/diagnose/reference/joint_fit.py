@@ -1,7 +1,5 @@
 """Sets of causes fitted to several logs together."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -14,6 +12,7 @@ from shipcosim.diagnose.inference.fitting import (
     Fit,
     bounded,
     deviations,
+    largest_move,
     linearised,
     next_values,
     own_columns,
@@ -22,7 +21,7 @@ from shipcosim.diagnose.inference.fitting import (
 from shipcosim.diagnose.inference.innovations import Gram, inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import beside
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import regressors_of
 from shipcosim.diagnose.inference.screening import Gain, gains
 from shipcosim.diagnose.reference.several_logs import Layout, SeveralLogs, laid_out, values_in
 from shipcosim.diagnose.reference.thresholds import CLOSE
@@ -106,7 +105,11 @@ def fitted_jointly(
             name: tolerated(part) | (_at_the_mean(fit, common) if about_all else {})
             for name, part in fit.parts.items()
         }
-        if _moved(fit, values) < CLOSE and last and abs(fit.score - last.score) < 1.0:
+        if (
+            largest_move(fit, values, fit.get) < CLOSE
+            and last
+            and abs(fit.score - last.score) < 1.0
+        ):
             break
         last = fit
     return fit
@@ -197,26 +200,13 @@ def _at_the_mean(fit: JointFit, common: np.ndarray) -> dict[str, float]:
     return found
 
 
-def _moved(fit: JointFit, values: Mapping[str, float]) -> float:
-    """How far the next values of the parameters are from those of a fit, in typical sizes; the largest."""
-    parameters = [parameter for hypothesis in fit.hypotheses for parameter in hypothesis.parameters]
-    return max(
-        (abs(values[k.paths[0]] - fit.get(k.paths[0])) / k.typical for k in parameters), default=0.0
-    )
-
-
 def screened_jointly(logs: SeveralLogs, fit: JointFit) -> list[Gain]:
     """Gain in log-evidence of each hypothesis beside a fit to several logs, linearised once; as `screened`."""
     wanted = [one for one in logs.hypotheses if one not in fit.hypotheses]
     found = {}
     for name, problem in logs.problems.items():
         part = fit.parts[name]
-        added = [
-            column
-            for _, own in logs.all_within(name, wanted)
-            for group in screening_regressors(own)
-            for column in group
-        ]
+        added = regressors_of(own for _, own in logs.all_within(name, wanted))
         linear = beside(part.linear, problem.base_of(added))
         found[name] = inner_products(linear, problem.noise, problem.record).products
     layout = screening_layout(logs, fit.layout, wanted)
@@ -243,7 +233,7 @@ def screening_layout(logs: SeveralLogs, layout: Layout, wanted: Sequence[Hypothe
     regressors = list(layout.regressors)
     places = {name: list(own) for name, own in layout.places.items()}
     for hypothesis in wanted:
-        columns = [column for group in screening_regressors(hypothesis) for column in group]
+        columns = regressors_of([hypothesis])
         where = range(len(regressors), len(regressors) + len(columns))
         for name, own in places.items():
             if logs.within(name, hypothesis) is not None:

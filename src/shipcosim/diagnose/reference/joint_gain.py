@@ -1,15 +1,12 @@
 """The entries `baseline` and `gain` of a joint diagnosis: over all logs, each by what the other logs say."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.reference.held_out import LogErrors
-from shipcosim.diagnose.validation.gain import share_explained
+from shipcosim.diagnose.validation.gain import resampled_sums, share_explained
 
 
 def joint_baseline(errors: Mapping[str, LogErrors]) -> dict[str, list[float]] | None:
@@ -59,15 +56,20 @@ def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any]
         where nothing in the ship is named, or no other log says how large it is.
     """
     judged = {name: one for name, one in errors.items() if one.fitted_on and one.misses is not None}
+    # Predictions at whose end the log has a position.
     squares = {
-        name: _whole(one.misses) ** 2 for name, one in judged.items() if one.misses is not None
+        name: one.misses[:, np.isfinite(one.misses).all(axis=0)] ** 2
+        for name, one in judged.items()
+        if one.misses is not None
     }
     squares = {name: of for name, of in squares.items() if of.size}
     if not squares:
         return None
     before, after, floor = _roots(np.mean([of.mean(axis=1) for of in squares.values()], axis=0))
     rng = np.random.default_rng(seed)
-    drawn = _roots(np.mean([_drawn(of, rng) for of in squares.values()], axis=0))
+    drawn = _roots(
+        np.mean([resampled_sums(of, rng) / of.shape[1] for of in squares.values()], axis=0)
+    )
     share = share_explained(before, after, floor)
     some = bool(np.isfinite(share))
     return {
@@ -82,17 +84,6 @@ def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any]
         else None,
         "logs": list(squares),
     }
-
-
-def _whole(misses: np.ndarray) -> np.ndarray:
-    """Predictions at whose end the log has a position."""
-    return misses[:, np.isfinite(misses).all(axis=0)]
-
-
-def _drawn(squares: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Mean squares of draws of predictions, (3, draws) array."""
-    count = squares.shape[1]
-    return squares @ rng.multinomial(count, np.full(count, 1.0 / count), size=DRAWS).T / count
 
 
 def _roots(means: np.ndarray) -> np.ndarray:

@@ -1,23 +1,19 @@
 """What several logs of one ship say together: the content of the diagnosis.json of a joint diagnosis."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.extension.extend import Extension
+from shipcosim.diagnose.extension.extended_system import NumberChange
 from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, ParameterEstimate
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.common_findings import RatioOfLogs, Shared
+from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
 from shipcosim.diagnose.result import SCHEMA, Diagnosis
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.extension.extend import Extension
-    from shipcosim.diagnose.extension.extended_system import NumberChange
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.diagnose.reference.held_out import LogErrors
-    from shipcosim.ssp import System
+from shipcosim.ssp import System
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """The verdict on several logs of one ship together: common causes, and those of each log's weather."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import cast
 
@@ -13,16 +11,13 @@ from shipcosim.diagnose.explanation.search import explain, without_causes
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import (
     Judgement,
-    gained,
     judge_against_healthy,
     usual_gain,
 )
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
-    FAR_ABOVE_NULL,
-    NULL_GAIN_UNKNOWN,
     NULL_GAIN_WITHOUT_WIND,
     TESTABLE,
 )
@@ -96,9 +91,7 @@ def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
 
 
 def _null_gains(logs, fit, fits):
-    """Largest gain of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
-    if not any(gained(one, fit, fits) < FAR_ABOVE_NULL for one in fit.hypotheses):
-        return {}
+    """Gains of a fit's causes on simulated healthy logs of the same drawn ships, as with one log."""
     nothing = cast(JointFit, without_causes(fits))
     wanted = fit.hypotheses
     layout = screening_layout(logs, nothing.layout, wanted)
@@ -115,12 +108,7 @@ def _null_gains(logs, fit, fits):
             products, nothing.columns, np.zeros(len(nothing.columns)), wanted, nothing.get
         ):
             found[one.label].append(gain)
-    return {
-        label: float(max(np.mean(values) + 3.0 * np.std(values), max(values)))
-        if values
-        else NULL_GAIN_UNKNOWN
-        for label, values in found.items()
-    }
+    return found
 
 
 def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
@@ -130,13 +118,8 @@ def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
     layout = screening_layout(logs, nothing.layout, logs.hypotheses)
     together = np.zeros(())
     for name, problem in logs.problems.items():
-        columns = list(nothing.parts[name].columns)
-        columns += [
-            c
-            for _, own in logs.all_within(name, logs.hypotheses)
-            for g in screening_regressors(own)
-            for c in g
-        ]
+        own = (one for _, one in logs.all_within(name, logs.hypotheses))
+        columns = nothing.parts[name].columns + regressors_of(own)
         products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
         together = together + layout.spread(name, products)
     groups = []

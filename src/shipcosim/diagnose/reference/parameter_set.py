@@ -1,7 +1,5 @@
 """The numbers of a reference as a parameter set of its system: the ship as she is known to be well."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem

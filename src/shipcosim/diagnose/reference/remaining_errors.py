@@ -1,7 +1,5 @@
 """What a calibrated ship still gets wrong, in each log: by numbers that this log did not give."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

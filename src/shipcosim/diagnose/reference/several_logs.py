@@ -4,8 +4,6 @@ Each log keeps its own noise, and is linearised about its own motion. A number o
 inner products of the logs add up; a number of the day has one for each log.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,9 +23,7 @@ def is_of_day(hypothesis: Hypothesis) -> bool:
 
     An instrument that is wrong, unlike what it is off within its tolerance, is wrong in all logs.
     """
-    return all(
-        path.startswith("water.") for parameter in hypothesis.parameters for path in parameter.paths
-    )
+    return all(path.startswith("water.") for path in hypothesis.paths)
 
 
 def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
@@ -43,9 +39,7 @@ def of_log(hypothesis: Hypothesis, name: str) -> Hypothesis:
 
 def is_in_one_log(hypothesis: Hypothesis) -> bool:
     """Whether a cause is of the day of one log, as `of_log` makes it."""
-    return all(
-        _SEPARATOR in path for parameter in hypothesis.parameters for path in parameter.paths
-    )
+    return all(_SEPARATOR in path for path in hypothesis.paths)
 
 
 @dataclass(frozen=True, eq=False)

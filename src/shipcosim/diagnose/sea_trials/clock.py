@@ -1,7 +1,5 @@
 """The clock that a log's own motion tells: true seconds from one row to the next, from the way over the speed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from shipcosim.diagnose.numerics import moving_average

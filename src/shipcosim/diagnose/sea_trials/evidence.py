@@ -1,25 +1,19 @@
 """Sets of causes weighed by the features of sea trials."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.features import covariance_of, features_of
 from shipcosim.diagnose.sea_trials.sailing import sailed
+from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.instruments import MOUNTING
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, HypothesisParameter
-    from shipcosim.diagnose.sea_trials.windows import SeaTrial
-    from shipcosim.diagnose.ship.model import ShipModel
-
+from shipcosim.diagnose.ship.model import ShipModel
 
 _PART = 0.3  # of the typical size, by which a cause is moved for its first derivative
 

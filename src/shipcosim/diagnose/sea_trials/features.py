@@ -7,18 +7,12 @@ takes them for the midship point, the log has them for the antenna; the model's 
 taken from the track, as these notes do, by the drift of the steady circle.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.sea_trials import thresholds
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.sea_trials.windows import SeaTrial
-
+from shipcosim.diagnose.sea_trials.windows import SeaTrial
 
 _TIMES = tuple(f"t{heading:.0f}" for heading in thresholds.HEADINGS)
 _SPEEDS = tuple(f"speed at {heading:.0f}" for heading in thresholds.HEADINGS_OF_SPEED)

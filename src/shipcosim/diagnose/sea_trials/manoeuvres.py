@@ -4,24 +4,17 @@ Lengths of way are ship lengths at the speed of approach; angles are those of ru
 sailed to both sides, on opposite courses, so that a current does not look like the ship.
 """
 
-from __future__ import annotations
-
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.sailing import settled, steered
 from shipcosim.diagnose.sea_trials.windows import SeaTrial
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _FULL = 1.0  # of the largest shaft speed of the trials
 _HALF = 0.6
@@ -141,7 +134,8 @@ def catalogue(model: ShipModel) -> list[PlannedTrial]:
         _planned("thrusters stopped at full speed", "change of speed", _FULL, Leg(10.0, 0.0)),
         _planned("crash stop from full speed", "change of speed", _FULL, Leg(6.0, -_FULL)),
     ]
-    return [*found, *_with_bow_thruster(speeds)] if _bow_thrusters(model) else found
+    sideways = (_pushes_sideways(dp_thruster_of(model, name)) for name in model.thrusters)
+    return [*found, *_with_bow_thruster(speeds)] if any(sideways) else found
 
 
 def _with_bow_thruster(speeds):
@@ -158,10 +152,6 @@ def _with_bow_thruster(speeds):
         ):
             legs = Leg(45.0, power, np.radians(angle), bow)
             yield _planned(f"turning circle {how} at {name}", "turning circle", power, legs)
-
-
-def _bow_thrusters(model):
-    return [name for name in model.thrusters if _pushes_sideways(dp_thruster_of(model, name))]
 
 
 def _pushes_sideways(unit):

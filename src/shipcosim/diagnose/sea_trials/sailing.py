@@ -1,23 +1,17 @@
 """The ship model sails the orders of sea trials, open loop: all manoeuvres and many changed ships at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.sea_trials import thresholds
+from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.dynamics import motion_rates
-from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.inputs import Inputs, ThrusterSeries
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, turned
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.sea_trials.windows import SeaTrial
-    from shipcosim.diagnose.ship.inputs import ThrusterSeries
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 def sailed(

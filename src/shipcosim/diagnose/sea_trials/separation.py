@@ -1,17 +1,17 @@
 """Which manoeuvre tells sets of causes apart that the trials cannot: computed, for every manoeuvre of the catalogue."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from shipcosim.diagnose.experiment.design import CLEAR, ExperimentDesign, differing
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
+    SetOfCauses,
+    TrialEvidence,
     blocks,
     changes_of,
     known_numbers,
@@ -26,12 +26,8 @@ from shipcosim.diagnose.sea_trials.features import (
     is_logarithm,
 )
 from shipcosim.diagnose.sea_trials.manoeuvres import as_trials, catalogue
+from shipcosim.diagnose.sea_trials.windows import SeaTrial
 from shipcosim.diagnose.ship.model import ShipModel
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.sea_trials.evidence import SetOfCauses, TrialEvidence
-    from shipcosim.diagnose.sea_trials.windows import SeaTrial
-
 
 _PART = 0.3  # of a standard deviation, by which known numbers are moved
 MOST_SETS = 4

@@ -1,11 +1,9 @@
 """A study of sea trials: which causes explain one side's circles, and how well they predict the others."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +11,9 @@ from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.experiment.design import ExperimentDesign, differing
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of, read_catalogue
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.evidence import (
     SetOfCauses,
@@ -37,13 +37,7 @@ from shipcosim.diagnose.ship.inputs import record_of
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.hypotheses.cause import Cause
-    from shipcosim.ssp import AnyPath, System
-
+from shipcosim.ssp import AnyPath, System
 
 STEPS = {
     "which manoeuvres are in the log?": 1.0,
@@ -240,7 +234,7 @@ def estimates(found: SetOfCauses) -> list[ParameterEstimate]:
 
 
 def study(
-    log: AnyPath | xarray.Dataset,
+    log: LogSource,
     system: System,
     channels: AnyPath | None = None,
     causes: AnyPath | None = None,
@@ -350,7 +344,7 @@ def studied(
     SeaTrialStudy
     """
     sides = {
-        name: [t for t in trials if (t.kind == "turning circle" and t.side == side)]
+        name: [t for t in trials if t.kind == "turning circle" and t.side == side]
         for name, side in (("port", -1), ("starboard", 1))
     }
     held_out = {}

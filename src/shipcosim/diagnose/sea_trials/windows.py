@@ -1,25 +1,20 @@
 """The sea trials of a log: straight runs, turning circles and zig-zags, by what was ordered and what the ship did."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.numerics import moving_average
 from shipcosim.diagnose.sea_trials import thresholds
 from shipcosim.diagnose.sea_trials.clock import own_clock
+from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)
@@ -46,7 +41,7 @@ class SeaTrial:
 
     kind: str
     side: int
-    logged: tuple[float, float]
+    logged: Segment
     steering: float
     time: np.ndarray
     measured: np.ndarray
@@ -62,7 +57,7 @@ class SeaTrial:
 def sea_trials_of(
     record: Record,
     model: ShipModel,
-    lost: Sequence[tuple[float, float]] = (),
+    lost: Sequence[Segment] = (),
     *,
     orders: bool = False,
 ) -> list[SeaTrial]:

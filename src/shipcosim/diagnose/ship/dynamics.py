@@ -1,15 +1,14 @@
 """Dynamics of the ship model: loads by name, and rates of position, heading and velocity over ground."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.angles import wrap
 from shipcosim.diagnose.ship.environment import share_of, swell_of
 from shipcosim.diagnose.ship.form import cross_flow_form, form_of, thrust_kept, wind_factors
+from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.third_party_fmu import drives_of
 from shipcosim.diagnose.ship.thrusters import thruster_loads
 from shipcosim.models.core.kinematics import to_body, to_ned
@@ -22,11 +21,6 @@ from shipcosim.models.environment.earth_fixed_loads import drift_force, earth_fo
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.vessel import accelerations
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Inputs
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 Alike = tuple["ShipModel", dict[str, Load]]
 _MADE_OF = {

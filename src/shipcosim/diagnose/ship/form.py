@@ -6,12 +6,10 @@ numbers that the model has, less well known than their tolerances say. The sizes
 form of one ship differs is learnt.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, make_dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,10 +18,6 @@ from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import quantity
 from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.models.ship.hull import HullParameters
-
-if TYPE_CHECKING:
-    pass
-
 
 _NEUTRAL = "neutral"
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(12)  # along the hull, over half its length

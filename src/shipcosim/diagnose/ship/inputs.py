@@ -1,28 +1,22 @@
 """A repaired log as arrays in SI: what was measured of the ship, and what drove her, on an even grid of times."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray
 
 from shipcosim.angles import unwrap_series
 from shipcosim.diagnose.numerics import gaussian_filter
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.stretches import rows_averaged, stretches_of
+from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
 from shipcosim.diagnose.ship.time_scales import fastest_rate, response_times
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
-
 
 _SHORTEST = 18.0  # s over the root of the length in m: 105 s for 33.9 m, 20 s for 1.2 m
 _FEWEST_ROWS = 60

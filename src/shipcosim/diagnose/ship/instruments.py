@@ -1,12 +1,8 @@
 """What is between the ship and her log: errors and lags of her instruments, neutral unless a cause acts."""
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
 
 from shipcosim.models.core.parameters import quantity
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """What the instruments show of a ship's motion, and the motion of which they show it."""
 
-from __future__ import annotations
-
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship import instruments

@@ -9,18 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from shipcosim.diagnose.ship.form import form_functions, form_sizes
 from shipcosim.diagnose.ship.third_party_fmu import ThirdPartyFmu
+from shipcosim.diagnose.ship.wiring import Wiring
 from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.models.propulsion.tunnel import TunnelParameters
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.wiring import Wiring
-
 
 ANY_CAUSE = "any cause"
 OWN_THRUSTERS = (AzimuthParameters, TunnelParameters)

@@ -1,7 +1,5 @@
 """The ship of a system in array form, read from the parameters of its FMUs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import MISSING, fields
 from typing import Any

@@ -1,19 +1,13 @@
 """Measured motions smoothed without a model of the ship: a Gaussian kernel, and rates by its derivative."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.numerics import gaussian_filter
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record
-
 
 _REACH = 2.5  # widths that a gap in the log reaches
 _ENOUGH = 0.2  # share of the rows that a channel must be measured in

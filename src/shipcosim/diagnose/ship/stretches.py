@@ -1,14 +1,7 @@
 """A long log in stretches: more rows than a diagnosis needs cost time, and tell it little that it does not know."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
-
-if TYPE_CHECKING:
-    import xarray
-
+import xarray
 
 _SLOW_ENOUGH = 0.16  # s over the root of the ship's length in m: rows that are closer are averaged, 0.93 s for 33.9 m
 MOST_ROWS = 6_000

@@ -1,7 +1,5 @@
 """The surrogate of a third-party FMU: its loads over a log, and their derivatives by all inputs and parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple

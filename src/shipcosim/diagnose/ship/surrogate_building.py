@@ -5,15 +5,16 @@ parameters, changed a little. The part of its loads that goes with the squared s
 of thrust, which holds for large changes too; the surrogate is linear in the rest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray
 
 from shipcosim.cosim import RunOptions, simulate
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.surrogate import QuadraticThrust, Surrogate, without_holes
 from shipcosim.diagnose.ship.third_party_fmu import (
     DRIVES,
@@ -26,13 +27,6 @@ from shipcosim.models.core.motion import Motion
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import Connection, Signal, System
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _AXES = ("X", "Y", "N")
 _CHANGE = {

@@ -1,23 +1,17 @@
 """Third-party FMUs that load the ship: what feeds them, what of their outputs reaches her, their parameters."""
 
-from __future__ import annotations
-
 import keyword
 import re
 from collections.abc import Collection
 from dataclasses import dataclass, field, make_dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from shipcosim.diagnose.ship.surrogate import ThirdPartyPart
+from shipcosim.diagnose.ship.surrogate import Surrogate, ThirdPartyPart
 from shipcosim.errors import Problem
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.parameters import quantity
 from shipcosim.series import conversion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.surrogate import Surrogate
-    from shipcosim.ssp import Component, Connection, System
-
+from shipcosim.ssp import Component, Connection, System
 
 DRIVES = {"rpm": "rpm", "thrust": "N", "azimuth": "rad"}
 """What a log says of a thruster, and in which unit it is handed on."""

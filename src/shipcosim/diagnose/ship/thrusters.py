@@ -1,23 +1,19 @@
 """Thrusters: loads of our own FMUs by logged speed and direction, and each thruster as a DP controller knows it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 from shipcosim.models.propulsion.azimuth import AzimuthParameters, azimuth_given, azimuth_loads
 from shipcosim.models.propulsion.tunnel import TunnelParameters, tunnel_loads, tunnel_replay
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Inputs
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.ssp import System
+from shipcosim.ssp import System
 
 
 class DpThruster(NamedTuple):

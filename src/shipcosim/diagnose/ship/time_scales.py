@@ -1,18 +1,13 @@
 """How fast a ship answers: the times within which her damping takes away surge, sway and yaw."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
+from shipcosim.models.ship.hull import HullParameters
 from shipcosim.models.ship.vessel import accelerations
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
-    from shipcosim.models.ship.hull import HullParameters
-
 
 _SMALL = 1e-3  # m/s, and rad/s over half the length in m: differences for slopes
 

@@ -1,14 +1,10 @@
 """Tolerances of a ship's numbers: as her parameter sets say, else in proportion to their size."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from shipcosim.ssp import System
-
+from shipcosim.ssp import System
 
 _COEFFICIENT = 0.05  # of a hull's coefficient, as of the damping in surge (assumed)
 

@@ -7,21 +7,16 @@ planned manoeuvre.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.ship.dynamics import motion_rates
-from shipcosim.diagnose.ship.inputs import Inputs
+from shipcosim.diagnose.ship.inputs import Inputs, Record, ThrusterSeries
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.models.core.integrate import euler
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.ship.inputs import Record, ThrusterSeries
-    from shipcosim.diagnose.ship.model import ShipModel
-
 
 _FREQUENCY = 0.5  # rad/s times the root of length in m over gravity, of the controller: 0.09 rad/s for 33.9 m
 _DAMPING = 0.8

@@ -1,20 +1,14 @@
 """Connections of thrusters that are not as their connectors' names say; whether they are wrong, the log decides."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.core.motion import Load
 from shipcosim.series import conversion
-
-if TYPE_CHECKING:
-    from shipcosim.ssp import System
-
+from shipcosim.ssp import System
 
 _AXES = ("X", "Y", "N")
 _DRIVES = ("rpm", "azimuth")

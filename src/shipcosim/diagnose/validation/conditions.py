@@ -1,23 +1,18 @@
 """Gains on conditions that are kept from the fit, wherever in the log they are: other headings, free drift."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.verdict import JudgedLog
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.gain import Comparison, compare
 from shipcosim.diagnose.validation.missing_force import MissingForce, missing_forces
 from shipcosim.diagnose.validation.split import is_idle, sorted_by, starts, without_headings
 from shipcosim.diagnose.validation.thresholds import FEWEST_PREDICTIONS, LEAST_TRAINED
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 
 @dataclass(frozen=True)
@@ -56,7 +51,7 @@ def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
     problem = log.problem
     fit = log.fit if is_named else without_causes(log.fits)
     found = log.explained.identification.comparison
-    plain = found.given(problem.model) if found and found.findings else None
+    plain = found.given(problem.model) if found.findings else None
     comparison = compare(problem, fit, plain=plain)
     force = missing_forces(problem, fit if is_named else None)
     held_out = compare_held_out(problem, fit, plain) if is_named and comparison is not None else {}

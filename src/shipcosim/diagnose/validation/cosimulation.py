@@ -1,30 +1,25 @@
 """The predictions of a gain as co-simulations: the system itself, from what was known at the start of each segment."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray
 
 from shipcosim.cosim import replay
 from shipcosim.diagnose.inference.predictions import missing, predicted
 from shipcosim.diagnose.ship.measured_motion import readings
 from shipcosim.diagnose.ship.third_party_fmu import DRIVES, drives_of
+from shipcosim.diagnose.validation.gain import Comparison, Predictor
 from shipcosim.diagnose.validation.split import HORIZONS, in_rows
 from shipcosim.diagnose.validation.thresholds import INPUT_DELAY, MOST, STEP, WEATHER_RATE
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.models.core.motion import Motion
+from shipcosim.options import CountProgress
 from shipcosim.series import make_table
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.validation.gain import Comparison, Predictor
-    from shipcosim.options import CountProgress
-    from shipcosim.ssp import System
+from shipcosim.ssp import System
 
 _CALM = {
     "gust_scale": 0.0,

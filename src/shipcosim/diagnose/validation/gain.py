@@ -1,14 +1,12 @@
 """What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray
 
-from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem, fitted
 from shipcosim.diagnose.inference.linearisation import linearise
 from shipcosim.diagnose.inference.predictions import (
     earth_fixed,
@@ -20,7 +18,9 @@ from shipcosim.diagnose.inference.predictions import (
     restarted,
 )
 from shipcosim.diagnose.inference.thresholds import DRAWS
+from shipcosim.diagnose.ship.inputs import Record
 from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.split import (
     HORIZONS,
     conditions,
@@ -32,11 +32,6 @@ from shipcosim.diagnose.validation.split import (
 )
 from shipcosim.diagnose.validation.thresholds import BLOCK, FADES
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 MODELS = ("plain", "bias_observer", "extended", "extended_observer", "calibrated", "floor")
 _HELD = {
@@ -428,6 +423,12 @@ def _blocks(times):
     return np.unique((times - times[0]) // BLOCK, return_inverse=True)[1]
 
 
+def resampled_sums(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Sums over as many columns as there are, drawn with repetition: (n, draws) array (bootstrap)."""
+    count = values.shape[1]
+    return values @ rng.multinomial(count, np.full(count, 1.0 / count), size=DRAWS).T
+
+
 def _resampled(squares, times, seed):
     """Mean squares of draws of blocks, (models, draws) array."""
     block = _blocks(times)
@@ -435,8 +436,5 @@ def _resampled(squares, times, seed):
     sums = np.stack(
         [np.bincount(block, weights, blocks) for weights in (*squares, np.ones(block.size))]
     )
-    draws = np.random.default_rng(seed).multinomial(
-        blocks, np.full(blocks, 1.0 / blocks), size=DRAWS
-    )
-    drawn = sums @ draws.T
+    drawn = resampled_sums(sums, np.random.default_rng(seed))
     return drawn[:-1] / drawn[-1]

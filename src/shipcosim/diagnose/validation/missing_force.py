@@ -1,24 +1,19 @@
 """The force that a model lacks over a log: what else must have acted on the ship for her to move as she did."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
 
+from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.innovations import smoothed
 from shipcosim.diagnose.inference.parts import linearised_by_parts
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import dp_thruster_of
 from shipcosim.diagnose.validation.thresholds import FEWEST_SECTOR_ROWS, FORCE_TIME, SECTORS
 from shipcosim.models.core.kinematics import to_body, to_ned
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.models.core.motion import Motion
+from shipcosim.models.core.motion import Motion
 
 
 @dataclass(frozen=True)

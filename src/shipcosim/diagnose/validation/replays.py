@@ -1,7 +1,5 @@
 """The errors of predictions again as co-simulations: the given system, and the one extended by what was fitted."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 
@@ -57,7 +55,7 @@ def with_cosimulation(
         return SimulatedLog(None, {}, False)
     in_array_form = {name: one.errors for name, one in log.held_out.items()}
     found = log.judged.explained.identification
-    beyond_doubt = found.comparison.findings if found.comparison else ()
+    beyond_doubt = found.comparison.findings
     if (log.comparison.fit.hypotheses or beyond_doubt) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
     run = partial(_cosimulated, extended, found.causes, beyond_doubt)
@@ -99,8 +97,8 @@ def findings_of(fit: Fit) -> list[Finding]:
             hypothesis.component,
             parameters={
                 of.name: ParameterEstimate(
-                    fit.values[of.paths[0]] * of.factor,
-                    abs(fit.std[of.paths[0]] * of.factor),
+                    fit.values[of.path] * of.factor,
+                    abs(fit.std[of.path] * of.factor),
                     of.unit,
                 )
                 for of in hypothesis.parameters

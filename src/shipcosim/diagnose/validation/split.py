@@ -1,14 +1,13 @@
 """Which rows of a log parameters are fitted on, and where on the others predictions can start and be checked."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.parts import InParts
-from shipcosim.diagnose.ship.inputs import part_of
+from shipcosim.diagnose.ship.inputs import Record, part_of
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.validation.thresholds import (
     IDLE,
     MEASURED_WITHIN,
@@ -19,11 +18,6 @@ from shipcosim.diagnose.validation.thresholds import (
     TURNING,
 )
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.inference.fitting import IdentificationProblem
-    from shipcosim.diagnose.ship.inputs import Record
-    from shipcosim.diagnose.ship.model import ShipModel
 
 HORIZONS = (10.0, 30.0, 60.0)
 """Of the predictions. [s]"""

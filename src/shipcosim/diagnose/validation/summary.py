@@ -1,7 +1,5 @@
 """Errors of predictions as values: root mean squares by horizon and condition, and what the causes gain in each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,21 +1,20 @@
 """A log again as simulated: open-loop predictions one after another, each from the measured state, beside the log."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray
 
 from shipcosim.angles import wrap_series
 from shipcosim.cosim import replay
+from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.inference.predictions import predicted, replayable
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.ship.inputs import CHANNELS, Record, first_motion
 from shipcosim.diagnose.ship.instruments import Instruments
 from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.third_party_fmu import number_of
 from shipcosim.diagnose.ship.time_scales import response_times
 from shipcosim.diagnose.validation.cosimulation import Replayed, driving_table
@@ -31,12 +30,7 @@ from shipcosim.diagnose.validation.thresholds import (
 )
 from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.models.core.motion import Motion
-
-if TYPE_CHECKING:
-    from shipcosim.diagnose.explanation.verdict import JudgedLog
-    from shipcosim.diagnose.ship.model import ShipModel
-    from shipcosim.options import CountProgress
-
+from shipcosim.options import CountProgress
 
 _TO_LOG = (1.0, 1.0, 180.0 / np.pi, 1.0, 1.0, 180.0 / np.pi)
 
@@ -60,7 +54,7 @@ class Tracks:
     predicted: dict[str, xarray.Dataset]
 
 
-def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool = False) -> Tracks | None:
+def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool) -> Tracks | None:
     """Tracks of a judged log, before and, where something of the model is found wrong, after.
 
     Parameters
@@ -79,10 +73,10 @@ def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool = False) -> Tracks
     record = log.problem.record
     model = log.problem.model
     comparison = log.explained.identification.comparison
-    models = {"before": comparison.given(model) if comparison else model}
+    models = {"before": comparison.given(model)}
     if is_named or has_crude:
         after = model.with_values(log.fit.values) if is_named else model
-        models["after"] = comparison.with_crude(after) if comparison and has_crude else after
+        models["after"] = comparison.with_crude(after) if has_crude else after
     try:
         return tracks_by_models(record, models, fitting_horizon(record, model))
     except ShipcosimError:
@@ -178,7 +172,11 @@ def _cosimulated(record, model, one, rows, horizon, progress):
         f"{model.vessel}.{key}_start": value
         for key, value in zip(Motion._fields, start, strict=True)
     }
-    signals = [one.signals[role] for role in CHANNELS] if one.signals else _own_signals(model)
+    signals = (
+        [one.signals[role] for role in CHANNELS]
+        if one.signals
+        else [f"{model.vessel}.{name}" for name in Motion._fields]
+    )
     duration = STEP * np.ceil((horizon + lag) / STEP - 1e-6)
     starts = record.time[rows] - lag
     run = replay(
@@ -211,10 +209,6 @@ def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
     names = tuple(Instruments().errors)
     given = {name: number_of(part, name) for name in (*names, "lag") if name in part.fmu.variables}
     return given, given.pop("lag", 0.0)
-
-
-def _own_signals(model: ShipModel) -> list[str]:
-    return [f"{model.vessel}.{name}" for name in Motion._fields]
 
 
 def _segments(record: Record, horizon: float) -> tuple[np.ndarray, int]:

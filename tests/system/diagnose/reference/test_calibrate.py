@@ -8,6 +8,7 @@ from diagnose import twin
 from diagnose.reference import ships
 
 from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names, steps_of
+from shipcosim.diagnose.comparison.compared import LogComparison
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.reference import calibration
@@ -58,7 +59,7 @@ def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
     misread = Finding("frame", kind="data", channels=("north",), note="one", alternatives=("two",))
     gross = Finding("thrust_to_inertia")
     logs = {
-        "open": SimpleNamespace(faults=(misread,), comparison=None),
+        "open": SimpleNamespace(faults=(misread,), comparison=LogComparison()),
         "poor": SimpleNamespace(
             faults=(), comparison=SimpleNamespace(obstacles=("Rows 9 s apart.",), findings=())
         ),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shipcosim.diagnose.comparison.gains import CommonRatio
-from shipcosim.diagnose.comparison.labels import LabelError
+from shipcosim.diagnose.comparison.label_hypotheses import LabelError
 from shipcosim.diagnose.finding import Discrepancy, Finding, ParameterEstimate
 from shipcosim.diagnose.reference.common_findings import (
     common_discrepancies,

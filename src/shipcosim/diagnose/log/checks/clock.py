@@ -4,8 +4,6 @@ With true seconds per logged second ρ, the way seen in a segment is ρ times th
 time, in all channels. What holds for the whole log alike, such as a scale of the velocity, is fitted beside it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -178,14 +176,9 @@ def _explained(side, segment):
 def _best(sides, blocks, gram, edges):
     """The segment with most evidence, None where there is too little."""
     count = len(edges) - 1
-    match = sum(side.match(columns) for side, columns in zip(sides, blocks, strict=True))
-    matches = np.r_[0.0, np.cumsum(match)]
-    grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
-    own = np.diag(grams)
-    span = np.arange(count + 1)[None, :] - np.arange(count + 1)[:, None]
-    nats, value, _ = _evidence(
-        matches[None, :] - matches[:, None], own[None, :] + own[:, None] - grams - grams.T
-    )
+    match = np.sum([side.match(c) for side, c in zip(sides, blocks, strict=True)], axis=0)
+    span = differences(np.arange(count + 1))
+    nats, value, _ = _evidence(*sums_of_runs(match, gram))
     nats[
         (span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < CLOCK_TOLERANCE)
     ] = -np.inf
@@ -196,11 +189,32 @@ def _best(sides, blocks, gram, edges):
     return _refined(sides, edges[first], edges[last], cost)
 
 
+def differences(values: np.ndarray) -> np.ndarray:
+    """By how much the value of each column is above that of each row, (n, n)."""
+    return values[None, :] - values[:, None]
+
+
+def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Match and energy of all runs of blocks from an edge (row) to another (column)."""
+    grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
+    own = np.diag(grams)
+    return (
+        differences(np.r_[0.0, np.cumsum(match)]),
+        own[None, :] + own[:, None] - grams - grams.T,
+    )
+
+
+def nats_of_rate(match: np.ndarray, energy: np.ndarray) -> np.ndarray:
+    """Evidence for a rate other than 1, from the match of a column with the data and its energy."""
+    precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
+    return 0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2)
+
+
 def _evidence(match, energy):
     """Nats, estimate and standard deviation of ρ - 1 from the match of a column with the data and its energy."""
-    precision = np.maximum(energy, 0.0) + 1.0 / CLOCK_SLAB**2
+    precision = np.maximum(energy, 0.0) + CLOCK_SLAB**-2
     return (
-        0.5 * match**2 / precision - 0.5 * np.log(precision * CLOCK_SLAB**2),
+        nats_of_rate(match, energy),
         match / precision,
         precision**-0.5,
     )

@@ -1,30 +1,24 @@
 """Faults of a log that show in the log itself, before any physics: each with its channels and where it is."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray
 
 from shipcosim.angles import unwrap_series
+from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.clock import wrong_clock
 from shipcosim.diagnose.log.checks.labels import mislabelled
-from shipcosim.diagnose.log.checks.samples import gaps, lifeless, outliers, wraps
+from shipcosim.diagnose.log.checks.samples import gaps, lifeless, wraps
 from shipcosim.diagnose.log.checks.wind import mislabelled_wind
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.checks.yaw_rate import silent_rate
 from shipcosim.diagnose.log.mislabels import mislabel_in, undone
 from shipcosim.diagnose.log.readings.reading import explained, is_as_labelled, misread
-from shipcosim.diagnose.log.repair import rate_of, read_anew
+from shipcosim.diagnose.log.repair import rate_of, read_anew, without_findings
 from shipcosim.diagnose.log.rows import inside, usable_rows
 from shipcosim.diagnose.log.thresholds import SEGMENT_COST
-
-if TYPE_CHECKING:
-    import xarray
-
-    from shipcosim.diagnose.finding import Finding
 
 
 def examine(log: xarray.Dataset) -> list[Finding]:
@@ -40,7 +34,7 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     """
     logged = _arrays(log)
     useless = [*wraps(logged), *lifeless(logged)]
-    used = _without(logged, useless)
+    used = without_findings(logged, useless)
     throughout = _unless_in_part(misread(used, _stated_units(log)), used, _stated_units(log))
     table = read_anew(used, throughout)
     start = logged["time"][0]
@@ -49,7 +43,7 @@ def examine(log: xarray.Dataset) -> list[Finding]:
     }  # not lost, but unusable
     found = gaps(table | empty)
     if not any(finding.alternatives for finding in throughout):
-        found += _in_parts(_with_even_heading(_without(table, found)), _stated_units(log))
+        found += _in_parts(_with_even_heading(without_findings(table, found)), _stated_units(log))
     rate = rate_of(throughout)
     found = [
         replace(f, segments=tuple(_as_logged(s, start, rate) for s in f.segments)) for f in found
@@ -130,19 +124,6 @@ def _arrays(log):
         for name, variable in log.data_vars.items()
     }
     return {"time": log["time"].values[rows], **table}
-
-
-def _without(table, found):
-    """The table with what is no measurement left out."""
-    table = table | {
-        role: np.where(bad, np.nan, table[role]) for role, bad in outliers(table).items()
-    }
-    for finding in found:
-        bad = inside(table["time"], finding.segments)
-        table |= {
-            role: np.where(bad, np.nan, table[role]) for role in finding.channels if role in table
-        }
-    return table
 
 
 def _with_even_heading(table):

@@ -5,12 +5,12 @@ through the position's noise. A Kalman filter of that level leaves innovations t
 any change of the log that is linear goes through the same filter.
 """
 
-from __future__ import annotations
-
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.diagnose.finding import Segment
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
     LONGEST_BRIDGE,
@@ -85,7 +85,7 @@ def position_motion(log: dict) -> Motion | None:
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
     """
     roles = ("north", "east", "surge", "sway", "heading")
-    rows = _known(log, roles)
+    rows = complete_rows(log, roles)
     if len(rows) < 30:
         return None
     north, east, surge, sway, heading = (log[role][rows] for role in roles)
@@ -105,23 +105,28 @@ def position_motion(log: dict) -> Motion | None:
 
 def heading_motion(log: dict) -> Motion | None:
     """Heading against the yaw rate; None where there is too little of them."""
-    rows = _known(log, ("heading", "yaw_rate"))
+    rows = complete_rows(log, ("heading", "yaw_rate"))
     if len(rows) < 30:
         return None
     rate = log["yaw_rate"][rows, None]
     return _motion(log["time"][rows], log["heading"][rows, None], rate, {"yaw_rate": rate})
 
 
-def _known(log, roles):
+def complete_rows(log: dict, roles: Sequence[str]) -> np.ndarray:
+    """Rows in which all of some channels have a value; none where the log lacks one of them."""
     if not all(role in log for role in roles):
         return np.zeros(0, int)
     return np.flatnonzero(np.all([np.isfinite(log[role]) for role in roles], axis=0))
 
 
 def _motion(time, seen, velocity, parts):
+    return Motion(time, seen, velocity, parts, after_gaps(time) | _jumps(seen))
+
+
+def after_gaps(time: np.ndarray, longest: float = LONGEST_BRIDGE) -> np.ndarray:
+    """Rows before which more than so many usual steps are missing, the first row among them."""
     steps = np.diff(time, prepend=-np.inf)
-    starts = steps > LONGEST_BRIDGE * np.median(steps[1:])
-    return Motion(time, seen, velocity, parts, starts | _jumps(seen))
+    return steps > longest * np.median(steps[1:])
 
 
 def _jumps(seen):
@@ -232,7 +237,7 @@ def _togetherness(white):
     return max(1.0, 1.0 + 2.0 * sum(together))
 
 
-def is_clear(motion: Motion, whitener: Filter, segment: tuple[float, float] | None = None) -> bool:
+def is_clear(motion: Motion, whitener: Filter, segment: Segment | None = None) -> bool:
     """Whether the ship moves so much that the noise of its velocity hardly makes slopes on it too small."""
     time = motion.time
     moving = whitener.gains < 1.0

@@ -5,13 +5,11 @@ against rate, say for every row how much likelier the changed log is. A hypothes
 data: where it is said to be, the way seen must be about the way told under it, and clearly not as labelled.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.log.checks.kinematics import (
     Filter,
     Motion,
@@ -50,7 +48,7 @@ class _LabelHypothesis:
 
     mislabel: Mislabel
     gain: float
-    segment: tuple[float, float] | None
+    segment: Segment | None
     rough: float
 
 
@@ -120,7 +118,7 @@ def _log_likelihood(whitener: Filter, level):
     return -np.sum(0.5 * white**2 + np.log(whitener.std * whitener.scale)[:, None], axis=1)
 
 
-def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[float, float] | None]:
+def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, Segment | None]:
     """Where gains of rows add up to most: in all (None), or in a segment, less the cost of choosing it.
 
     Parameters
@@ -138,9 +136,7 @@ def best_segment(time: np.ndarray, gains: np.ndarray) -> tuple[float, tuple[floa
     return float(part), (float(time[first]), float(time[last - 1]))
 
 
-def in_segment(
-    values: np.ndarray, time: np.ndarray, segment: tuple[float, float] | None
-) -> np.ndarray:
+def in_segment(values: np.ndarray, time: np.ndarray, segment: Segment | None) -> np.ndarray:
     """The rows within a segment; all if there is none."""
     return values if segment is None else values[(time >= segment[0]) & (time <= segment[1])]
 

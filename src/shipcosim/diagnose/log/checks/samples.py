@@ -1,7 +1,5 @@
 """Samples that are no measurement: rows that are missing, held or filled in, headings interpolated across north."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,8 +113,12 @@ def _changes(values):
     values = _known(values)
     if len(values) < FEWEST_CONSTANT:
         return False
-    noise = np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0)
-    return bool(np.ptp(values) > CHANGES * (noise + quantum(values)))
+    return bool(np.ptp(values) > CHANGES * (noise_of(values) + quantum(values)))
+
+
+def noise_of(values: np.ndarray) -> float:
+    """Standard deviation of white noise with the second differences of a channel."""
+    return float(np.sqrt(np.mean(np.diff(values, n=2) ** 2) / 6.0))
 
 
 def _leaps(log):

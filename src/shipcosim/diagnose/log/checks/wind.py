@@ -1,11 +1,16 @@
 """Wind channels that are not what they are labelled: the wind over ground must neither turn nor move with the ship."""
 
-from __future__ import annotations
-
 import numpy as np
 
-from shipcosim.diagnose.finding import Finding
-from shipcosim.diagnose.log.checks.kinematics import Filter, Motion, filter_for, whiteness
+from shipcosim.diagnose.finding import Finding, Segment
+from shipcosim.diagnose.log.checks.kinematics import (
+    Filter,
+    Motion,
+    after_gaps,
+    complete_rows,
+    filter_for,
+    whiteness,
+)
 from shipcosim.diagnose.log.checks.labels import best_segment, in_segment
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.rows import inside
@@ -52,8 +57,8 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
     """
-    rows = np.flatnonzero(np.all([np.isfinite(log[role]) for role in ROLES if role in log], axis=0))
-    if not set(ROLES) <= set(log) or len(rows) < 100:
+    rows = complete_rows(log, ROLES)
+    if len(rows) < 100:
         return []
     time, speed, wind_from, heading, surge, sway = (log[role][rows] for role in ("time", *ROLES))
     velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
@@ -74,8 +79,7 @@ def _axes(vector):
 
 
 def _still(time, velocity):
-    steps = np.diff(time, prepend=-np.inf)
-    return _Wind(time, velocity, velocity, {}, steps > 4.5 * np.median(steps[1:]))
+    return _Wind(time, velocity, velocity, {}, after_gaps(time, 4.5))
 
 
 class _Wind(Motion):
@@ -149,9 +153,7 @@ def _unit(time, y, x, smooth, wind, slow):
     return sorted(found, key=lambda finding: -finding.probability)[:1]
 
 
-def leaps(
-    time: np.ndarray, speed: np.ndarray, segment: tuple[float, float] | None, factor: float
-) -> bool:
+def leaps(time: np.ndarray, speed: np.ndarray, segment: Segment | None, factor: float) -> bool:
     """Whether the wind speed changes by a factor about where a segment begins and ends; true of the whole log.
 
     Parameters

@@ -4,11 +4,10 @@ No wind changes from one second to the next by just the factor of another unit, 
 again. So it does not take a ship that moves or turns to see it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding
+from shipcosim.diagnose.log.checks.kinematics import complete_rows
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import (
     BESIDE_JUMP,
@@ -31,9 +30,7 @@ def jumping_wind(log: dict) -> list[Finding]:
     log : dict of (n,) arrays
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps; labels put right.
     """
-    if not set(ROLES) <= set(log):
-        return []
-    rows = np.flatnonzero(np.all([np.isfinite(log[role]) for role in ROLES], axis=0))
+    rows = complete_rows(log, ROLES)
     if len(rows) < 4 * BETWEEN_JUMPS:
         return []
     part = {role: log[role][rows] for role in ("time", *ROLES)}
@@ -70,7 +67,8 @@ def _best_pair(logged, undone):
     """Gain of undoing a mislabel between two rows, less the cost of choosing them, and the first and last row."""
     before, after = _means(logged)
     before_undone, after_undone = _means(undone)
-    scale = _spread(_jump(before, after))
+    # Usual size of jumps, as if they were normal.
+    scale = 1.4826 * np.median(np.abs(_jump(before, after)), axis=0) + 0.02
     begins = _gain(_jump(before, after), _jump(before, after_undone), scale)
     ends = _gain(_jump(before, after), _jump(before_undone, after), scale)
     begins, ends = (np.where(gain > JUMP_GAIN, gain, -np.inf) for gain in (begins, ends))
@@ -94,11 +92,6 @@ def _jump(before, after):
     """Change of speed as a logarithm, and of direction in radians: (n, 2)."""
     speeds = [np.log(np.maximum(np.abs(mean), CALM_WIND)) for mean in (before, after)]
     return np.column_stack([speeds[1] - speeds[0], np.angle(after * np.conj(before))])
-
-
-def _spread(jumps):
-    """Usual size of jumps, as if they were normal."""
-    return 1.4826 * np.median(np.abs(jumps), axis=0) + 0.02
 
 
 def _gain(given, otherwise, scale):

@@ -1,7 +1,5 @@
 """A proposal as a channel file, with the reason of every guess."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable
 from typing import Any

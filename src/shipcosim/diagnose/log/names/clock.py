@@ -1,7 +1,5 @@
 """The column of time among those that may be it, and its unit."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

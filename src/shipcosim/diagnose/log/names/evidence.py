@@ -1,7 +1,5 @@
 """What a log's own channels say of a unit or a frame that nobody stated: the motion they tell must be the same one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

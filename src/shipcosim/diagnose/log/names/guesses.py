@@ -1,7 +1,5 @@
 """One column by itself: the roles that its name and its unit allow, and how sure that is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

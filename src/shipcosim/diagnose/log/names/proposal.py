@@ -1,7 +1,5 @@
 """All columns of a log together: which one has which role, what is sure, what a guess, and what is not used and why."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

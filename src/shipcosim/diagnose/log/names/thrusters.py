@@ -1,7 +1,5 @@
 """Columns of thrusters: which thruster of the system, which quantity of it, command or feedback."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache

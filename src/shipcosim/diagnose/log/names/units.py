@@ -1,7 +1,5 @@
 """Units as headers of logs write them."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Units and frames that nobody stated: by what the channels say of each other, or left as guesses."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 
@@ -43,7 +41,8 @@ def settled(chosen: dict[str, Guess], log: LogColumns, form: FileLayout) -> None
     if "yaw_rate" in chosen and not chosen["yaw_rate"].unit:
         _settle_rate(chosen, log, form, motion)
     for role in ("wind_speed", "true_wind_speed"):
-        if _is_open(chosen, role) and _is_short(chosen[role]):
+        # The unit of a wind speed with a sailor's short name is mostly knots.
+        if _is_open(chosen, role) and len(chosen[role].column.strip()) <= 4:
             _guess(chosen, role, "kn", "no unit is stated: kn or m/s")
     for role, guess in list(chosen.items()):
         is_angle = role in ("wind_from", "true_wind_from", "course_over_ground") or role.endswith(
@@ -80,11 +79,6 @@ def _is_open(chosen, role):
     return bool(
         guess and guess.rank != EXACT and not guess.unit and guess.channel.quaternion is None
     )
-
-
-def _is_short(guess):
-    """Whether a wind speed has a sailor's short name, whose unit is mostly knots."""
-    return len(guess.column.strip()) <= 4
 
 
 def _finite(values):

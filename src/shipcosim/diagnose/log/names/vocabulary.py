@@ -1,7 +1,5 @@
 """The names and units of names.toml, as look-ups."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ what is ordinary: knots, radians and milliseconds are mistaken more often than f
 wrong less often than what nobody stated.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Iterator

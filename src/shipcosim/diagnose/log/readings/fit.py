@@ -6,8 +6,6 @@ and the fast, and a ship on her station is judged as one under way. Rows take th
 wrong by a thousand does no harm.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
@@ -15,13 +13,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from shipcosim.diagnose.log.checks.kinematics import RATIOS, Filter, filters, whiteness
+from shipcosim.diagnose.log.checks.kinematics import RATIOS, Filter, after_gaps, filters, whiteness
 from shipcosim.diagnose.log.thresholds import (
     CALM_SHARE,
     FEWEST_FITTED,
     FIT_CLIP,
     HEARD,
-    LONGEST_BRIDGE,
     MOST_FITTED,
     NOISIER,
     RELATION_WINDOWS,
@@ -102,8 +99,7 @@ def fitted(
     thinned = {id(one): one[rows] for pair in pairs.values() for one in pair}
     time = time[rows]
     pairs = {key: (thinned[id(seen)], thinned[id(told)]) for key, (seen, told) in pairs.items()}
-    steps = np.diff(time, prepend=-np.inf)
-    starts = steps > LONGEST_BRIDGE * np.median(steps[1:])
+    starts = after_gaps(time)
     if (~starts).sum() < FEWEST_FITTED:
         return {}
     fits, alone = _fits(filters(time, starts), pairs, axes)
@@ -138,7 +134,7 @@ def _fits(drafts: list[Filter], pairs, axes):
     for draft, ratio in zip(drafts, RATIOS, strict=True):
         known = draft.gains < 1.0
         scale = draft.scale[known]
-        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[known]
+        white = whitened(draft, stacked)
         offset = -axes * float(np.sum(np.log(scale)))
         for name in alone:
             alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
@@ -154,6 +150,11 @@ def _fits(drafts: list[Filter], pairs, axes):
                     fit, wander=axes * adds_up * ratio * fit.variance, rows_noise=rows_noise
                 )
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
+
+
+def whitened(draft: Filter, series: np.ndarray) -> np.ndarray:
+    """Complex series through a filter, on the rows that it predicts."""
+    return (draft(np.real(series)) + 1j * draft(np.imag(series)))[draft.gains < 1.0]
 
 
 def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> RowsFit:

@@ -5,8 +5,6 @@ found is to the one that it predicts, and by the sign of the yaw rate. A factor 
 costs the width of its prior.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """The joint judgement of a log: which of its channels are not what they are labelled, or what is left open."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +25,7 @@ from shipcosim.diagnose.log.thresholds import (
     THROUGHOUT,
     UNLIKELY_READING,
 )
+from shipcosim.diagnose.numerics import root_mean_square
 
 NOTHING_ELSE = "nothing else is wrong"
 DEGREE = float(np.degrees(1.0))
@@ -110,11 +109,8 @@ def evidence_of(log: dict) -> Evidence:
             positions[True] = metres["north"] + 1j * metres["east"]
         position = position_relations(log, headings, positions)
         speeds = np.hypot(log["surge"], log["sway"])
-        speed = (
-            float(np.sqrt(np.mean(speeds[np.isfinite(speeds)] ** 2)))
-            if np.isfinite(speeds).any()
-            else None
-        )
+        speeds = speeds[np.isfinite(speeds)]
+        speed = root_mean_square(speeds) if speeds.size else None
         courses = {
             unit: _courses(log["surge"] + 1j * log["sway"], values)
             for unit, values in headings.items()

@@ -6,8 +6,6 @@ with a complex factor c: its size is a matter of units and of the time base, its
 with c and with how likely it is, hold all that a log says about such mistakes.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from shipcosim.angles import wrap_series

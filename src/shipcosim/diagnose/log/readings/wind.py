@@ -6,22 +6,19 @@ form of the velocity; the time base has no part in it. Wind channels can have mi
 mirrored, over ground already, in another unit. Each reading is as likely as all of these together make it.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from shipcosim.diagnose.log.checks.kinematics import filters, whiteness
+from shipcosim.diagnose.log.checks.kinematics import after_gaps, complete_rows, filters, whiteness
 from shipcosim.diagnose.log.mislabels import KNOT
 from shipcosim.diagnose.log.readings.changes import LogInterpretation
-from shipcosim.diagnose.log.readings.fit import RowsFit, fit_rows
+from shipcosim.diagnose.log.readings.fit import RowsFit, fit_rows, whitened
 from shipcosim.diagnose.log.thresholds import (
     CLEAR_MOTION,
     FEWEST_WIND_ROWS,
-    LONGEST_BRIDGE,
     MOST_FITTED,
     MOST_OF_WIND,
     WIND_LABEL_COST,
@@ -100,11 +97,7 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
     A ship that hardly moves is not judged by it: noise of her velocity would make all factors too small.
     """
     roles = ("wind_speed", "wind_from", "surge", "sway")
-    if not set(roles) <= set(log):
-        return WindRelations({})
-    rows = np.flatnonzero(
-        np.all([np.isfinite(log[r]) for r in roles] + [np.isfinite(log["heading"])], axis=0)
-    )
+    rows = complete_rows(log, (*roles, "heading"))
     rows = rows[:: max(1, math.ceil(len(rows) / MOST_FITTED))]
     if len(rows) < FEWEST_WIND_ROWS:
         return WindRelations({})
@@ -113,8 +106,7 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
     velocity = log["surge"][rows] + 1j * log["sway"][rows]
     if np.mean(np.abs(velocity) ** 2) < 2.0 * (CLEAR_MOTION * _noise(velocity)) ** 2:
         return WindRelations({})
-    steps = np.diff(time, prepend=-np.inf)
-    drafts = filters(time, steps > LONGEST_BRIDGE * np.median(steps[1:]))[::3]
+    drafts = filters(time, after_gaps(time))[::3]
     fits: dict = {}
     for unit, heading in headings.items():
         for mirrored in (False, True):
@@ -152,7 +144,7 @@ def _fitted(drafts, seen, told):
     fits: dict[tuple, RowsFit] = {}
     for draft in drafts:
         known = draft.gains < 1.0
-        white = (draft(np.real(stacked)) + 1j * draft(np.imag(stacked)))[known]
+        white = whitened(draft, stacked)
         offset = -2.0 * float(np.sum(np.log(draft.scale[known])))
         for row, name in enumerate(seen):
             for column, form in enumerate(told, start=len(seen)):
