@@ -14,7 +14,7 @@ LONGEST_NAME = 200
 
 
 def printable(text: str) -> str:
-    """A text without characters that control a terminal; they are written as escapes, line ends and tabs stay.
+    r"""A text without characters that control a terminal; they are written as escapes, line ends and tabs stay.
 
     Texts of files and of FMUs go through here before anybody sees them: they must not colour, clear or retitle a
     terminal, nor turn the direction of writing.

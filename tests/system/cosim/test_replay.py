@@ -96,7 +96,7 @@ GAP = record([*np.arange(0.0, 20.0, 0.5), *np.arange(40.0, 61.0, 0.5)], np.zeros
             record([0.0, 2.0, 1.0, 60.0], np.zeros(4)),
             "time of row 3 is 1 s, after 2 s in the row before.*Sort",
         ),
-        (record([0.0, 2.0, 2.0, 60.0], np.zeros(4)), "time of row 3 is 2 s, after 2 s"),
+        (record([0.0, 2.0, 2.0, 2.0, 60.0], np.zeros(5)), "time of row 4 is 2 s, after 2 s"),
         (record([0.0, np.nan, 60.0], np.zeros(3)), "time of row 2 is nan"),
         (
             record([0.0, 1.0, 2.0, 60.0], [0.0, np.nan, np.nan, 0.0]),

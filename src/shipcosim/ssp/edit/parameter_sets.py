@@ -234,7 +234,9 @@ class Sets:
                 names.follow(one.binding, "prefix", drop)
             elif not one.shared:
                 listed = children(one.root, "ssv:Parameters", "ssv:Parameter")
-                if any(names.follow(part, "name", remove_parameter) for part in listed):
+                # All names follow, also after one that has changed.
+                changed = [names.follow(part, "name", remove_parameter) for part in listed]
+                if any(changed):
                     self.keep(one.file, one.root)
 
     def _rename_targets(self, mapping: etree._Element, names: "_Names") -> None:
@@ -242,9 +244,9 @@ class Sets:
         root = self._root(file) if file else child(mapping, "ssm:ParameterMapping")
         if root is None:
             return
-        if any(
-            names.follow(part, "target", root.remove) for part in children(root, "ssm:MappingEntry")
-        ):
+        entries = children(root, "ssm:MappingEntry")
+        changed = [names.follow(part, "target", root.remove) for part in entries]
+        if any(changed):
             self.keep(file, root)
 
 
