@@ -97,7 +97,9 @@ class ShipcosimError(Exception):
 
 
 @contextmanager
-def reading(path: str | os.PathLike[str]) -> Iterator[None]:
+def reading(
+    path: str | os.PathLike[str], remedy: str = "Write or copy it again."
+) -> Iterator[None]:
     """Turn whatever a library raises while it reads a file into one error that names the file.
 
     Libraries for zip, HDF5, Parquet, XML and workbooks raise errors of many kinds for damaged files.
@@ -106,6 +108,8 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
     ----------
     path : path
         Of the file, for the message.
+    remedy : str
+        What helps where the file is damaged.
 
     Raises
     ------
@@ -119,13 +123,12 @@ def reading(path: str | os.PathLike[str]) -> Iterator[None]:
     except MemoryError as error:
         found = "is larger than the memory."
         raise ShipcosimError(Problem(str(path), found, "Read a part of it.")) from error
-    except OSError as error:
-        found = f"cannot be read: {error.strerror or error}."
-        raise ShipcosimError(Problem(str(path), found)) from error
     except Exception as error:
-        said = " ".join(str(error).split())[:200].rstrip(".") or type(error).__name__
+        # The system says what is wrong with the disk or the rights; a library, with the content.
+        reason = error.strerror if isinstance(error, OSError) else None
+        said = reason or " ".join(str(error).split())[:200].rstrip(".") or type(error).__name__
         found = f"cannot be read: {said}."
-        raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
+        raise error_at(str(path), found, "" if reason else remedy) from error
 
 
 def error_at(where: str, found: str, remedy: str = "") -> ShipcosimError:

@@ -22,6 +22,8 @@ from shipcosim.scenario import read_scenario as read_scenario_file
 from shipcosim.scenario.model import problems_in
 from shipcosim.scenario.osp import read_osp_scenario
 from shipcosim.ssp import (
+    AnyPath,
+    AnySystem,
     System,
     SystemStructure,
     default_step_size,
@@ -34,8 +36,6 @@ from shipcosim.units import UnitError, seconds
 if TYPE_CHECKING:
     import xarray
 
-AnyPath = str | os.PathLike[str]
-AnySystem = AnyPath | SystemStructure | System
 AnyScenario = AnyPath | Scenario
 
 SYSTEM_OF_LOGS = "gunnerus_open"

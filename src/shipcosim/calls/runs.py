@@ -28,7 +28,7 @@ from shipcosim.calls.arguments import (
 from shipcosim.calls.keywords import with_known_keywords
 from shipcosim.cosim import Interrupted, RunError, Snapshot, interpolated, write_snapshot
 from shipcosim.cosim import simulate as simulate_system
-from shipcosim.cosim.simulate import clock_start
+from shipcosim.cosim.simulate import clock_start, with_open_snapshot
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
@@ -279,6 +279,7 @@ def prepare_run(
         *times_changed(times, happening),
         *(f"event at {event.time:g} s" for event in happening.events[len(given.events) :]),
     ]
+    how = with_open_snapshot(how)
     return _prepared(system, happening, how, texts, left_out, given.stop_time)
 
 
@@ -412,12 +413,13 @@ def prepare_simulation(
         {"stop_time": stop_time, "step_size": step_size, "output_interval": output_interval}
     )
     keys = times | {"set": start_values, "events": list(events)}
+    texts = changes(start_values, parameters, components, (), how)
+    how = with_open_snapshot(how)
     since = clock_start(how)
     happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
     if scenario is None and step_size is None:
         remarks += step_remarks(ship, since, happening.stop_time)
-    texts = changes(start_values, parameters, components, (), how)
     if scenario is not None:
         texts += times_changed(times, happening)
     return _prepared(

@@ -14,13 +14,13 @@ SAID = (
 
 
 def guard_exit() -> None:
-    """From now on the end of the process by a library says so, and its exit code is 1."""
+    """Have the process print a message and exit with 1 if a library ends it from now on."""
     _at_exit("_exit", 1)
     _at_exit("warnx", SAID)
 
 
 def release_exit(code: int) -> None:
-    """From now on the process may end, with this exit code."""
+    """Allow the process to end, with this exit code."""
     _at_exit("_exit", code)
     _at_exit("fflush", None)  # what C has printed and not written yet
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,11 @@ from shipcosim.ssp import System, with_values
 
 if TYPE_CHECKING:
     import xarray
+
+
+def with_open_snapshot(options: RunOptions) -> RunOptions:
+    """Options with the snapshot itself in place of its path, so that the file is read once."""
+    return replace(options, resume=opened(options.resume))
 
 
 def clock_start(options: RunOptions) -> float:

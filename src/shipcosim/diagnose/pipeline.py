@@ -53,11 +53,8 @@ from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.diagnose.statement import completed, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
-from shipcosim.ssp import AnyPath, System, SystemStructure, read
+from shipcosim.ssp import AnyPath, AnySystem, System, SystemStructure, read
 from shipcosim.temporary import temporary_folder
-
-AnySystem = AnyPath | SystemStructure | System
-"""A system in whichever form."""
 
 Progress = Callable[..., None]
 """Called with what is being done, in words; and where known with how many parts of it are done, and of how many."""

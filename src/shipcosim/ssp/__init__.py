@@ -17,8 +17,12 @@ from shipcosim.ssp.system_files import read_system
 from shipcosim.ssp.xml.archive import unpack
 from shipcosim.ssp.xml.document import AnyPath
 
+AnySystem = AnyPath | SystemStructure | System
+"""A system in whichever form."""
+
 __all__ = [
     "AnyPath",
+    "AnySystem",
     "Component",
     "Connection",
     "FmuDescription",

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim import __version__
-from shipcosim.errors import error_at, imported
+from shipcosim.errors import error_at, imported, reading
 from shipcosim.scenario.model import Value
 from shipcosim.series import write_file
 from shipcosim.staging import set_aside
@@ -363,9 +363,5 @@ def read_part(path: Path) -> pandas.DataFrame:
     """
     import pandas
 
-    try:
+    with reading(path, "Delete the folder, or replace it with --force: its runs are made again."):
         return pandas.read_parquet(path)
-    except Exception as error:  # Arrow has errors of many kinds
-        found = f"cannot be read: {' '.join(str(error).split())[:200]}."
-        remedy = "Delete the folder, or replace it with --force: its runs are made again."
-        raise error_at(str(path), found, remedy) from error

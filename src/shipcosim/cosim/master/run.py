@@ -203,7 +203,7 @@ class Simulation:
                 master.resume(grid.first)
             actions = event_actions(self._scenario, self._plan, exchanges, grid)
             master.run(grid, actions, self._external, self._recorders, progress)
-        # An FMU may end the run: what there is until then is the result.
+        # An FMU may end the run: the rows until then are the result.
         except Ended as end:
             self._remarks.append(str(end))
             self.is_ended = True

@@ -71,14 +71,12 @@ def polar(tables: StudyTables, view: Mapping[str, Any]) -> Figure:
 
 
 def in_part(column: Column) -> str:
-    """Sentence on values of which the study tells a part; empty if there are none."""
+    """Sentence on values that the study knows only as a range; empty if there are none."""
     open_ = sorted({text for text in column.ranges if not text.lstrip("-").isdigit()})
     if not open_:
         return ""
     listed = ", ".join(open_[:4])
-    return (
-        f"Drawn is the last case that is held; not every case was run, so it stands for {listed}."
-    )
+    return f"The curve shows the last case that was held. Not every case was run: values are known as {listed}."
 
 
 def _around(

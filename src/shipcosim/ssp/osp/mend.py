@@ -7,6 +7,7 @@ import lxml.etree as etree
 
 from shipcosim.ssp.osp.schema import NAMESPACE, SCHEMA
 from shipcosim.ssp.xml.document import Document, Findings, local
+from shipcosim.ssp.xml.mend import drop_empty_attributes, mend_boolean
 from shipcosim.ssp.xml.schemas import is_slip, names_in
 
 VERSION = "0.1"
@@ -52,7 +53,8 @@ def mend_osp(document: Document, findings: Findings) -> None:
     known = names_in(SCHEMA).elements
     for element in list(root.iter(etree.Element)):
         _drop_unknown(document, element, known, findings)
-        _mend_attributes(document, element, findings)
+        drop_empty_attributes(document, element, findings, EMPTY_IS_ABSENT)
+        mend_boolean(document, element, findings)
     parts = [part for part in root if local(part)]
     # An empty time or algorithm says nothing.
     for part in parts:
@@ -92,18 +94,3 @@ def _drop_unknown(
             element.remove(part)
             found = f"The element <{name}> is not of OSP's schema. It is not used."
             findings.flaw(document.place(part), found, "Remove it.")
-
-
-def _mend_attributes(document: Document, element: etree._Element, findings: Findings) -> None:
-    """Drop empty attributes, and correct True and FALSE."""
-    for name in EMPTY_IS_ABSENT:
-        if element.get(name) == "":
-            del element.attrib[name]
-            found = f'{name}="" is taken as if it were not there.'
-            findings.flaw(document.place(element), found, "Leave it out.")
-    text = element.get("value") or ""
-    lower = text.lower()
-    if local(element) == "Boolean" and lower in ("true", "false") and text != lower:
-        element.set("value", lower)
-        found = f"'{text}' is taken for {lower}."
-        findings.flaw(document.place(element), found, "Write true or false.")

@@ -87,7 +87,7 @@ def mend(document: Document, tag: str) -> None:
     _set_namespaces(document, prefix, noted)
     _complete(document, noted)
     for element in list(_own(document.root)):
-        _drop_empty_attributes(document, element, noted)
+        drop_empty_attributes(document, element, noted)
         _move_source(document, element, noted)
         # The type of a connector that is an enumeration without a name gets an empty one.
         is_type = (
@@ -95,7 +95,7 @@ def mend(document: Document, tag: str) -> None:
         )
         if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
             element.set("name", "")
-        _mend_boolean(document, element, noted)
+        mend_boolean(document, element, noted)
         _drop_unknown(document, element, noted)
         _sort(document, element, noted)
         _join_lists(document, element, noted)
@@ -201,8 +201,14 @@ def _prefix_in(element: etree._Element) -> str:
     return next((prefix for prefix, uri in NAMESPACES.items() if uri == space), "")
 
 
-def _drop_empty_attributes(document: Document, element: etree._Element, noted: Findings) -> None:
-    for name in EMPTY_IS_ABSENT:
+def drop_empty_attributes(
+    document: Document,
+    element: etree._Element,
+    noted: Findings,
+    names: tuple[str, ...] = EMPTY_IS_ABSENT,
+) -> None:
+    """Drop empty attributes of these names, except where an empty text means something."""
+    for name in names:
         # An empty attribute counts as absent, except where an empty text means something.
         if element.get(name) == "" and not (
             name == "source" and local(element) in ("Component", "MapEntry")
@@ -228,7 +234,7 @@ def _move_source(document: Document, element: etree._Element, noted: Findings) -
             parent.remove(element)
 
 
-def _mend_boolean(document: Document, element: etree._Element, noted: Findings) -> None:
+def mend_boolean(document: Document, element: etree._Element, noted: Findings) -> None:
     """Correct True and FALSE, as programs without XML libraries write them."""
     for name in ("value", "suppressUnitConversion"):
         text = element.get(name)
