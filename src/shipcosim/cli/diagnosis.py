@@ -41,12 +41,15 @@ def _sections(diagnosis):
 
     from shipcosim.cli.console import shown_path
     from shipcosim.report.diagnosis.key_figures import key_figures
+    from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
     from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, title
 
     alike = [
         (title(c.cause, c.component), f"{100 * c.probability:.0f} %")
         for c in diagnosis.indistinguishable
     ]
+    # What would have shown matters most where nothing in the ship was found; the page always has it.
+    is_found = any(finding.kind == "physics" for finding in diagnosis.findings)
     silent = ", ".join(title(name).lower() for name in diagnosis.not_testable)
     columns = diagnosis.log.measured.attrs.get("column_remarks", ()) if diagnosis.log else ()
     extension = diagnosis.extension
@@ -60,6 +63,7 @@ def _sections(diagnosis):
         ("This log cannot tell apart", table(alike)),
         ("Errors", table(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),
+        (VISIBLE, None if is_found else table(visible_rows(diagnosis.smallest_visible))),
         ("Columns", Text("\n".join(columns)) if columns else None),
         ("Remarks", Text("\n".join(diagnosis.notes), style="yellow") if diagnosis.notes else None),
         ("What to do next", Text(steps)),

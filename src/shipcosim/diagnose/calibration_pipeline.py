@@ -1,10 +1,11 @@
 """From logs of a ship that is well to her own parameter set, and the reference that other logs are held against."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 import shipcosim
@@ -13,9 +14,11 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
 from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
+from shipcosim.diagnose.numerics import root_mean_square
 from shipcosim.diagnose.pipeline import (
     AnySystem,
     Progress,
+    causes_in,
     given_system,
     problem_of,
     read_measurements,
@@ -31,7 +34,7 @@ from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
 from shipcosim.diagnose.reference.remaining_errors import RemainingErrors, remaining_errors
-from shipcosim.diagnose.reference.several_logs import SeveralLogs
+from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_of_day
 from shipcosim.diagnose.reference.thresholds import AT_EDGE, BEYOND, NOT_WELL
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.ssp import AnyPath, System
@@ -97,7 +100,7 @@ def steps_of(logs: Sequence[LogSource]) -> dict[str, float]:
     return {
         READING: 2.5 * many,
         "fitting the ship's numbers": 3.5 * many,
-        "is she well?": 0.2 * many,
+        "is she well?": 4.0 * many,
         "what does the calibrated ship get wrong?": 1.0 * many,
     }
 
@@ -148,6 +151,7 @@ def calibrate(
         fitted = calibrated_to(several)
         say("is she well?")
         suspects = causes_beside(fitted)
+        named = {name: _named_in(problem) for name, problem in problems.items()}
         say("what does the calibrated ship get wrong?")
         errors = remaining_errors(fitted)
     told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
@@ -169,7 +173,9 @@ def calibrate(
         )
         for name, one in found.items()
     )
-    result = CalibratedShip(reference, each, *_judged(reference, fitted, suspects))
+    refusals, remarks = _judged(reference, fitted, suspects)
+    refusals = (*_reasons_not_to_trust(each, named), *refusals)
+    result = CalibratedShip(reference, each, refusals, remarks)
     if out is not None and not result.refusals:
         write_parameter_set(given, reference, Path(out) / SET)
         reference.write(Path(out) / FILE)
@@ -253,6 +259,40 @@ def _about(name, one):
 def _weather(fit: JointFit, name: str) -> dict[str, float]:
     part = fit.parts[name]
     return {path: float(value) for path, value in part.values.items() if path.startswith("water.")}
+
+
+def _named_in(problem: Identification) -> list[Finding]:
+    """Causes in the ship, none of the day's weather, that a diagnosis names in a log."""
+    found = causes_in(problem, problem.ship, lambda *_: None)
+    of_day = {one.label for one in problem.problem.hypotheses if is_of_day(one)}
+    return [one for one in found.findings if one.kind == "physics" and one.label not in of_day]
+
+
+def _reasons_not_to_trust(
+    logs: Sequence[CalibratedLog], named: Mapping[str, Sequence[Finding]]
+) -> list[str]:
+    """Why a fit to these logs makes no reference: a cause in the ship is named, or it predicts no better than before.
+
+    A wide enough tolerance makes a number of the ship out of every cause, so the logs are diagnosed as any others.
+    """
+    found = [
+        f"{name}: a diagnosis of it names {finding.label} ({100.0 * finding.probability:.0f} %): the ship was not well. "
+        "Diagnose the log, mend the ship or the system, and calibrate on logs without it."
+        for name, findings in named.items()
+        for finding in findings
+    ]
+    # Over all logs, each alike, on rows that the numbers were not fitted on.
+    errors = [log.errors for log in logs if log.errors]
+    if not errors:
+        return found
+    before = root_mean_square(np.array([one.before[-1] for one in errors]))
+    after = root_mean_square(np.array([one.after[-1] for one in errors]))
+    if after > before:
+        found.append(
+            f"On rows that it was not fitted on, the calibrated ship misses the log by {after:.2g} m, the ship as the "
+            f"system has her by {before:.2g} m. Log more, with larger moves, turns and thrust ahead and astern."
+        )
+    return found
 
 
 def _judged(reference, found, suspects):

@@ -110,6 +110,20 @@ class Candidate:
 
 
 @dataclass(frozen=True)
+class VisibleSize:
+    """The smallest size of a cause that a log would have shown in nine of ten cases, in `unit`.
+
+    `parameter` is empty where the cause is a vector, as a current: `size` is then its length.
+    """
+
+    cause: str
+    component: str | None
+    parameter: str
+    size: float
+    unit: str
+
+
+@dataclass(frozen=True)
 class Discrepancy:
     """Something in which simulation and log differ, before any cause is sought.
 

@@ -10,7 +10,7 @@ from shipcosim.diagnose.explanation.summary import Evidence, LoadForm
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extend import Extension
 from shipcosim.diagnose.extension.extended_system import NumberChange
-from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding
+from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, VisibleSize
 from shipcosim.diagnose.hypotheses.catalogue import Cause
 from shipcosim.diagnose.validation.missing_force import MissingForce
 from shipcosim.diagnose.validation.summary import PredictionErrors
@@ -59,6 +59,8 @@ class Diagnosis:
     candidates, indistinguishable : tuple of Candidate
     not_testable : tuple of str
         Causes that this log could not have shown.
+    smallest_visible : tuple of VisibleSize
+        Of the other causes that were not found: what would have shown. Empty where no cause can be named.
     prescription : ExperimentDesign or None
         What to sail next, in short; `manoeuvre` has it step by step.
     baseline, gain : dict or None
@@ -121,6 +123,7 @@ class Diagnosis:
     discrepancies: tuple[Discrepancy, ...] = ()
     form: LoadForm | None = None
     obstacles: tuple[str, ...] = ()
+    smallest_visible: tuple[VisibleSize, ...] = field(default=(), repr=False)
     basis: JudgedLog | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
@@ -154,6 +157,7 @@ class Diagnosis:
             "candidates": [asdict(candidate) for candidate in self.candidates],
             "indistinguishable": [asdict(candidate) for candidate in self.indistinguishable],
             "not_testable": list(self.not_testable),
+            "smallest_visible": [asdict(one) for one in self.smallest_visible],
             "prescription": asdict(self.prescription) if self.prescription else None,
             "discrepancies": [asdict(discrepancy) for discrepancy in self.discrepancies],
             "form": asdict(self.form) if self.form else None,

@@ -4,14 +4,21 @@ from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
-from shipcosim.diagnose.experiment.testability import hidden_by_form, log_facts, untestable_causes
+from shipcosim.diagnose.experiment.testability import (
+    excitation_of,
+    hidden_by_form,
+    log_facts,
+    untestable_causes,
+    visible_sizes,
+)
 from shipcosim.diagnose.explanation.summary import evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
+from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.validation.conditions import PredictedLog
-from shipcosim.diagnose.validation.gain import gain
+from shipcosim.diagnose.validation.gain import baseline, gain
 from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.tracks import tracks_of
@@ -22,13 +29,14 @@ def stated(log: JudgedLog) -> Diagnosis:
     found = log.explained.identification
     judgement = log.judgement
     comparison = found.comparison
+    excitation = excitation_of(log)
     if any(
         fault.alternatives for fault in found.faults
     ):  # of a log that may be misread, nothing is said of the ship
         return Diagnosis(
             "ambiguous",
             found.faults,
-            not_testable=untestable_causes(log),
+            not_testable=untestable_causes(log, excitation),
             baseline=comparison.errors,
             basis=log,
         )
@@ -39,9 +47,12 @@ def stated(log: JudgedLog) -> Diagnosis:
     rivals = (
         judgement.rivals if not found.ship.third_party else ()
     )  # with those no manoeuvre can be prescribed
+    named = {one.label for one in (*of_log, *judgement.findings)}
+    untestable = untestable_causes(log, excitation)
+    sizes = () if comparison.obstacles else visible_sizes(excitation)
     # How far the form of the ship's loads differs from the model's, with what that hides.
     form = load_form(log)
-    form_of = replace(form, hides=hidden_by_form(log)) if form else None
+    form_of = replace(form, hides=hidden_by_form(log, excitation)) if form else None
     return Diagnosis(
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
         (
@@ -50,13 +61,16 @@ def stated(log: JudgedLog) -> Diagnosis:
         ),
         judgement.candidates,
         judgement.indistinguishable,
-        tuple(cause for cause in untestable_causes(log) if not _is_said(cause, seen, log)),
+        tuple(cause for cause in untestable if not _is_said(cause, seen, log)),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors,
         discrepancies=comparison.told(judgement.verdict),
         form=form_of,
         obstacles=comparison.obstacles,
         remarks=comparison.remarks,
+        smallest_visible=tuple(
+            one for one in sizes if label_of(one.cause, one.component) not in named
+        ),
         basis=log,
     )
 
@@ -111,8 +125,14 @@ def completed(
     )
     if errors is None or predicted.comparison is None:
         return complete
+    # The error of the simulation is told over one set of predictions, those that the gain is measured on, where the
+    # craft's own times are theirs.
+    measured = baseline(errors)
+    told = found.baseline
+    same_times = told is not None and told["horizon_s"] == measured["horizon_s"]
     return replace(
         complete,
+        baseline=measured if same_times else told,
         gain=gain(errors) if found.is_named else complete.gain,
         predictions=prediction_errors(
             predicted.comparison,

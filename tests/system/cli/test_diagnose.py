@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Literal
@@ -16,6 +17,8 @@ from shipcosim.cli import app
 from shipcosim.cli.progress import LAST_STEP
 from shipcosim.diagnose.pipeline import STEPS
 from shipcosim.diagnose.validation.cosimulation import MOST
+from shipcosim.report.diagnosis.testability import visible_rows
+from shipcosim.report.theme.numbers import metres
 from shipcosim.ssp import read_system
 from truth import draw
 
@@ -101,6 +104,14 @@ class LoadForm(Strict):
     hides: list[str]
 
 
+class VisibleSize(Strict):
+    cause: str
+    component: str | None
+    parameter: str
+    size: float = Field(gt=0.0)
+    unit: str
+
+
 class Schema(Strict):
     """diagnosis.json, version 1."""
 
@@ -112,6 +123,7 @@ class Schema(Strict):
     candidates: list[Candidate]
     indistinguishable: list[Candidate]
     not_testable: list[str]
+    smallest_visible: list[VisibleSize] = []
     prescription: ExperimentDesign | None
     baseline: Baseline | None
     gain: Gain | None
@@ -230,6 +242,24 @@ def test_named_cause_gains_over_the_plain_model_and_the_bias_observer(lossy):
     assert all(0 < one.predictions <= MOST // 2 and one.gain for one in predictions.held_out)
 
 
+def test_a_number_has_one_value_in_terminal_page_and_json(lossy, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    command.print_diagnosis(lossy.diagnosis, lossy.folder, False)
+    terminal = capsys.readouterr().out
+    page = (lossy.folder / "report.html").read_text(encoding="utf-8")
+    shown = re.sub(r"<(script|style).*?</\1>|<[^>]+>", " ", page, flags=re.DOTALL)
+    found = json.loads(lossy.out)
+    gain = found["gain"]
+    assert found["baseline"]["position_error_m"][-1] == gain["before_m"]
+    errors = [
+        metres(gain[f"{name}_m"]) for name in ("before", "bias_observer", "after", "noise_floor")
+    ]
+    for text in (terminal, shown):
+        assert all(error in text for error in errors)
+    # Wherever an error after this time stands in a sentence or a heading, it is the one of the simulation.
+    assert set(re.findall(r"(?<!at most )(?<![\d.])([\d.]+ m)\s+after 60 s", shown)) == {errors[0]}
+
+
 def test_extended_system_differs_from_the_given_one_in_the_named_number_alone(lossy, root, built):
     given = read_system(root / "ssp" / "gunnerus_open", fmus=[built])
     extended = read_system(lossy.folder / "extended.ssp")
@@ -284,6 +314,10 @@ def test_summary_says_cause_size_gain_and_what_to_do(lossy, capsys, monkeypatch)
 def test_summary_of_a_healthy_log_says_what_it_could_not_have_shown(healthy):
     for name in healthy.diagnosis.not_testable:
         assert name.replace("_", " ") in healthy.out
+    page = (healthy.folder / "report.html").read_text(encoding="utf-8")
+    for cause, sizes in visible_rows(healthy.diagnosis.smallest_visible):
+        assert cause in healthy.out and sizes.split(", ")[0] in healthy.out and sizes in page
+    assert "Thrust loss  " in healthy.out
     assert "Errors" in healthy.out and "Page: " in healthy.out
 
 

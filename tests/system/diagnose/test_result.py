@@ -8,7 +8,15 @@ from shipcosim.diagnose.result import Diagnosis
 
 ENTRIES = {
     *("schema", "verdict", "findings", "candidates", "indistinguishable"),
-    *("not_testable", "prescription", "discrepancies", "form", "baseline", "gain"),
+    *(
+        "not_testable",
+        "smallest_visible",
+        "prescription",
+        "discrepancies",
+        "form",
+        "baseline",
+        "gain",
+    ),
 }
 CURRENT = Finding(
     "current",

@@ -29,7 +29,7 @@ def found():
 def test_a_diagnosis_is_one_with_a_card(found):
     assert isinstance(found, Diagnosis) and found.is_named and found.findings == (LOST,)
     assert (
-        repr(found).startswith("<Diagnosis of a log: NAMED. One thing is not as modelled")
+        repr(found).startswith("<Diagnosis of a log: NAMED. At least one thing is not as modelled")
         and len(repr(found)) < 300
     )
     card = found._repr_html_()

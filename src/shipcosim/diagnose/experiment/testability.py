@@ -1,25 +1,89 @@
 """What a log could not have shown, whatever is the matter: causes for which it has too little excitation."""
 
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.verdict import JudgedLog, usual_gain
+from shipcosim.diagnose.finding import VisibleSize
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.regressors import screening_regressors
-from shipcosim.diagnose.inference.thresholds import TESTABLE
+from shipcosim.diagnose.inference.thresholds import (
+    DEVIATIONS,
+    MORE_THAN_NOISE,
+    NINE_OF_TEN,
+    NULL_GAIN_WITHOUT_WIND,
+    TESTABLE,
+)
 from shipcosim.diagnose.log.mislabels import THRUSTER_LABELS
 from shipcosim.diagnose.log_faults.clock import is_testable
 from shipcosim.diagnose.ship.inputs import rate_of
 from shipcosim.diagnose.ship.model import ShipModel
 
 
-def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
+@dataclass(frozen=True)
+class Excitation:
+    """What a log tells of each cause, had it its typical size.
+
+    Attributes
+    ----------
+    products : (1 + p, 1 + p) array
+        Inner products of the log, of the known numbers and of all hypotheses' first columns.
+    columns : sequence of p Regressor
+    groups : sequence of (Hypothesis, indices)
+        Of the columns that are a hypothesis's.
+    least : float
+        Log-evidence that a cause must gain to be named. [nats]
+    """
+
+    products: np.ndarray
+    columns: Sequence[Regressor]
+    groups: Sequence[tuple[Hypothesis, list[int]]]
+    least: float = TESTABLE
+
+    def informations(self) -> Iterator[tuple[Hypothesis, list[int], np.ndarray]]:
+        """Information on each column of each group, while all known numbers may be off within their tolerances.
+
+        As the inverse of a variance, in units of the cause's typical size.
+        """
+        blank = self.products.copy()
+        blank[0, :] = blank[:, 0] = 0.0
+        known = np.array([column.prior for column in self.columns])
+        for _, places in self.groups:
+            known[places] = 0.0
+        for hypothesis, places in self.groups:
+            prior = known.copy()
+            prior[places] = 1.0
+            # Known numbers that the cause changes itself have no tolerance of their own beside it.
+            taken = {path for i in places for path in self.columns[i].changes}
+            prior[
+                [i for i, c in enumerate(self.columns) if i not in places and c.gives_way(taken)]
+            ] = 0.0
+            covariance = evidence(blank, prior)[2][np.ix_(places, places)]
+            yield hypothesis, places, 1.0 / np.diag(covariance) - 1.0
+
+
+def excitation_of(log: JudgedLog) -> Excitation:
+    """What a log tells of each cause that can be sought in it."""
+    problem = log.problem
+    columns = list(without_causes(log.fits).columns)
+    groups = []
+    for hypothesis in problem.hypotheses:
+        for group in screening_regressors(hypothesis):
+            groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
+            columns.extend(group)
+    products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
+    without_wind = NULL_GAIN_WITHOUT_WIND if problem.record.wind is None else 0.0
+    least = TESTABLE + usual_gain(problem.model) + without_wind
+    return Excitation(products, columns, groups, least)
+
+
+def untestable_causes(log: JudgedLog, excitation: Excitation) -> tuple[str, ...]:
     """Causes of the catalogue, the clock, and labels of thrusters that a log could not have shown.
 
     Causes as they would have shown had they had their typical size.
@@ -38,20 +102,18 @@ def untestable_causes(log: JudgedLog) -> tuple[str, ...]:
     everywhere = {hypothesis.cause for hypothesis in hypotheses_of(found.causes, problem.model)}
     if found.comparison.obstacles:
         return tuple(sorted({*of_log, *everywhere}))
-    weak = not_testable(*_of_typical_size(log), TESTABLE + usual_gain(problem.model))
     identifiable = {hypothesis.cause for hypothesis in problem.hypotheses}
-    return tuple(sorted({*weak, *of_log, *(everywhere - identifiable)}))
+    return tuple(sorted({*not_testable(excitation), *of_log, *(everywhere - identifiable)}))
 
 
-def hidden_by_form(log: JudgedLog) -> tuple[str, ...]:
+def hidden_by_form(log: JudgedLog, excitation: Excitation) -> tuple[str, ...]:
     """Causes that a log could have shown on a ship of the model's form, and not on one whose form is uncertain."""
     model = log.problem.model
     if not model.form_scale or model.directions:
         return ()
-    products, columns, groups = _of_typical_size(log)
-    known = [_as_known(column, model) for column in columns]
-    weak = not_testable(products, columns, groups, TESTABLE + usual_gain(model))
-    return tuple(sorted({*weak} - {*not_testable(products, known, groups)}))
+    known = [_as_known(column, model) for column in excitation.columns]
+    of_known_form = replace(excitation, columns=known, least=TESTABLE)
+    return tuple(sorted({*not_testable(excitation)} - {*not_testable(of_known_form)}))
 
 
 def _as_known(column: Regressor, model: ShipModel) -> Regressor:
@@ -62,37 +124,12 @@ def _as_known(column: Regressor, model: ShipModel) -> Regressor:
     return replace(column, prior=model.tolerances.get(path, 0.0) / model.uncertainties[path])
 
 
-def _of_typical_size(
-    log: JudgedLog,
-) -> tuple[np.ndarray, list[Regressor], list[tuple[Hypothesis, list[int]]]]:
-    """Inner products of a log, its known numbers and every cause of typical size, as `not_testable` takes them."""
-    problem = log.problem
-    columns = list(without_causes(log.fits).columns)
-    groups = []
-    for hypothesis in problem.hypotheses:
-        for group in screening_regressors(hypothesis):
-            groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
-            columns.extend(group)
-    products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
-    return products, columns, groups
-
-
-def not_testable(
-    products: np.ndarray,
-    columns: Sequence[Regressor],
-    groups: Sequence[tuple[Hypothesis, list[int]]],
-    least: float = TESTABLE,
-) -> tuple[str, ...]:
+def not_testable(excitation: Excitation) -> tuple[str, ...]:
     """Causes that would have gained too little to be seen in a log, had they had their typical size.
 
     Parameters
     ----------
-    products : (1 + p, 1 + p) array
-        Inner products of the log, of the known numbers and of all hypotheses' first columns.
-    columns : sequence of p Regressor
-    groups : sequence of (Hypothesis, indices)
-    least : float
-        That it would have to gain. [nats]
+    excitation : Excitation
 
     Returns
     -------
@@ -100,21 +137,54 @@ def not_testable(
         Names of causes, none of whose places could have shown it.
     """
     gains: dict[str, float] = {}
-    blank = products.copy()
-    blank[0, :] = blank[:, 0] = 0.0
-    known = np.array([column.prior for column in columns])
-    for _, places in groups:
-        known[list(places)] = 0.0
-    for hypothesis, places in groups:
-        prior = known.copy()
-        prior[list(places)] = 1.0
-        taken = {path for i in places for path in columns[i].changes}
-        prior[[i for i, c in enumerate(columns) if i not in places and c.gives_way(taken)]] = 0.0
-        covariance = evidence(blank, prior)[2][np.ix_(places, places)]
-        information = float(np.max(0.5 * (1.0 / np.diag(covariance) - 1.0)))
+    for hypothesis, _, informations in excitation.informations():
+        information = 0.5 * float(np.max(informations))
         gain = information - 0.5 * float(np.log1p(2.0 * information))
         gains[hypothesis.cause] = max(gains.get(hypothesis.cause, -np.inf), gain)
-    return tuple(cause for cause, gain in sorted(gains.items()) if gain < least)
+    return tuple(cause for cause, gain in sorted(gains.items()) if gain < excitation.least)
+
+
+def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
+    """The smallest size of each cause that a log would have shown in nine of ten cases.
+
+    The estimate of a cause of size s, in units of its typical size, varies about s with the variance 1/J that the
+    information J of the log leaves. Its log-evidence is half of the estimate's square, over its prior and posterior
+    variances, less half of log(1 + J). It is named where that is enough, and where the estimate is both large enough to
+    matter and clearly off neutral; the ship's own number may be off within its tolerance besides.
+
+    Returns
+    -------
+    tuple of VisibleSize
+        By hypothesis and parameter, in the catalogue's order; of a vector its length, in the direction that shows
+        least. Causes whose law turns over time are left out: the steady ones stand for them.
+    """
+    sizes: dict[tuple[str, str], VisibleSize] = {}
+    for hypothesis, places, informations in excitation.informations():
+        if hypothesis.definition.law == "turning":
+            continue
+        is_vector = len(places) < len(hypothesis.parameters)
+        for place, information in zip(places, informations, strict=True):
+            spread = 1.0 / np.sqrt(max(float(information), 1e-12))
+            wanted = excitation.least + 0.5 * np.log1p(information)
+            of_evidence = spread * np.sqrt(2.0 * wanted * (1.0 + spread**2))
+            least = max(of_evidence, hypothesis.definition.least, DEVIATIONS * spread)
+            path = next(iter(excitation.columns[place].changes))
+            parameter = next(one for one in hypothesis.parameters if path in one.paths)
+            # The estimate varies by the log's noise, and the well ship's own number within its tolerance.
+            varies = np.hypot(spread, parameter.tolerance / parameter.typical)
+            size = least + NINE_OF_TEN * MORE_THAN_NOISE * varies
+            found = VisibleSize(
+                hypothesis.cause,
+                hypothesis.component,
+                "" if is_vector else parameter.name,
+                float(size * abs(parameter.typical * parameter.factor)),
+                parameter.unit,
+            )
+            # A vector is sought in several directions: the one that shows least counts.
+            key = hypothesis.label, found.parameter
+            if key not in sizes or found.size > sizes[key].size:
+                sizes[key] = found
+    return tuple(sizes.values())
 
 
 def log_facts(problem: IdentificationProblem) -> dict[str, float | None]:

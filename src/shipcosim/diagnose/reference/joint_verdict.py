@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.testability import not_testable
+from shipcosim.diagnose.experiment.testability import Excitation, not_testable
 from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
 from shipcosim.diagnose.explanation.search import explain, without_causes
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
@@ -129,4 +129,4 @@ def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
             groups.append((one, list(range(place, place + len(group)))))
             place += len(group)
     usual = max(usual_gain(problem.model) for problem in logs.problems.values())
-    return not_testable(together, layout.regressors, groups, TESTABLE + usual)
+    return not_testable(Excitation(together, layout.regressors, groups, TESTABLE + usual))

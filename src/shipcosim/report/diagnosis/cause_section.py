@@ -14,7 +14,7 @@ from shipcosim.report.diagnosis.cause_figures import (
 )
 from shipcosim.report.diagnosis.form_section import FormSection, form_section
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
-from shipcosim.report.diagnosis.testability import not_testable_rows
+from shipcosim.report.diagnosis.testability import not_testable_rows, visible_rows
 from shipcosim.report.diagnosis.words import estimate_rows, size_rows, title
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
@@ -50,6 +50,8 @@ class CauseSection:
     sail : Sail, optional
     not_testable : Table
         Causes that this log could not have shown, and why.
+    visible : Table
+        The smallest size of the others that it would have shown.
     form : FormSection, optional
         How far the form of her loads differs, where it does.
     """
@@ -66,6 +68,7 @@ class CauseSection:
     is_unknown: bool
     sail: Sail | None
     not_testable: Table
+    visible: Table
     form: FormSection | None
 
 
@@ -96,6 +99,9 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
         is_unknown=diagnosis.verdict == "unknown",
         sail=_sail(diagnosis),
         not_testable=Table(weak, head=("Cause", "What it would be", "Why not")),
+        visible=Table(
+            visible_rows(diagnosis.smallest_visible), head=("Cause", "Size, in 9 of 10 cases")
+        ),
         form=form_section(diagnosis.form) if diagnosis.form else None,
     )
 

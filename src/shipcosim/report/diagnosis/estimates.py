@@ -35,7 +35,7 @@ def amount(
     tuple of three str
     """
     # Unit first: digits depend on it.
-    unit, factor = _scaled(estimate, max(abs(estimate.estimate), largest))
+    unit, factor = shown_unit(estimate.unit, max(abs(estimate.estimate), largest))
     value = factor * estimate.estimate
     std = factor * estimate.std
     # Without a standard deviation one percent of the value decides.
@@ -48,10 +48,11 @@ def amount(
     return f"{value:.{digits}f}".replace("-", "−"), f"{std:.{digits}f}", unit
 
 
-def _scaled(estimate: ParameterEstimate, size: float) -> tuple[str, float]:
-    if estimate.unit in LARGE and size >= 1000.0:
-        return LARGE[estimate.unit]
-    return {"deg": "°"}.get(estimate.unit, SHOWN.get(estimate.unit, estimate.unit)), 1.0
+def shown_unit(unit: str, size: float) -> tuple[str, float]:
+    """The unit in which a number of this size is shown, and the factor to it."""
+    if unit in LARGE and size >= 1000.0:
+        return LARGE[unit]
+    return {"deg": "°"}.get(unit, SHOWN.get(unit, unit)), 1.0
 
 
 def vector(north: ParameterEstimate, east: ParameterEstimate) -> str:

@@ -2,8 +2,10 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
+from shipcosim.diagnose.finding import VisibleSize
 from shipcosim.diagnose.hypotheses.catalogue import read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause, placeholders
+from shipcosim.report.diagnosis.estimates import shown_unit
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.theme.numbers import plain
 
@@ -11,6 +13,7 @@ BY_FORM = (
     "loads of another form than the model's would do the same, and hers have another form; a log of the ship when she "
     "was well, as a reference, tells"
 )
+VISIBLE = "Smallest fault that this log would have shown, in 9 of 10 cases"
 UNITS = {
     "speed": "m/s",
     "surge": "m/s",
@@ -59,6 +62,38 @@ def not_testable_rows(
         )
         rows.append((title(name), sentence, reason))
     return rows
+
+
+def visible_rows(sizes: Sequence[VisibleSize]) -> list[tuple[str, str]]:
+    """Each cause with the smallest size that would have shown, at every place of the ship.
+
+    Examples
+    --------
+    >>> from shipcosim.diagnose.finding import VisibleSize
+    >>> loss = [VisibleSize("thrust_loss", place, "loss", size, "1") for place, size in (("port", 0.14), ("bow", 0.3))]
+    >>> visible_rows(loss)
+    [('Thrust loss', 'port 14 %, bow 30 %')]
+    """
+    rows: dict[str, list[str]] = {}
+    for one in sizes:
+        # A ratio as a percentage, any other number with its unit.
+        unit, factor = _scaled(one.unit, one.size)
+        size = f"{plain(factor * one.size, 2)} {unit}".replace(" °", "°").rstrip()
+        place = [one.component] if one.component else []
+        # The parameter's name only where the cause has several.
+        several = sum(
+            other.cause == one.cause and other.component == one.component for other in sizes
+        )
+        name = [one.parameter.replace("_", " ")] if one.parameter and several > 1 else []
+        rows.setdefault(title(one.cause), []).append(" ".join([*place, *name, size]))
+    return [(cause, ", ".join(texts)) for cause, texts in rows.items()]
+
+
+def _scaled(unit: str, size: float) -> tuple[str, float]:
+    """Unit for readers, and the factor to it: a ratio in per cent, large forces in kN."""
+    if unit in ("1", ""):
+        return "%", 100.0
+    return shown_unit(unit, size)
 
 
 def _texts(facts: Mapping[str, float | None]) -> dict[str, str | None]:

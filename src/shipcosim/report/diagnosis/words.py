@@ -9,7 +9,7 @@ from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
-from shipcosim.report.theme.numbers import span
+from shipcosim.report.theme.numbers import metres, span
 from shipcosim.report.theme.views import Outcome
 
 ADD_A_CAUSE = (
@@ -126,8 +126,9 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
         )
     # Named causes, then faults of the log alone.
     if physics:
-        many = f"{len(physics)} things are" if len(physics) > 1 else "One thing is"
-        return "NAMED", f"{many} not as modelled: {listed(physics)}.{log}"
+        many = f"{len(physics)} things are" if len(physics) > 1 else "one thing is"
+        better = _better_predictor(diagnosis)
+        return "NAMED", f"At least {many} not as modelled: {listed(physics)}.{better}{log}"
     if data:
         return (
             "NAMED",
@@ -140,6 +141,25 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
             "Simulation and log agree, where the loads may have another form than the model's.",
         )
     return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
+
+
+def _better_predictor(diagnosis: Diagnosis) -> str:
+    """That something else predicts this log better than the extended model, where it does."""
+    gain = diagnosis.gain
+    if not gain:
+        return ""
+    others = {
+        "The model as it was": gain["before_m"],
+        "The model as it was with a bias observer": gain["bias_observer_m"],
+    }
+    known = {name: error for name, error in others.items() if error is not None}
+    best = min(known, key=lambda name: known[name])
+    if known[best] >= gain["after_m"]:
+        return ""
+    return (
+        f" {best} predicts better than with the cause in it: {metres(known[best])} against "
+        f"{metres(gain['after_m'])} after {gain['horizon_s']:g} s."
+    )
 
 
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:

@@ -8,6 +8,7 @@ from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.validation.tracks import Tracks
 from shipcosim.report.diagnosis.key_figures import key_figures
+from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
 from shipcosim.report.diagnosis.track_figures import joined
 from shipcosim.report.diagnosis.words import (
     discrepancy_rows,
@@ -59,6 +60,7 @@ def diagnosis_card(found: Diagnosis, name: str) -> Card:
             Block("Remarks", lines=found.notes),
             Block("What to do next", lines=tuple(steps)),
             Block("This log could not have shown", lines=silent, folded=True),
+            Block(VISIBLE, Table(visible_rows(found.smallest_visible)), folded=True),
         ),
         draw=None if (tracks := found.tracks) is None else lambda: tracks_svg(tracks, name),
     )

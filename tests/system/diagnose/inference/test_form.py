@@ -6,7 +6,11 @@ import xarray
 from diagnose import twin
 from threadpoolctl import threadpool_limits
 
-from shipcosim.diagnose.experiment.testability import hidden_by_form, untestable_causes
+from shipcosim.diagnose.experiment.testability import (
+    excitation_of,
+    hidden_by_form,
+    untestable_causes,
+)
 from shipcosim.diagnose.explanation.form import learnt, of_scale, scores_by_scale, with_settled_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, explain
@@ -87,7 +91,8 @@ def test_how_far_the_form_differs_is_said_and_what_it_hides(explained):
         for path, size in FORM.items()
         if path in moved
     )
-    assert set(hidden_by_form(log)) <= set(untestable_causes(log))
+    excitation = excitation_of(log)
+    assert set(hidden_by_form(log, excitation)) <= set(untestable_causes(log, excitation))
 
 
 def test_a_form_that_the_causes_found_do_without_is_given_up_again(explained):

@@ -1,5 +1,6 @@
 """From logs to the files of a calibration, and from these to what has changed since."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -7,7 +8,13 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
-from shipcosim.diagnose.calibration_pipeline import _check_usable, calibrate, log_names, steps_of
+from shipcosim.diagnose.calibration_pipeline import (
+    _check_usable,
+    _reasons_not_to_trust,
+    calibrate,
+    log_names,
+    steps_of,
+)
 from shipcosim.diagnose.comparison.compared import LogComparison
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.pipeline import read_measurements
@@ -71,6 +78,21 @@ def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
         _check_usable(logs)
     assert [problem.where for problem in raised.value.problems] == ["open", "poor", "gross"]
     assert "the log does not tell" in str(raised.value) and "beyond doubt" in str(raised.value)
+
+
+def test_a_ship_that_a_diagnosis_calls_ill_makes_no_reference(tmp_path):
+    """Wide tolerances would make a number of her own of every cause."""
+    ill = twin.sailed({"ill": {"port.thrust_loss": 0.34}}, minutes=12.0, seed=6)["ill"]
+    ship = calibrate([ill], twin.system(), out=tmp_path)
+    assert "names thrust_loss of port" in ship.refusals[0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_reference_that_predicts_worse_than_the_system_is_refused(made):
+    (log, _) = made[0].logs
+    worse = replace(log, errors=replace(log.errors, after=(1.0, 2.0, 9.0), before=(1.0, 2.0, 3.0)))
+    assert "by 9 m, the ship as the system has her by 3 m" in _reasons_not_to_trust([worse], {})[0]
+    assert _reasons_not_to_trust([log], {"monday": []}) == []
 
 
 def test_a_log_is_held_against_the_ship_of_the_reference(made):

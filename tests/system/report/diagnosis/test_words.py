@@ -135,7 +135,11 @@ def test_every_cause_of_the_catalogue_has_advice():
     ("diagnosis", "word", "said"),
     [
         (Diagnosis("consistent"), "CONSISTENT", ["agree, within noise"]),
-        (Diagnosis("named", (LOSS,)), "NAMED", ["One thing is not as modelled", "port thruster"]),
+        (
+            Diagnosis("named", (LOSS,)),
+            "NAMED",
+            ["At least one thing is not as modelled", "port thruster"],
+        ),
         (
             Diagnosis("named", (LOSS, pair("tow", 1.0, 2.0, "N"))),
             "NAMED",
@@ -209,3 +213,16 @@ def test_consistent_log_asks_for_nothing():
 def test_place_in_the_log_and_title():
     assert where(GAP) == "463–499 s, 912–1001 s" and where(LOSS) == "the whole log"
     assert title("rpm_offset", "tunnel") == "Rpm offset of tunnel"
+
+
+def test_a_better_predictor_than_the_extended_model_is_named():
+    gain = {"horizon_s": 60, "before_m": 3.0, "bias_observer_m": 0.78, "after_m": 1.5}
+    said = outcome(Diagnosis("named", (LOSS,), gain=gain)).sentence
+    assert (
+        "with a bias observer predicts better than with the cause in it: 0.78 m against 1.5 m"
+        in said
+    )
+    assert (
+        "predicts better"
+        not in outcome(Diagnosis("named", (LOSS,), gain=gain | {"after_m": 0.5})).sentence
+    )
