@@ -39,6 +39,7 @@ def _sections(found):
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
+    from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
     from shipcosim.report.diagnosis.words import title
     from shipcosim.report.joint.words import (
         cause_rows,
@@ -66,6 +67,7 @@ def _sections(found):
             table(row[:4] for row in log_rows(found)),
         ),
         ("All logs together could not have shown", Text(silent) if silent else None),
+        (VISIBLE, None if found.findings else table(visible_rows(found.smallest_visible))),
         ("Remarks", Text("\n".join(found.remarks), style="yellow") if found.remarks else None),
         ("What to do next", Text("\n".join(f"- {step}" for step in next_steps(found, extended)))),
     ]

@@ -25,10 +25,11 @@ from shipcosim.diagnose.comparison.compared import compared, ratio_finding
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
 from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
+from shipcosim.diagnose.experiment.testability import not_testable, visible_sizes
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extended_system import extended_by
-from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.finding import Finding, ParameterEstimate, label_of
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.log.runs import LogSource
 from shipcosim.diagnose.log_faults.corrections import corrected
@@ -58,7 +59,7 @@ from shipcosim.diagnose.reference.held_out import (
 )
 from shipcosim.diagnose.reference.joint_fit import JointFit
 from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
-from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
+from shipcosim.diagnose.reference.joint_verdict import joint_excitation, judged_jointly
 from shipcosim.diagnose.reference.reference import Reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
 from shipcosim.diagnose.result import Diagnosis
@@ -328,6 +329,8 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
         *(Shared(one, _telling(logs, labels[one.label])) for one in causes),
     )
     seen = {one.label for one in (*judgement.candidates, *causes)} | {one.cause for one in crude}
+    named = {one.what.label for one in findings}
+    excitation = joint_excitation(basis.verdict)
     verdict = "unknown" if is_split else judgement.verdict
     of_data = found.findings or any(
         one.kind == "data" for log in found.logs.values() for one in log.findings
@@ -339,7 +342,12 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
         sizes=_sizes(basis, crude, causes),
         candidates=judgement.candidates,
         indistinguishable=() if is_split else judgement.indistinguishable,
-        not_testable=tuple(name for name in untestable_jointly(basis.verdict) if name not in seen),
+        not_testable=tuple(name for name in not_testable(excitation) if name not in seen),
+        smallest_visible=tuple(
+            one
+            for one in visible_sizes(excitation)
+            if label_of(one.cause, one.component) not in named
+        ),
         prescription=None if is_split else _prescription(basis),
         remarks=(*found.remarks, *remarks_on(found)),
     )

@@ -6,7 +6,13 @@ from typing import Any
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.extension.extend import Extension
 from shipcosim.diagnose.extension.extended_system import NumberChange
-from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, ParameterEstimate
+from shipcosim.diagnose.finding import (
+    Candidate,
+    Discrepancy,
+    Finding,
+    ParameterEstimate,
+    VisibleSize,
+)
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.common_findings import RatioOfLogs, Shared
 from shipcosim.diagnose.reference.held_out import LogErrors
@@ -48,6 +54,8 @@ class JointDiagnosis:
     candidates, indistinguishable : tuple of Candidate
     not_testable : tuple of str
         Causes that all logs together could not have shown.
+    smallest_visible : tuple of VisibleSize
+        Of causes that were not found: what all logs together would have shown.
     logs : dict of str to Diagnosis
         Each log by itself: its faults, its errors, its own verdict.
     discrepancies : tuple of Shared
@@ -93,6 +101,7 @@ class JointDiagnosis:
     extension: Extension | None = None
     changes: tuple[NumberChange, ...] = ()
     remarks: tuple[str, ...] = ()
+    smallest_visible: tuple[VisibleSize, ...] = field(default=(), repr=False)
     basis: JointBasis | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
 
@@ -116,6 +125,7 @@ class JointDiagnosis:
                 self._entry(asdict(candidate)) for candidate in self.indistinguishable
             ],
             "not_testable": list(self.not_testable),
+            "smallest_visible": [asdict(one) for one in self.smallest_visible],
             "prescription": asdict(self.prescription) if self.prescription else None,
             "discrepancies": [
                 asdict(one.what) | {"logs": list(one.logs)} for one in self.discrepancies

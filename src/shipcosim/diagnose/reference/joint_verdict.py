@@ -5,7 +5,7 @@ from typing import cast
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.testability import Excitation, not_testable
+from shipcosim.diagnose.experiment.testability import Excitation
 from shipcosim.diagnose.explanation.null_distribution import healthy_products, on_track
 from shipcosim.diagnose.explanation.search import explain, without_causes
 from shipcosim.diagnose.explanation.unmodelled import errors_of_the_fit, unmodelled_gains
@@ -111,8 +111,8 @@ def _null_gains(logs, fit, fits):
     return found
 
 
-def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
-    """Causes that these logs together could not have shown had they had their typical size."""
+def joint_excitation(verdict: JointVerdict) -> Excitation:
+    """What these logs together tell of each cause, had it its typical size."""
     logs = verdict.logs
     nothing = cast(JointFit, without_causes(verdict.fits))
     layout = screening_layout(logs, nothing.layout, logs.hypotheses)
@@ -129,4 +129,4 @@ def untestable_jointly(verdict: JointVerdict) -> tuple[str, ...]:
             groups.append((one, list(range(place, place + len(group)))))
             place += len(group)
     usual = max(usual_gain(problem.model) for problem in logs.problems.values())
-    return not_testable(Excitation(together, layout.regressors, groups, TESTABLE + usual))
+    return Excitation(together, layout.regressors, groups, TESTABLE + usual)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from shipcosim.diagnose.reference.held_out import LogErrors
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.report.diagnosis.extension_section import ExtensionSection, section_of
+from shipcosim.report.diagnosis.testability import visible_rows
 from shipcosim.report.diagnosis.track_figures import track_figure
 from shipcosim.report.diagnosis.words import title
 from shipcosim.report.joint.words import (
@@ -66,6 +67,8 @@ class JointPage(FigurePage):
     extension : ExtensionSection
     silent : Table
         Causes that all logs together could not have shown.
+    visible : Table
+        The smallest size of the others that they would have shown.
     """
 
     discrepancies: Table
@@ -81,6 +84,7 @@ class JointPage(FigurePage):
     logs: Table
     extension: ExtensionSection
     silent: Table
+    visible: Table
 
 
 def render(found: JointDiagnosis) -> str:
@@ -132,6 +136,7 @@ def _page(found: JointDiagnosis) -> JointPage:
         ),
         extension=extension,
         silent=Table(silent, ("Cause", "What it would be")),
+        visible=Table(visible_rows(found.smallest_visible), ("Cause", "Size, in 9 of 10 cases")),
         figures=(*tracks, *errors),
     )
 

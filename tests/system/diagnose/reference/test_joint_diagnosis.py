@@ -116,6 +116,7 @@ class Schema(Strict):
     candidates: list[JointCandidate]
     indistinguishable: list[JointCandidate]
     not_testable: list[str]
+    smallest_visible: list[dict]
     prescription: dict | None
     baseline: JointBaseline | None
     gain: JointGain | None

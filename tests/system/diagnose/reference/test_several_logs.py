@@ -5,11 +5,12 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
+from shipcosim.diagnose.experiment.testability import not_testable
 from shipcosim.diagnose.inference.fitting import fitted
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.screening import screened
 from shipcosim.diagnose.reference.joint_fit import fitted_jointly, screened_jointly
-from shipcosim.diagnose.reference.joint_verdict import judged_jointly, untestable_jointly
+from shipcosim.diagnose.reference.joint_verdict import joint_excitation, judged_jointly
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log, laid_out
 
 
@@ -87,4 +88,4 @@ def test_a_current_of_one_day_is_found_in_its_log():
     logs = SeveralLogs({"calm": ships.problem(3, "well"), "stream": ships.problem(4, "current")})
     verdict = judged_jointly(logs)
     assert [finding.label for finding in verdict.judgement.findings] == ["current of stream"]
-    assert "current" not in untestable_jointly(verdict)
+    assert "current" not in not_testable(joint_excitation(verdict))
