@@ -42,6 +42,9 @@ class Finding:
         Roles of the channels that a fault of the data is in.
     onset : float or None
         From when on a cause of the physics acts; None from the start. [s]
+    course : str
+        What it does after its onset: ``"step"``, it stays; ``"ramp"``, it grows to its size at the end; ``"spell"`` or
+        ``"switching"``: it is there in `segments`. Empty: it is there all along.
     note : str
         What else there is to say, one sentence.
     alternatives : tuple of str
@@ -59,6 +62,7 @@ class Finding:
     segments: tuple[Segment, ...] = ()
     channels: tuple[str, ...] = ()
     onset: float | None = None
+    course: str = ""
     note: str = ""
     alternatives: tuple[str, ...] = ()
     at_reference: dict[str, ParameterEstimate] = field(default_factory=dict)
@@ -88,6 +92,9 @@ class Finding:
             entry["channels"] = list(self.channels)
         if self.onset is not None:
             entry["onset"] = self.onset
+        if self.course:
+            entry["course"] = self.course
+            entry["segments"] = [list(segment) for segment in self.segments]
         if self.note:
             entry["note"] = self.note
         if self.alternatives:

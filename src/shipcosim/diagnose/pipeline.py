@@ -14,7 +14,7 @@ From there to its verdict, `verdict_on`:
     with_causes        ExplainedLog    sets of causes fitted to the log
     with_settled_form  ExplainedLog    the model's form after all, where the causes found do without another
     with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
-    with_change_point  ExplainedLog    causes that began during the log
+    with_course        ExplainedLog    causes that begin, grow, or come and go
     judged             JudgedLog       the verdict, against unmodelled errors and what healthy ships gain
     with_crude_model   JudgedLog       thrust and damping over inertia after all, where nothing else explains the log
 
@@ -22,6 +22,7 @@ From the verdict to the gain, `diagnose`:
 
     stated             Diagnosis       findings, what this log could not have shown, what to sail next
     with_predictions   PredictedLog    predictions on rows that nothing was fitted on, the force that the model lacks
+    named_if_better    Diagnosis       no name for a cause that predicts these rows worse than the ship without it
     with_findings      ExtendedSystem  the system with the named causes in it
     with_cosimulation  SimulatedLog    the predictions as co-simulations of the given and the extended system
     completed          Diagnosis       errors, gain, and all that the page shows
@@ -34,7 +35,7 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
 from shipcosim.diagnose.comparison.compared import compared
-from shipcosim.diagnose.explanation.change_point import with_change_point
+from shipcosim.diagnose.explanation.course_search import with_course
 from shipcosim.diagnose.explanation.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.explanation.identification import Identification, identified
 from shipcosim.diagnose.explanation.search import with_causes
@@ -50,7 +51,7 @@ from shipcosim.diagnose.reference.reference import Reference, read_reference, wi
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.diagnose.statement import completed, stated
+from shipcosim.diagnose.statement import completed, named_if_better, stated
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import AnyPath, AnySystem, System, SystemStructure, read
@@ -118,7 +119,7 @@ def diagnose(
     basis = found.basis
     if basis is None:
         raise ValueError("a diagnosis that does not know its log")
-    predicted = with_predictions(basis, found.is_named)
+    found, predicted = named_if_better(found, with_predictions(basis, found.is_named))
     say("extending the system")
     extended = with_findings(given, found.findings, basis.explained.identification, out)
     say("the gain, by co-simulation")
@@ -242,6 +243,6 @@ def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     identification = with_learnt_form(corrected(problem))
     progress("which causes explain it?")
     explained = with_settled_form(with_causes(identification))
-    explained = with_change_point(with_right_inputs(explained))
+    explained = with_course(with_right_inputs(explained))
     progress("what do healthy ships look like?")
     return with_crude_model(judged(explained))

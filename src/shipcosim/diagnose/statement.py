@@ -15,12 +15,14 @@ from shipcosim.diagnose.explanation.summary import evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.finding import label_of
+from shipcosim.diagnose.inference.thresholds import BESIDE_UNKNOWN
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.result import Diagnosis, LogSummary
-from shipcosim.diagnose.validation.conditions import PredictedLog
-from shipcosim.diagnose.validation.gain import baseline, gain
+from shipcosim.diagnose.validation.conditions import PredictedLog, with_predictions
+from shipcosim.diagnose.validation.gain import baseline, gain, rms
 from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
+from shipcosim.diagnose.validation.thresholds import WORSE
 from shipcosim.diagnose.validation.tracks import tracks_of
 
 
@@ -57,7 +59,7 @@ def stated(log: JudgedLog) -> Diagnosis:
         "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
         (
             *of_log,
-            *(replace(finding, onset=log.explained.change_point) for finding in judgement.findings),
+            *judgement.findings,
         ),
         judgement.candidates,
         judgement.indistinguishable,
@@ -73,6 +75,43 @@ def stated(log: JudgedLog) -> Diagnosis:
         ),
         basis=log,
     )
+
+
+def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosis, PredictedLog]:
+    """A diagnosis without the causes that it names, where they predict rows kept from the fit worse than the plain ship.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    predicted : PredictedLog
+
+    Returns
+    -------
+    tuple of Diagnosis and PredictedLog
+        As given; or ``"unknown"`` with the causes among the candidates, and predictions by the plain ship alone.
+    """
+    comparison = predicted.comparison
+    if not found.is_named or comparison is None:
+        return found, predicted
+    without, within = (rms(comparison.errors, "position", model) for model in ("plain", "extended"))
+    if within <= WORSE * without:
+        return found, predicted
+    names = ", ".join(one.label for one in found.findings if one.kind == "physics")
+    remark = (
+        f"{names}: likeliest by its evidence, and not named, since on rows that it was not fitted on the ship with it "
+        f"misses the log by {within:.2g} m, without it by {without:.2g} m."
+    )
+    doubted = replace(
+        found,
+        verdict="unknown",
+        findings=tuple(one for one in found.findings if one.kind == "data"),
+        candidates=tuple(
+            replace(one, probability=min(one.probability, BESIDE_UNKNOWN))
+            for one in found.candidates
+        ),
+        remarks=(*found.remarks, remark),
+    )
+    return doubted, with_predictions(predicted.judged, False)
 
 
 def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:

@@ -95,8 +95,9 @@ def draw_many(kind, seeds, **options):
         (default 0: the model's).
     among : sequence of str, optional
         Causes (or names of unknown effects) to draw from; all if not given.
-    onset : bool
-        Effects on the ship or its sensors begin within the log (default no).
+    onset : bool or str
+        Effects on the ship or its sensors begin within the log (default no): and stay; or with "ramp" grow until its
+        end, with "spell" end again, with "switching" come and go.
     always : str, optional
         A cause that is hidden in every log, alone or beside what is drawn.
     after : dict, optional
@@ -277,7 +278,25 @@ def draw_effect(cause, rng, size, minutes, onset):
     start = float(rng.uniform(0.25, 0.6) * 60 * minutes)
     when = start if onset and cause not in effects.WITHOUT_ONSET else 0.0
     parameters = {name: float(value) for name, value in parameters.items()}
-    return Effect(Answer(cause, component, parameters, onset=when), shape)
+    course = onset if when and isinstance(onset, str) else ""
+    spells = draw_spells(course, rng, when, 60.0 * minutes)
+    return Effect(
+        Answer(cause, component, parameters, onset=when, course=course, spells=spells), shape
+    )
+
+
+def draw_spells(course, rng, start, end):
+    """When an effect is there that begins at a time of a log of this length. [s]"""
+    if course == "ramp":
+        return ((start, end),)
+    if course == "spell":
+        return ((start, start + float(rng.uniform(0.15, 0.3)) * end),)
+    spells = []
+    while course == "switching" and start < end:
+        on, off = (float(rng.uniform(0.05, 0.12)) * end for _ in range(2))
+        spells.append((start, start + on))
+        start += on + off
+    return tuple(spells)
 
 
 def draw_batch(setups):

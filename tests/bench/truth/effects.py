@@ -19,6 +19,10 @@ class Answer(NamedTuple):
     channels: tuple = ()  # roles
     onset: float = 0.0  # s of the log, over 30 s; 0 is there from the start
     note: str = ""  # what an effect outside the catalogue is
+    course: str = (
+        ""  # "ramp", "spell" or "switching": what it does after its onset; empty: it stays
+    )
+    spells: tuple = ()  # (from, to) in s: when a spell or a switching effect is there
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,11 @@ class Effect:
     def ramp(self, t):
         """How much of the effect is there at a time of the log, 0 to 1."""
         onset = self.answer.onset
+        if self.answer.course == "ramp":
+            return float(np.clip((t - onset) / (self.answer.spells[0][1] - onset), 0.0, 1.0))
+        if self.answer.course:
+            rises = (min((t - start) / 30.0, (end - t) / 30.0) for start, end in self.answer.spells)
+            return float(np.clip(max(rises), 0.0, 1.0))
         return float(np.clip((t - onset) / 30.0, 0.0, 1.0)) if onset else 1.0
 
 

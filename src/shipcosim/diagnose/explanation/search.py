@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.unmodelled import is_healthy
 from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
@@ -30,14 +31,14 @@ class ExplainedLog:
         One for each set of causes that was fitted, best first; that without a cause is among them.
     is_healthy : bool
         Whether the best set is empty and no unmodelled error stands out beside it.
-    change_point : float or None
-        Since when the causes act, where they began during the log; `identification` is then of the rows after. [s]
+    course : CourseFound or None
+        A cause that begins, grows, or comes and goes; `identification` is then of the rows in which it acts.
     """
 
     identification: Identification
     fits: tuple[Fit, ...]
     is_healthy: bool
-    change_point: float | None = None
+    course: CourseFound | None = None
 
 
 def with_causes(found: Identification) -> ExplainedLog:

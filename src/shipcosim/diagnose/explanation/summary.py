@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.verdict import JudgedLog, gained
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
@@ -111,8 +112,8 @@ class Evidence:
     step : float
         Time from row to row. [s]
     rows : int
-    change_point : float or None
-        From when on the causes act. [s]
+    course : CourseFound or None
+        A cause that begins, grows, or comes and goes.
     """
 
     sets: tuple[SetEvidence, ...]
@@ -122,7 +123,7 @@ class Evidence:
     whiteness: dict[str, np.ndarray]
     step: float
     rows: int
-    change_point: float | None = None
+    course: CourseFound | None = None
 
 
 def evidence_of(log: JudgedLog) -> Evidence:
@@ -152,7 +153,7 @@ def evidence_of(log: JudgedLog) -> Evidence:
         white,
         problem.record.step,
         problem.record.time.size,
-        log.explained.change_point,
+        log.explained.course,
     )
 
 

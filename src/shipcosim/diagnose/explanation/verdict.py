@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.diagnose.comparison.compared import with_crude
+from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.null_distribution import null_gains
 from shipcosim.diagnose.explanation.search import ExplainedLog, names, without_causes
 from shipcosim.diagnose.explanation.unmodelled import FORCES, unmodelled_gains
@@ -102,6 +103,8 @@ def judged(explained: ExplainedLog) -> JudgedLog:
     fits = explained.fits
     if explained.identification.comparison.obstacles:
         return JudgedLog(explained, Judgement("unknown", without_causes(fits), (), (), ()), {}, {})
+    if explained.course is not None:
+        return _judged_course(explained, explained.course)
     without_wind = problem.record.wind is None
     usual = usual_gain(problem.model) + (NULL_GAIN_WITHOUT_WIND if without_wind else 0.0)
     found = judge_against_healthy(
@@ -112,6 +115,28 @@ def judged(explained: ExplainedLog) -> JudgedLog:
         without_wind=without_wind,
     )
     return JudgedLog(explained, *found)
+
+
+def _judged_course(explained: ExplainedLog, course: CourseFound) -> JudgedLog:
+    """The verdict on a cause with a course, which was weighed against all steady ones; beside it steady ones may be."""
+    problem = explained.identification.problem
+    fit = explained.fits[0]
+    beside = [one for one in fit.hypotheses if one.label != course.hypothesis.label]
+    own = (Candidate(course.finding.cause, course.finding.component, course.finding.probability),)
+    candidates = own + course.rivals
+    steady = tuple(_finding(one, fit, _of_all(course.steady)) for one in beside)
+    # Whatever else pushes the ship is looked for as ever; the size of a cause with a course varies by itself.
+    others = {kind: gain for kind, gain in course.unmodelled.items() if kind != _BY_PART}
+    if problem.record.wind is None:
+        others = {kind: gain for kind, gain in others.items() if kind not in FORCES}
+    of_causes = course.gain + course.steady[0].score - without_causes(course.steady).score
+    if _stands_out(others, of_causes):
+        judgement = Judgement("unknown", fit, (), _beside_unknown(candidates), ())
+    elif course.rivals:
+        judgement = Judgement("ambiguous", fit, steady, candidates, candidates)
+    else:
+        judgement = Judgement("named", fit, (course.finding, *steady), candidates, ())
+    return JudgedLog(explained, judgement, course.unmodelled, {})
 
 
 def judge_against_healthy(
@@ -220,8 +245,7 @@ def judge(
     nothing = without_causes(fits)
     fair = [fit for fit in fits if not fit.hypotheses or admissible(fit, fits, null or {})]
     best = _best_steady(sorted(fair, key=lambda fit: -fit.score), unmodelled)
-    scores = [fit.score if fit.hypotheses else fit.score + ENOUGH for fit in fair]
-    candidates = _candidates(dict(zip(fair, _weights(scores), strict=True)))
+    candidates = _of_all(fair)
     gain = best.score - nothing.score
     if len(best.hypotheses) > MOST_CAUSES or all(
         _stands_out(unmodelled(fit), gain) for fit in (best, *_with_a_small_cause(best, fits))
@@ -245,6 +269,12 @@ def judge(
         findings = tuple(f for f in findings if f.label in shared)
         return Judgement("ambiguous", best, findings, candidates, same, tuple(rivals))
     return Judgement("named", best, findings, candidates, ())
+
+
+def _of_all(fits):
+    """Causes with their probabilities by all sets that were fitted, none of them preferred."""
+    scores = [fit.score if fit.hypotheses else fit.score + ENOUGH for fit in fits]
+    return _candidates(dict(zip(fits, _weights(scores), strict=True)))
 
 
 def _beside_unknown(candidates):

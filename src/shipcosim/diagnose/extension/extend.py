@@ -155,7 +155,8 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
         _put_parameter(draft, finding, number, estimate, cause)
     if finding.onset is not None and not with_onset:
         draft.remark(
-            finding, f"its onset at {finding.onset:g} s is not carried: it acts from the start"
+            finding,
+            f"when it begins, at {finding.onset:.0f} s, and how it goes on are not carried: it acts from the start",
         )
 
 

@@ -5,9 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.summary import LAGS, Evidence
 from shipcosim.diagnose.inference.thresholds import ENOUGH, UNMODELLED
-from shipcosim.report.diagnosis.words import title
+from shipcosim.report.diagnosis.estimates import shown_unit
+from shipcosim.report.diagnosis.words import course_of, title
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import TIME, limit, line, rounded
 from shipcosim.report.theme.views import Figure
@@ -96,6 +98,39 @@ def estimate_figure(evidence: Evidence) -> Figure:
     return Figure(
         "How large, and how sure", "", (marks,), axes, note, height=110 + 40 * len(parameters)
     )
+
+
+def course_figures(found: CourseFound) -> tuple[Figure, ...]:
+    """The size of a cause over the log, each part by itself, and the course that was found."""
+    finding = found.finding
+    figures = []
+    for one in found.sizes:
+        unit, factor = (
+            ("%", 100.0) if one.unit == "1" else shown_unit(one.unit, np.abs(one.size).max())
+        )
+        marks = line("each part of the log by itself", one.time, factor * one.size, palette.BLUE)
+        marks |= {
+            "mode": "markers",
+            "error_y": {
+                "type": "data",
+                "array": rounded(2.0 * factor * one.std, 3),
+                "thickness": 2,
+            },
+        }
+        # The course is drawn from nothing to the size that all rows together give.
+        neutral, full = found.neutral[one.parameter], finding.parameters[one.parameter].estimate
+        time, share = found.drawn
+        curve = factor * (neutral + (full - neutral) * share)
+        figures.append(
+            Figure(
+                f"{title(finding.cause, finding.component)}: {one.parameter.replace('_', ' ')} over time",
+                unit,
+                (line(f"as found: {course_of(finding)}", time, curve, palette.VERMILLION), marks),
+                {"xaxis": TIME},
+                "Bars are two standard deviations. The line is what explains all rows together best.",
+            )
+        )
+    return tuple(figures)
 
 
 def unmodelled_figure(unmodelled: Mapping[str, float]) -> Figure:

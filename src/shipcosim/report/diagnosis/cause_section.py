@@ -7,6 +7,7 @@ from shipcosim.diagnose.explanation.summary import Evidence
 from shipcosim.diagnose.finding import Candidate
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.cause_figures import (
+    course_figures,
     estimate_figure,
     evidence_figure,
     unmodelled_figure,
@@ -15,7 +16,7 @@ from shipcosim.report.diagnosis.cause_figures import (
 from shipcosim.report.diagnosis.form_section import FormSection, form_section
 from shipcosim.report.diagnosis.manoeuvre_steps import manoeuvre_steps
 from shipcosim.report.diagnosis.testability import not_testable_rows, visible_rows
-from shipcosim.report.diagnosis.words import estimate_rows, size_rows, title
+from shipcosim.report.diagnosis.words import course_of, estimate_rows, size_rows, title
 from shipcosim.report.theme.numbers import percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
@@ -38,8 +39,10 @@ class CauseSection:
     ----------
     found : str
         The result in a few words.
-    change_point : str
-        When the causes began to act, in s; empty if they acted from the start.
+    course : str
+        When a cause that begins, grows, or comes and goes is there; empty if none does.
+    sizes : tuple of Figure
+        Its size over time.
     estimates, gains : Table
         Of the named causes: their parameters; what they gain, beside what healthy ships show.
     figures, unmodelled, whiteness : tuple of Figure
@@ -57,7 +60,8 @@ class CauseSection:
     """
 
     found: str
-    change_point: str
+    course: str
+    sizes: tuple[Figure, ...]
     estimates: Table
     gains: Table
     figures: tuple[Figure, ...]
@@ -74,8 +78,6 @@ class CauseSection:
 
 def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     """Section 3 of the page for the template."""
-    # The earliest change point stands for all causes.
-    began = sorted({f.onset for f in diagnosis.findings if f.onset is not None})
     named = {(f.cause, f.component) for f in diagnosis.findings}
     alike = diagnosis.indistinguishable
     # Candidates that are neither named nor indistinguishable.
@@ -88,7 +90,8 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
     figures = [evidence_figure(evidence)] if evidence.sets else []
     return CauseSection(
         found=_found(diagnosis),
-        change_point=f"{began[0]:.0f}" if began else "",
+        course="" if evidence.course is None else course_of(evidence.course.finding),
+        sizes=() if evidence.course is None else course_figures(evidence.course),
         estimates=_estimates(diagnosis),
         gains=_gains(evidence),
         figures=(*figures, *([estimate_figure(evidence)] if evidence.sizes else [])),

@@ -47,7 +47,7 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
         return _fault(finding)
     cause = (read_catalogue() if causes is None else causes).get(finding.cause)
     # Since when, and what it was at the reference.
-    since = f", from {finding.onset:.0f} s on" if finding.onset is not None else ""
+    since = f", {course_of(finding)}" if finding.onset is not None else ""
     since += f" (at the reference: {_at_reference(finding)})" if finding.at_reference else ""
     try:
         if cause and cause.statement:
@@ -61,6 +61,21 @@ def told(finding: Finding, causes: Mapping[str, Cause] | None = None) -> str:
     return (
         f"{sentence[:1].lower()}{sentence[1:]}{place}" + (f": {numbers}" if numbers else "") + since
     )
+
+
+def course_of(finding: Finding) -> str:
+    """When a cause is there, as a clause.
+
+    Examples
+    --------
+    >>> course_of(Finding("drag", segments=((60.0, 300.0), (500.0, 620.0)), onset=60.0, course="switching"))
+    'coming and going, from 60 to 300 s and from 500 to 620 s'
+    """
+    spells = [f"from {start:.0f} to {end:.0f} s" for start, end in finding.segments]
+    if finding.course in ("", "step"):
+        return f"from {finding.onset or 0.0:.0f} s on"
+    before = {"ramp": "growing ", "switching": "coming and going, "}
+    return before.get(finding.course, "") + listed(spells)
 
 
 def _at_reference(finding: Finding) -> str:

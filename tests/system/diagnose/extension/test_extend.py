@@ -344,7 +344,9 @@ def test_what_cannot_be_carried_is_said(system, tmp_path):
     assert list(extension.components) == ["tow", "tow_2", "tow_3"]
     said = "\n".join(extension.remarks)
     assert (
-        "onset at 100 s" in said and "no component 'bow'" in said and "shift the channels" in said
+        "when it begins, at 100 s" in said
+        and "no component 'bow'" in said
+        and "shift the channels" in said
     )
     assert (
         "no free load input" in said

@@ -1,0 +1,519 @@
+"""Causes that begin, grow, or come and go: a size over time, weighed against one that is the same all along.
+
+All rows stay in and the ship's numbers are common to them: only the cause has a course. A cause of size θ with the
+course c(t) does what its columns do, times c(t), as they are linear in θ.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations, islice
+from typing import NamedTuple
+
+import numpy as np
+
+from shipcosim.diagnose.explanation.course import (
+    KINDS,
+    RAMP,
+    SPELL,
+    STEP,
+    SWITCHING,
+    Course,
+    CourseFound,
+    SizeOverTime,
+)
+from shipcosim.diagnose.explanation.search import ExplainedLog, without_causes
+from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
+from shipcosim.diagnose.explanation.verdict import admissible
+from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
+from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
+from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.inference.fitting import (
+    Fit,
+    IdentificationProblem,
+    bounded,
+    deviations,
+    fitted,
+    own_columns,
+)
+from shipcosim.diagnose.inference.innovations import inner_products
+from shipcosim.diagnose.inference.linearisation import Regressor
+from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
+from shipcosim.diagnose.inference.problem import identification_problem
+from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
+from shipcosim.diagnose.inference.thresholds import (
+    APART,
+    COURSE_BLOCK,
+    COURSE_GAIN,
+    DEVIATIONS,
+    ENOUGH,
+    LIKELIEST_COURSES,
+    MOST_COURSE_BLOCKS,
+    ROUNDS_OF_COURSE,
+    SHORTEST_SPELL,
+    SIZES_OVER_TIME,
+)
+
+
+class _Try(NamedTuple):
+    """A cause with a course on top of a fit, and its score; `occam` is what the search over the kind's times costs."""
+
+    base: Fit
+    hypothesis: Hypothesis
+    group: list[Regressor]
+    course: Course
+    score: float
+    occam: float
+    values: dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class _FitWithCourse(Fit):
+    """A fit of a cause with a course beside steady ones, whose linear problem has the course in it."""
+
+    mixed: InParts
+
+    @property
+    def linear(self) -> InParts:
+        """The linear problem that was fitted."""
+        return self.mixed
+
+
+class _Fitted(NamedTuple):
+    """A cause with a course fitted beside the steady ones of a fit."""
+
+    of: _Try
+    score: float
+    fit: _FitWithCourse
+
+    @property
+    def columns(self) -> list[Regressor]:
+        """Those of the cause."""
+        return self.fit.columns[len(self.of.base.columns) :]
+
+    @property
+    def theta(self) -> np.ndarray:
+        """Of the cause's columns."""
+        return self.fit.theta[len(self.of.base.columns) :]
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of the cause's columns."""
+        count = len(self.of.base.columns)
+        return self.fit.covariance[count:, count:]
+
+
+def with_course(explained: ExplainedLog) -> ExplainedLog:
+    """The log with a cause that has a course, where that explains it better than any set of steady causes.
+
+    The identification is then of the rows in which the cause acts, with it and without.
+    """
+    found = explained.identification
+    problem = found.problem
+    if found.comparison.obstacles or any(fault.alternatives for fault in found.faults):
+        return explained
+    likely = [one for base in _bases(explained) for one in _tries(problem, base)]
+    tries = sorted((_fitted(problem, one) for one in likely), key=lambda one: -one.score)
+    tries = [one for one in tries if _is_clear(one)]
+    if not tries or tries[0].score < explained.fits[0].score + COURSE_GAIN:
+        return explained
+    # Fewer causes are preferred where they explain the log nearly as well.
+    best = next(
+        one
+        for one in sorted(tries, key=lambda one: len(one.of.base.hypotheses))
+        if one.score > tries[0].score - ENOUGH * len(tries[0].of.base.hypotheses) - APART
+    )
+    # Other causes as likely, each by its best course.
+    others = {}
+    for one in tries:
+        if one.score > best.score - APART and one.of.hypothesis is not best.of.hypothesis:
+            others.setdefault(one.of.hypothesis.label, one)
+    weights = np.exp([one.score - best.score for one in (best, *others.values())])
+    chances = np.minimum(weights / weights.sum(), 0.99)
+    rivals = tuple(
+        Candidate(one.of.hypothesis.cause, one.of.hypothesis.component, float(chance))
+        for one, chance in zip(others.values(), chances[1:], strict=True)
+    )
+    hypothesis = best.of.hypothesis
+    course = CourseFound(
+        _finding(best, float(chances[0])),
+        hypothesis,
+        best.score - explained.fits[0].score,
+        rivals,
+        _sizes_over_time(problem, best),
+        {of.name: of.neutral * of.factor for of in hypothesis.parameters},
+        (problem.record.time, best.of.course.at(problem.record.time)),
+        explained.fits,
+        unmodelled_gains(problem, best.fit),
+    )
+    return _of_its_rows(explained, best.of, course)
+
+
+def _bases(explained: ExplainedLog) -> list[Fit]:
+    """What a course is sought beside: nothing, and the best set of steady causes that may be named."""
+    nothing = without_causes(explained.fits)
+    named = (
+        fit for fit in explained.fits if fit.hypotheses and admissible(fit, explained.fits, {})
+    )
+    return [nothing, *islice(named, 1)]
+
+
+def _tries(problem: IdentificationProblem, base: Fit) -> list[_Try]:
+    """The likeliest courses of the likeliest causes beside a fit, each by the evidence of its own columns."""
+    known = {hypothesis.label for hypothesis in base.hypotheses}
+    wanted = [
+        one
+        for one in problem.hypotheses
+        if one.label not in known and one.definition.law != "turning"
+    ]
+    if not wanted:
+        return []
+    blocks = _blocks(problem, base, wanted)
+    first = sorted(_first_sight(blocks, wanted), key=lambda one: -one.score)
+    labels = list(dict.fromkeys(one.hypothesis.label for one in first))[: 2 * LIKELIEST_COURSES]
+    chosen = [one for one in first if one.hypothesis.label in labels]
+    linear = base.linear
+    time = problem.record.time
+    for one in chosen:
+        linear = beside(linear, _shaped(problem.base_of(one.group), one.course.at(time)))
+    products = inner_products(linear, problem.noise, problem.record).products
+    found: dict[str, _Try] = {}
+    place = len(base.columns)
+    for one in chosen:
+        own = range(place, place + len(one.group))
+        place += len(one.group)
+        gain, theta = _weighed(products, base, own)
+        scored = one._replace(score=gain + one.occam, values=_values(problem, one.group, theta))
+        label = one.hypothesis.label
+        if label not in found or scored.score > found[label].score:
+            found[label] = scored
+    likely = sorted(found.values(), key=lambda one: -one.score)[:LIKELIEST_COURSES]
+    # Further spells are found at first sight, and fitted beside the course without them.
+    further = (_with_further_spells(blocks, one) for one in likely)
+    changed = [
+        one for one, other in zip(further, likely, strict=True) if one.course != other.course
+    ]
+    return [*likely, *changed]
+
+
+def _values(problem, group, theta) -> dict[str, float]:
+    """What numbers of the ship are with the columns of a group at some θ."""
+    found: dict[str, float] = {}
+    for column, share in zip(group, theta, strict=True):
+        for path, size in column.changes.items():
+            found[path] = found.get(path, problem.model.get(path)) + float(share) * size
+    return found
+
+
+def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted:
+    """A cause with a course, linearised about its size where it is there and about none where it is not."""
+    base = one.base
+    count = len(base.columns)
+    own = own_columns(problem, (one.hypothesis,))
+    shares = one.course.at(problem.record.time)
+    plain = beside(base.linear, linearised_by_parts(base.about, base.record, base.model, own))
+    prior = np.concatenate([[column.prior for column in (*base.columns, *own)]])
+    values = bounded((one.hypothesis,), one.values)
+    for _ in range(ROUNDS_OF_COURSE):
+        model = base.model.with_values(values)
+        there = linearised_by_parts(base.about, base.record, model, own)
+        linear = _mixed(plain, there, shares, count)
+        filtered = inner_products(linear, problem.noise, problem.record)
+        centre = np.concatenate(
+            [base.centre, [_theta_of(column, model, problem) for column in own]]
+        )
+        score, theta, covariance = evidence(filtered.products, prior, centre)
+        values = bounded((one.hypothesis,), values | _values(problem, own, theta[count:]))
+    total = score + float(filtered.free) + one.occam
+    hypotheses = (*base.hypotheses, one.hypothesis)
+    values = base.values | values
+    columns = [*base.columns, *own]
+    posterior = (columns, filtered, theta, covariance, centre)
+    about = (model, base.about, base.motion, base.record)
+    spread = base.std | deviations((one.hypothesis,), covariance)
+    return _Fitted(
+        one, total, _FitWithCourse(hypotheses, values, spread, total, *posterior, *about, linear)
+    )
+
+
+def _theta_of(column, model, problem) -> float:
+    """θ of a column at the numbers of a ship model."""
+    path, size = next(iter(column.changes.items()))
+    return float((model.get(path) - problem.model.get(path)) / size)
+
+
+def _mixed(plain: InParts, there: InParts, shares: np.ndarray, count: int) -> InParts:
+    """The problem without a cause where its share is 0, and about its size where it is 1; in between by the share.
+
+    `plain` has the columns of a fit, `count` of them, before those of the cause, `there` the latter alone.
+    """
+
+    def part(rows):
+        without, within = plain.part(rows), there.part(rows)
+        share = shares[rows]
+        mixed = {}
+        for name in ("driven", "seen"):
+            a, b = getattr(without, name), getattr(within, name)
+            by = share[: len(a), None, None]
+            log = a[..., :1] + by * (b[..., :1] - a[..., :1])
+            own = by * (a[..., 1 + count :] + by * (b[..., 1:] - a[..., 1 + count :]))
+            mixed[name] = np.concatenate([log, a[..., 1 : 1 + count], own], axis=-1)
+        for name in ("transition", "output"):
+            a, b = getattr(without, name), getattr(within, name)
+            mixed[name] = a + share[: len(a), None, None] * (b - a)
+        return without._replace(**mixed)
+
+    return InParts(plain.rows, plain.columns, part)
+
+
+def _shaped(plain: InParts, shares: np.ndarray) -> InParts:
+    """Columns of a cause times its share of its size in each row."""
+
+    def part(rows):
+        own = plain.part(rows)
+        share = shares[rows]
+        return own._replace(
+            driven=own.driven * share[: len(own.driven), None, None],
+            seen=own.seen * share[:, None, None],
+        )
+
+    return InParts(plain.rows, plain.columns, part)
+
+
+def _weighed(products, base, own) -> tuple[float, np.ndarray]:
+    """Score of own columns beside those of a fit [nats], and their θ."""
+    count = len(base.columns)
+    chosen = [0, *range(1, count + 1), *(1 + place for place in own)]
+    # A course leaves the numbers' own tolerances in place: they are of all rows.
+    prior = np.concatenate([[column.prior for column in base.columns], np.ones(len(own))])
+    centre = np.concatenate([base.centre, np.zeros(len(own))])
+    score, theta, _ = evidence(products[np.ix_(chosen, chosen)], prior, centre)
+    return score, theta[count:]
+
+
+@dataclass(frozen=True, eq=False)
+class _Blocks:
+    """Inner products by blocks of the log, of a fit's columns and of causes, `places` by label and group.
+
+    Within a block a course is taken as constant, and the filter as if it knew of it at once.
+    """
+
+    base: Fit
+    parts: np.ndarray
+    edges: np.ndarray
+    places: dict[str, list[slice]]
+
+    @property
+    def middle(self) -> np.ndarray:
+        """Middle of each block. [s]"""
+        return 0.5 * (self.edges[:-1] + self.edges[1:])
+
+    @cached_property
+    def known(self) -> tuple[np.ndarray, np.ndarray]:
+        """Posterior covariance of the fit's own columns, and how the log pulls at them."""
+        count = len(self.base.columns)
+        known = slice(1, count + 1)
+        prior = np.array([column.prior for column in self.base.columns])
+        scale = prior[:, None] * prior
+        total = self.parts.sum(0)
+        inverse = np.linalg.inv(np.eye(count) + scale * total[known, known]) * scale
+        return inverse, total[known, 0] + total[known, known] @ self.base.centre
+
+    def gains(self, own: slice, shares: np.ndarray) -> np.ndarray:
+        """Gain of a cause's columns with courses, (c,) array; `shares` of its size in each block, (c, b). [nats]"""
+        known = slice(1, len(self.base.columns) + 1)
+        inverse, log = self.known
+        across = np.tensordot(shares, self.parts[:, known, own], 1)
+        within = np.tensordot(shares**2, self.parts[:, own, own], 1)
+        pull = shares @ self.parts[:, own, 0] + np.swapaxes(across, 1, 2) @ self.base.centre
+        # What the known numbers explain, within their tolerances, is taken out.
+        explained = np.swapaxes(across, 1, 2) @ inverse
+        within = within - explained @ across
+        pull = pull - explained @ log
+        inner = np.eye(within.shape[-1]) + within
+        mean = np.linalg.solve(inner, pull[..., None])[..., 0]
+        return 0.5 * (pull * mean).sum(1) - 0.5 * np.linalg.slogdet(inner)[1]
+
+
+def _blocks(problem, base, wanted) -> _Blocks:
+    time = problem.record.time
+    count = int(np.clip((time[-1] - time[0]) / COURSE_BLOCK, 8, MOST_COURSE_BLOCKS))
+    linear = beside(base.linear, problem.base_of(regressors_of(wanted)))
+    parts = inner_products(linear, problem.noise, problem.record, count).blocks
+    edges = np.linspace(time[0], time[-1] + problem.record.step, count + 1)
+    places: dict[str, list[slice]] = {}
+    place = len(base.columns) + 1
+    for hypothesis in wanted:
+        for group in screening_regressors(hypothesis):
+            places.setdefault(hypothesis.label, []).append(slice(place, place + len(group)))
+            place += len(group)
+    return _Blocks(base, parts, edges, places)
+
+
+def _first_sight(blocks: _Blocks, wanted) -> list[_Try]:
+    """The best course of each kind for each cause."""
+    courses = list(_courses(blocks.edges))
+    shares = np.stack([course.at(blocks.middle) for course in courses])
+    of_kind = {kind: [i for i, one in enumerate(courses) if one.kind == kind] for kind in KINDS}
+    found = []
+    for hypothesis in wanted:
+        best: dict[str, _Try] = {}
+        groups = screening_regressors(hypothesis)
+        for group, own in zip(groups, blocks.places[hypothesis.label], strict=True):
+            gains = blocks.gains(own, shares)
+            for kind, places in of_kind.items():
+                top = places[int(gains[places].argmax())]
+                occam = float(np.log(np.exp(gains[places] - gains[top]).mean()))
+                gain = float(gains[top]) + occam
+                one = _Try(blocks.base, hypothesis, group, courses[top], gain, occam, {})
+                if kind not in best or gain > best[kind].score:
+                    best[kind] = one
+        found += best.values()
+    return found
+
+
+def _courses(edges: np.ndarray) -> Iterator[Course]:
+    """Courses that begin and end at some times; none is there all along."""
+    *starts, end = map(float, edges)
+    for start in starts[1:]:
+        yield Course(STEP, ((start, end),))
+    for start in starts:
+        yield Course(RAMP, ((start, end),))
+    for start, until in combinations(starts, 2):
+        yield Course(SPELL, ((start, until),))
+
+
+def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
+    """A spell, or a step, with others beside it, each of which must gain what the search for it costs and more."""
+    groups = screening_regressors(one.hypothesis)
+    own = blocks.places[one.hypothesis.label][groups.index(one.group)]
+    spells = [course for course in _courses(blocks.edges) if course.kind != RAMP]
+    each = np.stack([course.at(blocks.middle) for course in spells])
+    course = one.course
+    if course.kind == RAMP:
+        return one
+    occam = one.occam
+    share = course.at(blocks.middle)
+    gain = blocks.gains(own, share[None])[0]
+    while True:
+        # Spells that neither overlap with those that are there nor touch them, or holes in one of them.
+        apart = each @ np.convolve(share, np.ones(3), "same") == 0.0
+        inside = np.all(each <= share, axis=1) & (each @ share < share.sum())
+        tried = np.where(inside[:, None], share - each, share + each)
+        tried = tried[apart | inside]
+        if not len(tried):
+            break
+        gains = blocks.gains(own, tried)
+        paid = float(np.log(len(tried)))
+        if gains.max() - paid < gain + ENOUGH:
+            break
+        share, gain, occam = tried[gains.argmax()], gains.max(), occam - paid
+    rises = np.diff(np.concatenate([[0.0], share, [0.0]]))
+    starts, ends = (blocks.edges[rises == sign] for sign in (1.0, -1.0))
+    found = tuple((float(a), float(b)) for a, b in zip(starts, ends, strict=True))
+    if len(found) == 1:
+        kind = STEP if found[0][1] == blocks.edges[-1] else SPELL
+        return one._replace(course=Course(kind, found), occam=occam)
+    return one._replace(course=Course(SWITCHING, found), occam=occam)
+
+
+def _estimates(hypothesis, columns, theta, covariance, value_of) -> dict[str, ParameterEstimate]:
+    """The parameters of a cause at some θ of its columns."""
+    found = {}
+    for of in hypothesis.parameters:
+        which = [i for i, column in enumerate(columns) if of.path in column.changes]
+        sizes = np.array([columns[i].changes[of.path] for i in which])
+        value = value_of(of.path) + float(sizes @ theta[which])
+        std = float(np.sqrt(sizes @ covariance[np.ix_(which, which)] @ sizes))
+        found[of.name] = ParameterEstimate(value * of.factor, abs(std * of.factor), of.unit)
+    return found
+
+
+def _is_clear(one: _Fitted) -> bool:
+    """Whether a cause with a course is large enough to matter and clearly off none."""
+    own = slice(-len(one.of.hypothesis.parameters), None)
+    size = float(np.linalg.norm(one.theta[own]))
+    spread = float(np.sqrt(np.diag(one.covariance)[own].mean()))
+    return size >= max(one.of.hypothesis.definition.least, DEVIATIONS * spread)
+
+
+def _finding(one: _Fitted, chance: float) -> Finding:
+    hypothesis = one.of.hypothesis
+    course = one.of.course
+    neutral = {of.path: of.neutral for of in hypothesis.parameters}
+    return Finding(
+        hypothesis.cause,
+        hypothesis.component,
+        probability=chance,
+        parameters=_estimates(
+            hypothesis, one.columns, one.theta, one.covariance, neutral.__getitem__
+        ),
+        segments=course.spells,
+        onset=course.start,
+        course=course.kind,
+    )
+
+
+def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
+    """The size of a cause in each part of the log by itself, linearised about the ship without it."""
+    time = problem.record.time
+    hypothesis = one.of.hypothesis
+    base = one.of.base
+    edges = np.linspace(time[0], time[-1] + problem.record.step, SIZES_OVER_TIME + 1)
+    spells = list(zip(map(float, edges[:-1]), map(float, edges[1:]), strict=True))
+    group = one.columns
+    plain = linearised_by_parts(base.about, base.record, base.model, group)
+    linear = base.linear
+    for spell in spells:
+        linear = beside(linear, _shaped(plain, Course(SPELL, (spell,)).at(time)))
+    products = inner_products(linear, problem.noise, problem.record).products
+    count = len(base.columns)
+    prior = [column.prior for column in base.columns]
+    prior = np.concatenate([prior, np.ones(len(group) * len(spells))])
+    centre = np.concatenate([base.centre, np.zeros(len(group) * len(spells))])
+    _, theta, covariance = evidence(products, prior, centre)
+    neutral = {of.path: of.neutral for of in hypothesis.parameters}
+    each: dict[str, list[ParameterEstimate]] = {}
+    for k in range(len(spells)):
+        own = slice(count + k * len(group), count + (k + 1) * len(group))
+        sizes = _estimates(hypothesis, group, theta[own], covariance[own, own], neutral.__getitem__)
+        for name, size in sizes.items():
+            each.setdefault(name, []).append(size)
+    return tuple(
+        SizeOverTime(
+            name,
+            sizes[0].unit,
+            0.5 * (edges[:-1] + edges[1:]),
+            np.array([size.estimate for size in sizes]),
+            np.array([size.std for size in sizes]),
+        )
+        for name, sizes in each.items()
+    )
+
+
+def _of_its_rows(explained: ExplainedLog, best: _Try, course: CourseFound) -> ExplainedLog:
+    """The log where the cause acts longest, fitted with it and with the steady ones, and without."""
+    found = explained.identification
+    time = found.repaired["time"].values
+    longest = max(best.course.spells, key=lambda spell: spell[1] - spell[0])
+    if longest[1] - longest[0] < SHORTEST_SPELL:
+        # Too short to be looked at by itself: predictions are of the ship without the cause.
+        nothing = without_causes(explained.fits)
+        return replace(explained, fits=(nothing,), is_healthy=False, course=course)
+    rows = slice(*np.searchsorted(time, longest))
+    part = found.repaired.isel(time=rows)
+    problem = identification_problem(part, found.ship, found.causes, found.problem.noise)
+    hypotheses = tuple(
+        own
+        for one in (best.hypothesis, *best.base.hypotheses)
+        for own in problem.hypotheses
+        if own.label == one.label
+    )
+    fits = (fitted(problem, hypotheses, best.values), fitted(problem))
+    return replace(
+        explained,
+        identification=replace(found, repaired=part, problem=problem),
+        fits=fits,
+        is_healthy=False,
+        course=course,
+    )

@@ -1,0 +1,78 @@
+"""Causes that begin, grow, or come and go, in logs of the independent truth: by name, course and size over time."""
+
+import numpy as np
+import pytest
+from diagnose import twin
+
+from shipcosim.diagnose.explanation.course import RAMP, SPELL, STEP, SWITCHING, Course
+from shipcosim.diagnose.pipeline import find_causes
+from shipcosim.report.diagnosis.cause_figures import course_figures
+from shipcosim.report.diagnosis.words import told
+from truth import draw
+
+SEED = 702
+DRAWN = {STEP: True, RAMP: "ramp", SPELL: "spell", SWITCHING: "switching"}
+
+
+@pytest.fixture(scope="module", params=DRAWN)
+def answered(request, tmp_path_factory):
+    """The kind of course, what is hidden in a log, and what a diagnosis says of it."""
+    options = {"onset": DRAWN[request.param], "size": 2.0, "minutes": 30}
+    case = draw("trial", SEED, among=["thrust_loss"], **options)
+    log = tmp_path_factory.mktemp("log") / "log.csv"
+    case.save(log)
+    system = twin.system()
+    return request.param, case.answer[0], find_causes(str(log), system)
+
+
+def share_of(answer, time):
+    """How much of a hidden effect is there at some times, (n,) array."""
+    if answer.course == "ramp":
+        ((start, end),) = answer.spells
+        return np.clip((time - start) / (end - start), 0.0, 1.0)
+    if answer.course:
+        return np.any([(time > a) & (time < b) for a, b in answer.spells], axis=0) * 1.0
+    return (time > answer.onset) * 1.0
+
+
+def test_the_cause_is_named_with_its_course(answered):
+    kind, answer, found = answered
+    (finding,) = found.findings
+    assert found.verdict == "named" and finding.label == f"{answer.cause} of {answer.component}"
+    assert finding.course == kind
+    assert finding.parameters["loss"].estimate == pytest.approx(answer.parameters["loss"], rel=0.2)
+    entry = finding.as_json()
+    assert entry["course"] == kind and entry["onset"] == entry["segments"][0][0]
+
+
+def test_the_size_over_time_has_the_truth_within_its_band(answered):
+    _, answer, found = answered
+    course = found.basis.explained.course
+    (sizes,) = course.sizes
+    half = 0.5 * (sizes.time[1] - sizes.time[0])
+    inside = [
+        share_of(answer, np.linspace(t - half, t + half, 200)).mean() * answer.parameters["loss"]
+        for t in sizes.time
+    ]
+    assert np.mean(np.abs(sizes.size - inside) < 3.0 * sizes.std + 0.03) >= 0.8
+
+
+def test_page_and_words_say_when_it_is_there(answered):
+    kind, _, found = answered
+    said = told(found.findings[0])
+    words = {
+        STEP: " s on",
+        RAMP: "growing from ",
+        SPELL: ", from ",
+        SWITCHING: "coming and going, ",
+    }
+    assert words[kind] in said
+    (figure,) = course_figures(found.basis.explained.course)
+    assert figure.unit == "%" and len(figure.traces) == 2
+
+
+def test_a_course_is_there_in_its_spells_alone():
+    time = np.array([0.0, 10.0, 20.0, 30.0, 40.0])
+    assert Course(SWITCHING, ((10.0, 20.0), (30.0, 40.0))).at(time).tolist() == [0, 1, 0, 1, 0]
+    assert Course(RAMP, ((20.0, 40.0),)).at(time).tolist() == [0, 0, 0, 0.5, 1]
+    assert Course(STEP, ((30.0, 41.0),)).start == 30.0
