@@ -16,9 +16,10 @@ from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
-from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.scenario import Scenario
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
+from shipcosim.units import whole_steps
 
 if TYPE_CHECKING:
     import xarray

@@ -16,7 +16,6 @@ from shipcosim.scenario import (
     check_scenario,
     read_scenario,
     time_complaints,
-    whole_steps,
 )
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.flatten.swapped import WHERE
@@ -27,6 +26,7 @@ from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.sampling import samples_of
 from shipcosim.sweep.study_model import Study
 from shipcosim.sweep.tuning import ranges_of
+from shipcosim.units import whole_steps
 
 
 def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: bool = True) -> Plan:
