@@ -532,9 +532,7 @@ def _prepared(
     happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
     since = clock_start(options)
     problems = check_scenario(scenario, happening, since)
-    # Inputs that nothing feeds are named by `check`; what a run does otherwise than a file asks is named here too.
-    known = [one for one in system.remarks if one.flaw or one.where not in system.components]
-    found = [*remarks, *known]
+    found = [*remarks, *happening.deviations]
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
     # A run that is shorter than planned leaves events and expectations out on purpose.

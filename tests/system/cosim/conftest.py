@@ -58,6 +58,16 @@ SOURCES = {
             def step(self, t, h):
                 self.start()
         ''',
+    "bounded": '''
+        class Bounded(Fmu):
+            """States a range of its input, and computes outside it all the same."""
+
+            u = Input("1", "input", minimum=-1.0, maximum=2.0)
+            y = Output("1", "the input")
+
+            def step(self, t, h):
+                self.y = self.u
+        ''',
     "clock": '''
         class Clock(Fmu):
             """Puts out the time, the number of steps and whether that is odd."""

@@ -24,6 +24,7 @@ from shipcosim.cosim.master.instantiate import (
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
+from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
 from shipcosim.cosim.master.restore import (
@@ -307,12 +308,14 @@ class Simulation:
 
     def columns(self, choose: Callable[[list[str]], Iterable[str]] = tuple) -> list[Column]:
         """Columns of the rows so far; `choose` selects names from all names."""
-        n = self._recorders.n_rows
-        recorded = {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
-        columns = columns_of(self._plan, n, recorded)
+        columns = columns_of(self._plan, self._recorders.n_rows, self._recorded())
         # Copy the chosen columns: the arrays are used again by the next run.
         chosen = frozenset(choose([name for name, *_ in columns]))
         return [(c[0], np.array(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
+
+    def _recorded(self):
+        n = self._recorders.n_rows
+        return {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
@@ -340,6 +343,7 @@ class Simulation:
         remarks += [
             text for component in self._components.values() for text in component.slave.remarks()
         ]
+        remarks += range_remarks(self._plan, self.row_times, self._recorded())
         return list(dict.fromkeys(remarks))
 
     def table(self, complete: bool) -> xarray.Dataset:

@@ -13,7 +13,7 @@ from shipcosim.ssp.flatten.outer_signals import OuterSignals
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.flatten.start_values import Settings
-from shipcosim.ssp.flatten.system import Component, System
+from shipcosim.ssp.flatten.system import Component, System, alias_remarks
 from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
@@ -106,6 +106,7 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         for found in resized(component):
             findings.error(component.name, found, RESIZE)
     remark_unconnected(components, connections, findings)
+    findings.problems += alias_remarks(components, connections)
     # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
     if findings.errors:

@@ -21,6 +21,7 @@ from shipcosim.ssp.xml.document import (
 from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
+OSP_STRUCTURE = "OspSystemStructure.xml"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
 
 
@@ -215,6 +216,7 @@ def open_package(
     fmus = tuple(Path(folder) for folder in fmus)
     # A folder, a single SSD, or an archive that is unpacked for as long as the package lives.
     if path.is_dir():
+        remark_others(path, shown, variant or SYSTEM_STRUCTURE, variant, findings)
         return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
     if not path.is_file():
         findings.error(
@@ -239,7 +241,23 @@ def open_package(
             shown, f"The archive has no {package.ssd} at its top.", it_has(package.ssd, there)
         )
         return None
+    remark_others(package.folder, shown, package.ssd, variant, findings)
     return package
+
+
+def remark_others(folder: Path, shown: str, taken: str, asked: str, findings: Findings) -> None:
+    """Add a remark where a folder has several system structures and nobody asked for the one that runs."""
+    others = sorted(
+        file.name
+        for file in folder.iterdir()
+        if file.is_file() and (file.suffix.lower() == ".ssd" or file.name == OSP_STRUCTURE)
+    )
+    if not asked and taken in others and len(others) > 1:
+        others.remove(taken)
+        found = (
+            f"It holds {len(others) + 1} system structures. {taken} runs, not {', '.join(others)}."
+        )
+        findings.remark(shown, found, "Name the one to run: FOLDER/NAME, or ARCHIVE.ssp#NAME.")
 
 
 def read_in_component(
