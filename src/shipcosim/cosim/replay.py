@@ -14,6 +14,7 @@ from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.module_clashes import module_clashes
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
@@ -95,6 +96,8 @@ def replay(
     # Plan all segments first, so that all errors are reported before a long computation.
     segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()
+    if problems := module_clashes(system, late_alone=True):
+        raise ShipcosimError(problems)
     rows = _SegmentRows(times, segments.states, signals)
     # The FMUs stay loaded for all segments; only their state is reset.
     with delayed_interrupt() as check_interrupt, Instances() as instances:

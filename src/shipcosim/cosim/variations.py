@@ -20,6 +20,7 @@ from shipcosim.cosim.master.result import attributes_of
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.module_clashes import module_clashes
 from shipcosim.cosim.slaves.slave import Slave
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.errors import ShipcosimError
@@ -113,6 +114,8 @@ def simulate_many(
         If a variation does not fit to the system, or all have failed.
     """
     # Variations with the same names and events need only one check: their numbers do not matter.
+    if problems := module_clashes(system, late_alone=True):
+        raise ShipcosimError(problems)
     runs = _Runs(system, options, choose, reduce)
     for variation in {_kind(variation): variation for variation in variations}.values():
         runs.check(variation)

@@ -25,6 +25,7 @@ from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_ro
 from shipcosim.cosim.master.run import Interrupted, RunError
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.module_clashes import module_clashes
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
@@ -328,7 +329,7 @@ def unsupported(
     others : iterable of Problem
         Problems other than those of connections.
     """
-    problems = list(others)
+    problems = [*others, *module_clashes(job.system)]
     # Types and interfaces that the engine does not have, by component.
     for component in job.system.components.values():
         if interface_type_of(component) == "ModelExchange":

@@ -37,6 +37,7 @@ from shipcosim.cosim.master.result import Column, attributes_of, columns_of, rec
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.module_clashes import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
@@ -79,7 +80,9 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     simulation = Simulation(
         system, scenario, time_grid_of(scenario, start_time, first, options.until), options, resume
     )
-    instances = IsolatedInstances(system, options.timeout) if options.isolate else Instances()
+    # Python has one module of a name in a process: FMUs that would take each other's get their own.
+    is_apart = options.isolate or bool(simulation.clashes)
+    instances = IsolatedInstances(system, options.timeout) if is_apart else Instances()
     # Ctrl-C is held back until the master can stop.
     with delayed_interrupt() as check_interrupt, instances:
         simulation.run(instances, check_interrupt, options.progress)
@@ -116,6 +119,8 @@ class Simulation:
     ----------
     is_ended : bool
         Whether an FMU has ended the run before the end of the grid.
+    clashes : list of Problem
+        Python modules of one name, for which the FMUs need a process each.
 
     Raises
     ------
@@ -154,7 +159,8 @@ class Simulation:
         self._fresh = None
         self._components: Components = {}
         self._together: list[set[str]] = []
-        self._remarks: list[str] = []
+        self.clashes = [] if options.isolate else module_clashes(system, late_alone=True)
+        self._remarks = [f"{p.where}: {p.found} Each has its own process." for p in self.clashes]
         self._master: Master | None = None
         self.is_ended = False
         # All rows are reserved before the run.
@@ -231,7 +237,7 @@ class Simulation:
             else "one after the other, each steps with a solver of its own"
         )
         inner = [] if apart else inner_connections(plan)
-        self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
+        self._remarks += exchanged_at_steps(plan, inner, apart, step_size)
         # Instances first, since the group's solver takes them over.
         self._components = make_components(
             plan, exchanges, slaves, step_size, check_interrupt, inner
