@@ -14,7 +14,7 @@ from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.module_clashes import module_clashes
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario

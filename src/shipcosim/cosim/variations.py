@@ -20,7 +20,7 @@ from shipcosim.cosim.master.result import attributes_of
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.module_clashes import module_clashes
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import Slave
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.errors import ShipcosimError

@@ -25,7 +25,7 @@ from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_ro
 from shipcosim.cosim.master.run import Interrupted, RunError
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.interface_type import interface_type_of
-from shipcosim.cosim.slaves.module_clashes import module_clashes
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions

@@ -20,7 +20,7 @@ from shipcosim.cosim.export.container_variables import (
 )
 from shipcosim.cosim.master.order import sources_first
 from shipcosim.cosim.master.plan import label
-from shipcosim.cosim.slaves.module_clashes import module_clashes
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import System
 from shipcosim.ssp.xml.archive import write_archive

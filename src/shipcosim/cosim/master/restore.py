@@ -11,6 +11,7 @@ from shipcosim.cosim.master.result import hashes, start_values
 from shipcosim.cosim.master.signals import Exchange, Modifier
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.pythonfmu_code import stores_registered_alone
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
@@ -41,6 +42,10 @@ def check_storable(system: System) -> None:
         if lacking:
             found = f"{fmu.path.name} cannot store its state: it does not declare {' and '.join(lacking)}."
             problems.append(Problem(component.name, found, "Run the system without storing it."))
+        elif stores_registered_alone(fmu.path):
+            found = f"{fmu.path.name} stores its registered variables alone: PythonFMU loses what else it keeps."
+            remedy = "Give its class _get_fmu_state and _set_fmu_state, or run the system without storing it."
+            problems.append(Problem(component.name, found, remedy))
     if problems:
         raise ShipcosimError(problems)
 

@@ -37,7 +37,7 @@ from shipcosim.cosim.master.result import Column, attributes_of, columns_of, rec
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.module_clashes import module_clashes
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
@@ -73,7 +73,7 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     store = writer(options.store)
     if resume is not None:
         check_fit(resume, system, scenario)
-    if store is not None:
+    if store is not None or resume is not None:
         check_storable(system)
     # A continued run keeps the clock of the first one: steps count from its start.
     start_time, first = (resume.start_time, resume.step) if resume else (options.start_time, 0)

@@ -242,6 +242,43 @@ def test_components_that_cannot_be_stored_are_named_before_the_run(pythonfmu_sys
     assert found == [("stock", True), ("other", True)]
 
 
+HIDDEN = """
+from pythonfmu import Fmi2Slave, Fmi2Causality, Real
+
+
+class Hidden(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.y = self.hidden = 0.0
+        self.register_variable(Real("y", causality=Fmi2Causality.output))
+
+    def do_step(self, t, h):
+        self.hidden += h
+        self.y = self.hidden
+        return True
+"""
+OWN_STATE = """
+    def _get_fmu_state(self):
+        return {**super()._get_fmu_state(), "hidden": self.hidden}
+"""
+
+
+@pytest.mark.parametrize("own", ["", OWN_STATE])
+def test_what_pythonfmu_does_not_store_is_refused_or_stored_by_the_class(
+    pythonfmu_code, make_scenario, own
+):
+    system = pythonfmu_code(HIDDEN + own, canGetAndSetFMUstate=True, canSerializeFMUstate=True)
+    scenario, taken = make_scenario(1.0, 0.1), []
+    options = RunOptions(until=0.5, store=taken.append)
+    if not own:
+        with pytest.raises(ShipcosimError, match="stores its registered variables alone"):
+            simulate(system, scenario, options)
+        return
+    first = simulate(system, scenario, options)
+    rest = simulate(system, scenario, RunOptions(resume=taken[0]))
+    assert_same(simulate(system, scenario), first, rest)
+
+
 @pytest.fixture
 def stored(system, make_scenario) -> Snapshot:
     taken = []

@@ -1,4 +1,4 @@
-"""Python modules of one name in several FMUs of PythonFMU, which share one Python in one process.
+"""Code in FMUs of PythonFMU: modules of one name in several of them, and what their state holds.
 
 PythonFMU imports from the resources of an FMU by plain names. Python keeps one module of a name, so that an FMU can
 run the code of another one. FMUs of this package have names of their own.
@@ -49,6 +49,18 @@ def module_clashes(system: System, *, late_alone: bool = False) -> list[Problem]
             found = f"each bring another Python module '{name}'; in one process one of them runs the other's code."
             problems.append(Problem(owners, found, REMEDY))
     return problems
+
+
+def stores_registered_alone(fmu: Path) -> bool:
+    """True for an FMU of PythonFMU whose state is that of its registered variables alone.
+
+    That is PythonFMU's own way; attributes that are not registered keep their values. A class may have its own.
+    """
+    with zipfile.ZipFile(fmu) as archive:
+        names = [name for name in archive.namelist() if name.startswith("resources/")]
+        code = [n for n in names if n.endswith(".py") and n.split("/")[1] != LIBRARY]
+        is_python = "resources/slavemodule.txt" in names
+        return is_python and not any(b"def _get_fmu_state" in archive.read(n) for n in code)
 
 
 @lru_cache(maxsize=256)
