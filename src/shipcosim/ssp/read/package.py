@@ -1,5 +1,6 @@
 """Files of a system: a .ssp (unpacked temporarily), a folder, or a .ssd with its files."""
 
+import filecmp
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -152,6 +153,7 @@ class Package:
             found, name = held, found
         else:
             name = found if found in paths else paths[0]
+            remark_copy(found, elsewhere, place, findings)
         self.located[name.relative_to(folder).as_posix()] = found
         return found
 
@@ -243,6 +245,14 @@ def open_package(
         return None
     remark_others(package.folder, shown, package.ssd, variant, findings)
     return package
+
+
+def remark_copy(found: Path, elsewhere: Iterable[Path], place: str, findings: Findings) -> None:
+    """Add a remark where an FMU runs that lies beside its system, and the project has another one of its name."""
+    other = next((path for path in elsewhere if path.is_file()), found)
+    if not filecmp.cmp(found, other, shallow=False):
+        text = f"{found.name} beside the system runs. It is not the same as {other}, which does not run."
+        findings.remark(place, text, "Delete the copy to run that one, or copy it again.")
 
 
 def remark_others(folder: Path, shown: str, taken: str, asked: str, findings: Findings) -> None:
