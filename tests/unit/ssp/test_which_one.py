@@ -72,6 +72,17 @@ def test_a_connected_name_wins_over_a_start_value(two_names, real):
     assert found.startswith("x.v: u and v are one variable") and "that of v is used" in found
 
 
+def test_two_signals_of_one_full_name_are_refused(shop):
+    shop.fmu("deep", "output b.y Real")
+    shop.fmu("flat", "output y Real")
+    parts = shop.component("a", "deep", "output b.y") + shop.component("a.b", "flat", "output y")
+    shop.ssd(parts)
+    assert "Two components have a variable whose full name is 'a.b.y'" in shop.refused()
+    head = '<ssd:Connectors><ssd:Connector name="a.b.y" kind="output"/></ssd:Connectors>'
+    shop.ssd(shop.component("a", "deep", "output b.y"), head=head)
+    assert "A connector of the system is called as the variable a.b.y" in shop.refused()
+
+
 @pytest.mark.parametrize("others", [[], ["Other.ssd"], ["A.ssd", "OspSystemStructure.xml"]])
 def test_one_of_several_structures_is_named(shop, tmp_path, others):
     shop.fmu("m", "output y Real")

@@ -173,10 +173,22 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
                 element.place, f"Two components have the full name '{name}'.", "Rename one of them."
             )
         seen[name] = element
+    # Signals of the results: variables of components and connectors of the outermost system.
+    signals = {}
+    for path, (element, fmu) in tree.components.items():
+        for name in () if fmu is None else fmu.named("input", "output", "parameter"):
+            signal = ".".join((*path, name))
+            if signals.setdefault(signal, path) != path:
+                found = f"Two components have a variable whose full name is '{signal}'."
+                findings.error(element.place, found, "Rename one of the components.")
     for key, port in tree.ports.items():
-        if key.path == () and port.owner == "system" and key.name == "time":
-            found = "A connector of the system is called 'time', as the time of the results."
-            findings.error(port.place, found, "Rename it.")
+        if key.path == () and port.owner == "system":
+            if key.name == "time":
+                found = "A connector of the system is called 'time', as the time of the results."
+                findings.error(port.place, found, "Rename it.")
+            elif key.name in signals:
+                found = f"A connector of the system is called as the variable {key.name}."
+                findings.error(port.place, found, "Rename it.")
 
 
 def remark_unconnected(
