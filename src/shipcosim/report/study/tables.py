@@ -187,9 +187,9 @@ class Column:
         >>> Column("wind", FACTOR, "", "m/s", np.zeros(1)).text(7.5, with_name=True)
         'wind 7.5 m/s'
         """
-        # Infinite means never reached.
+        # Infinite means not reached before the end of the run.
         if not np.isfinite(value):
-            return "never" if value == np.inf else "–"
+            return "never in the run" if value == np.inf else "–"
         if self.labels:
             return self.labels[int(value)]
         if self.is_truth:
