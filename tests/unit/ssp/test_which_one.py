@@ -72,6 +72,17 @@ def test_a_connected_name_wins_over_a_start_value(two_names, real):
     assert found.startswith("x.v: u and v are one variable") and "that of v is used" in found
 
 
+@pytest.mark.parametrize("start", [-2.0, 0.0, 1.0, 3.5])
+@pytest.mark.parametrize(("low", "high"), [(None, 1.0), (0.0, None), (0.0, 1.0), (None, None)])
+def test_an_fmu_that_starts_outside_its_own_range_is_named(shop, start, low, high):
+    bounds = f"{'' if low is None else f'min={low}'} {'' if high is None else f'max={high}'}"
+    shop.fmu("m", f"input u Real start={start} {bounds}", "output y Real")
+    shop.ssd(shop.component("x", "m", "input u", "output y"))
+    is_outside = (low is not None and start < low) or (high is not None and start > high)
+    found = [text for text in deviations(shop.read()) if "It starts with" in text]
+    assert len(found) == is_outside
+
+
 def test_two_signals_of_one_full_name_are_refused(shop):
     shop.fmu("deep", "output b.y Real")
     shop.fmu("flat", "output y Real")

@@ -21,6 +21,7 @@ from shipcosim.cosim.master.events import changes, external_values, modify
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.plan import WIDE, End, label, make_plan
+from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.run import Interrupted, RunError
 from shipcosim.cosim.master.time_grid import time_grid_of
@@ -170,6 +171,8 @@ class Job:
             | {"start_time": 0.0}
             | dict(attributes)
         )
+        remarks = json.loads(str(known.get("remarks", "[]")))
+        known["remarks"] = json.dumps([*remarks, *range_remarks(self.plan, times, recorded)])
         return make_table(times, columns_of(self.plan, len(times), recorded), known)
 
     def _external_values(self, kind):

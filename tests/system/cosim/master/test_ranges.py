@@ -7,10 +7,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
-from shipcosim.cosim import RunOptions, simulate
+from shipcosim.cosim import RunOptions, engines_missing, simulate
 from shipcosim.series import make_table
 
 LOW, HIGH = -1.0, 2.0
+OTHERS = [name for name in ("libcosim", "ecos") if name not in engines_missing()]
 SEVERAL = settings(
     max_examples=25,
     deadline=None,
@@ -51,7 +52,7 @@ def test_of_an_event(bounded, make_scenario, value):
 @given(
     start=NUMBERS,
     factor=some.sampled_from([1.0, -2.0, 0.25]),
-    engine=some.sampled_from(["fmpy", "native"]),
+    engine=some.sampled_from(["fmpy", "native", *OTHERS]),
 )
 def test_of_a_connection(make_system, make_scenario, start, factor, engine):
     change = f'<ssc:LinearTransformation factor="{factor}"/>'
