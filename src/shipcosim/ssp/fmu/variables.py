@@ -74,9 +74,11 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
 
 def _start_outside(variable: Variable) -> str:
     """Where a variable that can be set starts outside its own range; empty where it does not."""
-    low, high, start = variable.minimum, variable.maximum, variable.start
-    is_number = isinstance(start, (int, float)) and not isinstance(start, bool)
-    if not is_number or variable.causality not in ("input", "parameter") or variable.required:
+    low, high = variable.minimum, variable.maximum
+    start = variable.start
+    if variable.causality not in ("input", "parameter") or variable.required:
+        return ""
+    if not isinstance(start, (int, float)) or isinstance(start, bool):
         return ""
     if (low is None or start >= low) and (high is None or start <= high):
         return ""
