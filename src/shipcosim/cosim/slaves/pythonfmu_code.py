@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
 from shipcosim.errors import Problem
-from shipcosim.ssp import System
+from shipcosim.ssp import Component, System
 
 CODE = (".py", ".pyc", ".so", ".pyd")
 IMPORTING = {"__import__", "import_module", "exec", "eval", "runpy"}
@@ -34,20 +34,17 @@ def module_clashes(system: System, *, late_alone: bool = False) -> list[Problem]
     """
     # Contents of each module, and who brings them.
     brought = defaultdict(lambda: defaultdict(list))
-    late = set()
     for component in system.components.values():
         path = component.fmu.path
-        modules, is_late = _modules_of(path, path.stat().st_mtime_ns)
-        for name, content in modules.items():
-            brought[name][content].append(component.name)
-            if is_late:
-                late.add(name)
+        for name, content in _modules_of(path, path.stat().st_mtime_ns).items():
+            brought[name][content].append(component)
     problems = []
     for name, by_content in brought.items():
-        if len(by_content) > 1 and (name in late or not late_alone):
-            owners = ", ".join(owners[0] for owners in by_content.values())
+        owners = [components[0] for components in by_content.values()]
+        if len(owners) > 1 and not (late_alone and not any(map(_imports_late, owners))):
+            listed = ", ".join(owner.name for owner in owners)
             found = f"each bring another Python module '{name}'; in one process one of them runs the other's code."
-            problems.append(Problem(owners, found, REMEDY))
+            problems.append(Problem(listed, found, REMEDY))
     return problems
 
 
@@ -64,25 +61,33 @@ def stores_registered_alone(fmu: Path) -> bool:
 
 
 @lru_cache(maxsize=256)
-def _modules_of(fmu: Path, _changed: int) -> tuple[dict[str, frozenset], bool]:
-    """Files with check sums of each module that an FMU brings, and whether it may import while it runs."""
+def _modules_of(fmu: Path, _changed: int) -> dict[str, frozenset]:
+    """Files with check sums of each module that an FMU brings."""
     modules = defaultdict(set)
-    is_late = False
     with zipfile.ZipFile(fmu) as archive:
-        if "resources/slavemodule.txt" not in archive.namelist():
-            return {}, False
-        for entry in archive.infolist():
-            place = PurePosixPath(entry.filename)
-            if place.parts[0] == "resources" and place.suffix in CODE:
-                name = place.parts[1].partition(".")[0]
-                if name == LIBRARY:
-                    continue
-                modules[name].add((entry.filename, entry.CRC, entry.file_size))
-                is_late = is_late or _imports_late(archive.read(entry), place.suffix)
-    return {name: frozenset(content) for name, content in modules.items()}, is_late
+        if "resources/slavemodule.txt" in archive.namelist():
+            for entry in archive.infolist():
+                if (name := _module(entry.filename)) != LIBRARY:
+                    modules[name].add((entry.filename, entry.CRC, entry.file_size))
+    modules.pop("", None)
+    return {name: frozenset(content) for name, content in modules.items()}
 
 
-def _imports_late(source: bytes, suffix: str) -> bool:
+def _module(file: str) -> str:
+    """Name of the module that a file of an FMU belongs to; empty for files that are no code."""
+    place = PurePosixPath(file)
+    is_code = place.parts[0] == "resources" and place.suffix in CODE
+    return place.parts[1].partition(".")[0] if is_code else ""
+
+
+def _imports_late(component: Component) -> bool:
+    """True if the code of an FMU may import modules after its start."""
+    with zipfile.ZipFile(component.fmu.path) as archive:
+        files = [name for name in archive.namelist() if _module(name) not in ("", LIBRARY)]
+        return any(_is_late(archive.read(name), PurePosixPath(name).suffix) for name in files)
+
+
+def _is_late(source: bytes, suffix: str) -> bool:
     """True if code may import modules other than when it is imported itself."""
     if suffix != ".py":
         return True
