@@ -93,11 +93,12 @@ def replay(
                 "replay", "starts is no list of times.", "Give the time of each segment's start."
             )
         )
+    # All FMUs run in this process.
+    if problems := module_clashes(system, late_alone=True):
+        raise ShipcosimError(problems)
     # Plan all segments first, so that all errors are reported before a long computation.
     segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()
-    if problems := module_clashes(system, late_alone=True):
-        raise ShipcosimError(problems)
     rows = _SegmentRows(times, segments.states, signals)
     # The FMUs stay loaded for all segments; only their state is reset.
     with delayed_interrupt() as check_interrupt, Instances() as instances:

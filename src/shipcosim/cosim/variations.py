@@ -114,8 +114,6 @@ def simulate_many(
         If a variation does not fit to the system, or all have failed.
     """
     # Variations with the same names and events need only one check: their numbers do not matter.
-    if problems := module_clashes(system, late_alone=True):
-        raise ShipcosimError(problems)
     runs = _Runs(system, options, choose, reduce)
     for variation in {_kind(variation): variation for variation in variations}.values():
         runs.check(variation)
@@ -156,6 +154,9 @@ class _Runs:
         reduce: Reduce | None,
         table: Callable = make_table,
     ):
+        # All FMUs run in this process.
+        if problems := module_clashes(system, late_alone=True):
+            raise ShipcosimError(problems)
         self._system = system
         self._options = options
         self._reduce = reduce

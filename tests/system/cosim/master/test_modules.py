@@ -2,15 +2,13 @@
 
 import json
 
+import numpy as np
 import pytest
 
-from shipcosim.cosim import (
-    RunOptions,
-    export_fmu,
-    simulate,
-)
+from shipcosim.cosim import RunOptions, Variation, export_fmu, replay, simulate, simulate_many
 from shipcosim.cosim.export.osp import write_osp
 from shipcosim.errors import ShipcosimError
+from shipcosim.series import make_table
 
 AT_START = "helper.VALUE"
 LATE = ("__import__('helper').VALUE", "__import__('model').helper.VALUE")
@@ -50,6 +48,15 @@ def test_exports_refuse_them(pythonfmu_system, make_scenario, tmp_path):
     ):
         with pytest.raises(ShipcosimError, match="stock, other: each bring another Python module"):
             export()
+
+
+def test_many_runs_and_replays_in_one_process_refuse_them(pythonfmu_system, make_scenario):
+    system = pythonfmu_system(LATE[0], "VALUE = 1.0", "VALUE = 2.0")
+    table = make_table(np.arange(3.0), [])
+    with pytest.raises(ShipcosimError, match="another Python module 'helper'"):
+        simulate_many(system, make_scenario(), [Variation({}, make_scenario())], RunOptions())
+    with pytest.raises(ShipcosimError, match="another Python module 'helper'"):
+        replay(system, table, [0.0], 0.2, step_size=0.1)
 
 
 def test_equal_modules_are_no_clash(pythonfmu_system, make_scenario, tmp_path):
