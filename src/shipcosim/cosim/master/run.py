@@ -29,6 +29,7 @@ from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
 from shipcosim.cosim.master.restore import (
     check_fit,
+    check_restored,
     check_storable,
     restore_snapshot,
     take_snapshot,
@@ -286,12 +287,12 @@ class Simulation:
         return True
 
     def snapshot(self) -> Snapshot:
-        """State of the system at the end of the grid. Raises RunError if an FMU gives none."""
+        """State of the system at the end of the grid, tried. Raises RunError if an FMU gives none, or a part."""
         # Compiled components have their state in arrays; copy it to the objects first.
         if self._master is not None:
             self._master.give_back()
         try:
-            return take_snapshot(
+            taken = take_snapshot(
                 self._plan,
                 self._exchanges,
                 self._components,
@@ -299,6 +300,8 @@ class Simulation:
                 self._scenario,
                 self._active,
             )
+            check_restored(taken, self._exchanges, self._components, self._grid)
+            return taken
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=True)) from failure
 

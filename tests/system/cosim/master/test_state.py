@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from ships import given_to
 
-from shipcosim.cosim import RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
+from shipcosim.cosim import RunError, RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
@@ -261,6 +261,23 @@ OWN_STATE = """
     def _get_fmu_state(self):
         return {**super()._get_fmu_state(), "hidden": self.hidden}
 """
+
+
+PART_OF_IT = """
+    def _get_fmu_state(self):
+        return super()._get_fmu_state()
+"""
+
+
+def test_a_state_that_leaves_something_out_is_not_stored(pythonfmu_code, make_scenario):
+    options = {"canGetAndSetFMUstate": True, "canSerializeFMUstate": True}
+    system = pythonfmu_code(HIDDEN + PART_OF_IT, **options)
+    taken = []
+    for isolate in (False, True):
+        with pytest.raises(RunError, match="its state is not complete") as error:
+            how = RunOptions(until=0.5, store=taken.append, isolate=isolate)
+            simulate(system, make_scenario(1.0, 0.1), how)
+        assert error.value.table.sizes["time"] == 6 and not taken
 
 
 @pytest.mark.parametrize("own", ["", OWN_STATE])
