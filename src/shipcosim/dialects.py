@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import re
 from collections import Counter
 
@@ -91,6 +92,28 @@ def cells_in(line: str, separator: str) -> list[str]:
         cell.strip()
         for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])
     ]
+
+
+def header_of(name: str, unit: str) -> str:
+    """Header ``name [unit]`` of a column that we write; a name that readers would change stands in quotes, as JSON.
+
+    Examples
+    --------
+    >>> header_of("x", "m"), header_of("x ", "m"), name_in(header_of("x ", "m").partition(" [")[0])
+    ('x [m]', '"x " [m]', 'x ')
+    """
+    is_plain = name == name.strip(" '\"") and name.isprintable() and name
+    return f"{name if is_plain else json.dumps(name)} [{unit}]"
+
+
+def name_in(text: str) -> str:
+    """Name of a column of which `header_of` has made a text; other texts stay as they are."""
+    if len(text) < 2 or not text.startswith('"') or not text.endswith('"'):
+        return text
+    try:
+        return str(json.loads(text))
+    except ValueError:
+        return text
 
 
 def separator_of(lines: list[str]) -> str:

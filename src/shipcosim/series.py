@@ -22,7 +22,14 @@ from urllib.parse import quote
 
 import numpy as np
 
-from shipcosim.dialects import cells_in, decimal_of, is_figure, separator_of
+from shipcosim.dialects import (
+    cells_in,
+    decimal_of,
+    header_of,
+    is_figure,
+    name_in,
+    separator_of,
+)
 from shipcosim.errors import Problem, ShipcosimError, reading
 from shipcosim.units import UnitError, spelled_conversion
 
@@ -50,7 +57,7 @@ MOST_PACKED = 100
 OWN_NAME = "own_name"
 """Attribute of a variable whose name NetCDF cannot have."""
 
-_HEADER = re.compile(r"^(?P<name>.*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?\s*$")
+_HEADER = re.compile(r"^(?P<name>.*)\s\[(?P<unit>.*)\]\s*$", re.DOTALL)
 
 
 def make_table(
@@ -273,7 +280,7 @@ def _netcdf(table: xarray.Dataset) -> bytes:
     table = table.copy()
     names = {}
     for name in table.data_vars:
-        if "/" in str(name) or not str(name).strip("."):
+        if {"/", "%"} & set(str(name)) or not str(name).strip("."):
             names[name] = quote(str(name), safe="").replace(".", "%2E")
             table[name].attrs[OWN_NAME] = str(name)
     return bytes(table.rename(names).to_netcdf(engine="h5netcdf"))
@@ -283,7 +290,7 @@ def _csv(table: xarray.Dataset) -> bytes:
     columns = {"time": table["time"], **table.data_vars}
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerow(
-        f"{name} [{column.attrs.get('units') or '1'}]" for name, column in columns.items()
+        header_of(str(name), column.attrs.get("units") or "1") for name, column in columns.items()
     )
     values = [c.values.astype("int8") if c.dtype == bool else c.values for c in columns.values()]
     for row in zip(*(map(repr, of_column.tolist()) for of_column in values), strict=True):
@@ -501,7 +508,8 @@ def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
 def _name_and_unit(header: str) -> tuple[str, str]:
     """Parts of ``name [unit]``; the unit is empty where there is none."""
     found = _HEADER.match(header)
-    return (found["name"], found["unit"] or "") if found else (header, "")
+    name, unit = (found["name"], found["unit"]) if found else (header, "")
+    return name_in(name.strip()), unit
 
 
 def _unreadable(path: Path, error: Exception) -> Problem:

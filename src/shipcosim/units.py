@@ -490,6 +490,21 @@ def seconds(given: str | float) -> float:
     return number
 
 
+def whole_steps(duration: float, step_size: float) -> int | None:
+    """Number of steps in a duration; None if it is not whole, to a millionth of a step.
+
+    Examples
+    --------
+    >>> whole_steps(1100.0, 0.05)
+    22000
+    >>> whole_steps(0.12, 0.05) is None
+    True
+    """
+    # Rounding errors of decimal step sizes are allowed, half steps are not.
+    count = round(duration / step_size)
+    return count if abs(duration / step_size - count) <= 1e-6 else None
+
+
 def _same_kind(source: Unit, target: Unit) -> bool:
     """Whether an amount in one unit can be meant where the other is wanted.
 

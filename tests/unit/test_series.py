@@ -7,6 +7,8 @@ import sys
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as some
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.series import (
@@ -45,6 +47,48 @@ def test_netcdf_keeps_attributes_types_and_long_names(table, tmp_path):
     assert again.attrs == {"scenario": "a test", "step_size": 0.05}
     assert again["port.failed"].dtype == bool and again["weather.seed"].dtype == np.int32
     assert again["vessel.x"].attrs["long_name"] == "north"
+
+
+NAMES = some.lists(
+    some.one_of(
+        some.text(min_size=1, max_size=12).filter(lambda text: "\0" not in text),
+        some.lists(
+            some.sampled_from([*" ,;\"'[]()/.%#\n\t\\", "a", "time", "\u2028", "%2F", "[m]"]),
+            min_size=1,
+            max_size=6,
+        ).map("".join),
+    ).filter(
+        lambda text: (
+            text != "time" and text.isascii() or text.encode("utf-8", "ignore").decode() == text
+        )
+    ),
+    min_size=1,
+    max_size=4,
+    unique=True,
+)
+UNITS = some.sampled_from(["m", "1", "kg.m2/s", "kg[dry]", "%", "a(b)"])
+
+
+@settings(
+    max_examples=40,
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@example(names=["a/b", "a%2Fb", ".", "%2E"], unit="m")
+@example(names=["x [m]", "x [m", "x", " x", "x ", '"x"'], unit="m")
+@given(names=NAMES.filter(lambda names: "time" not in names), unit=UNITS)
+def test_names_of_any_kind_are_kept_in_every_format(tmp_path, names, unit):
+    columns = [(name, np.array([i, 0.5]), unit, "") for i, name in enumerate(names)]
+    table = make_table(np.arange(2.0), columns)
+    for suffix in (".nc", ".csv"):
+        path = tmp_path / f"names{suffix}"
+        write_table(table, path)
+        again = read_table(path)
+        assert list(again.data_vars) == names
+        assert [again[name].attrs["units"] for name in names] == [unit] * len(names)
+        assert [again[name].values[0] for name in names] == list(range(len(names)))
+        assert set(read_columns(path)) == {"time", *names}
 
 
 @pytest.mark.parametrize("suffix", [".nc", ".csv"])

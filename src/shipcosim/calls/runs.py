@@ -132,6 +132,7 @@ class PreparedRun:
         table = table.assign_attrs(
             remarks=json.dumps([*said, *during]), changed=json.dumps(list(self.changed))
         )
+        table = table.assign_attrs(self._part_judged(table))
         reached, late = within_run(self.scenario, table, self.planned)
         in_numbers = with_numbers(
             self.scenario.model_copy(update={"expect": reached}), units_of(self.system)
@@ -141,6 +142,13 @@ class PreparedRun:
         return replace(
             result, table=table.assign_attrs(not_reached=json.dumps(result.claims_not_reached()))
         )
+
+    def _part_judged(self, table: xarray.Dataset) -> dict[str, str]:
+        """What part of the planned run a table is; nothing of a whole one, which needs no words."""
+        first, last = table["time"].values[[0, -1]]
+        planned = max(self.planned, self.scenario.stop_time)
+        is_whole = first == 0.0 and last >= planned - 1e-9
+        return {} if is_whole else {"judged_on": f"{first:g} to {last:g} s of {planned:g} s"}
 
     def part(self, table: xarray.Dataset) -> Run:
         """The part of a run that did not get to its end; nothing is judged."""
@@ -532,9 +540,7 @@ def _prepared(
     happening = with_values(system, scenario.set, str(scenario.path or "scenario"))
     since = clock_start(options)
     problems = check_scenario(scenario, happening, since)
-    # Inputs that nothing feeds are named by `check`; what a run does otherwise than a file asks is named here too.
-    known = [one for one in system.remarks if one.flaw or one.where not in system.components]
-    found = [*remarks, *known]
+    found = [*remarks, *happening.deviations]
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError([*found, *errors])  # a remark on what was left out may say why
     # A run that is shorter than planned leaves events and expectations out on purpose.

@@ -6,6 +6,7 @@ import json
 import os
 import shlex
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,9 @@ class PlannedStudy:
             raise error_at(self.plan.study.name, f"There is no run {number}.", remedy)
         values = [f"{name} {value}" for name, value in self.plan.run(number).columns.items()]
         changed = [f"run {number} of the study {self.plan.study.name}", *values]
-        return prepare_run(self.plan.alone(number), changed=changed, engine=self.engine)
+        prepared = prepare_run(self.plan.alone(number), changed=changed, engine=self.engine)
+        # Expectations are those of the whole scenario, as the study's quantities take them.
+        return replace(prepared, planned=self.plan.planned)
 
     def run_again(self, number: int, simulate: Callable[[PreparedRun, Path], Run]) -> Run:
         """Simulate one run of the study into its folder; the page of the study, if there, leads to it.

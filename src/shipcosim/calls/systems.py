@@ -182,13 +182,12 @@ def compare(
     times = in_seconds({"stop_time": stop_time, "step_size": step_size}, ["stop_time", "step_size"])
     keys = without_none(times) | {"set": mapping("set", set)}
     system, scenario, remarks = system_and_scenario(what, reading, keys, events)
-    flaws = [problem for problem in system.remarks if problem.flaw]
     with _as_read(what, system, scenario, parameters) if as_read else nullcontext({}) as tools:
         found = compare(
             system, scenario, RunOptions(progress=progress), tolerance=tolerance, **tools
         )
     name = scenario.name or system.name
-    return EngineComparison(**parts_of(found), name=name, flaws=(*flaws, *remarks))
+    return EngineComparison(**parts_of(found), name=name, flaws=(*system.deviations, *remarks))
 
 
 @contextmanager

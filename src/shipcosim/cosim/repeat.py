@@ -86,7 +86,7 @@ def repeat(
     )
     again = run(with_values(system, starts, "repeat"), scenario, options)
     # What the run was called, changed and did not reach is no part of the scenario that is made here.
-    about_run = ("scenario", "changed", "not_reached", "remarks")
+    about_run = ("scenario", "changed", "not_reached", "judged_on", "remarks")
     return again.assign_attrs({name: facts[name] for name in about_run if name in facts})
 
 

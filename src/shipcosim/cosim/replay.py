@@ -14,11 +14,13 @@ from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
-from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.scenario import Scenario
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
+from shipcosim.units import whole_steps
 
 if TYPE_CHECKING:
     import xarray
@@ -91,6 +93,9 @@ def replay(
                 "replay", "starts is no list of times.", "Give the time of each segment's start."
             )
         )
+    # All FMUs run in this process.
+    if problems := module_clashes(system, late_alone=True):
+        raise ShipcosimError(problems)
     # Plan all segments first, so that all errors are reported before a long computation.
     segments = _Segments(system, inputs, times, duration, step_size, output_interval, states or {})
     segments.check()

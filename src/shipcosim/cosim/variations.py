@@ -20,6 +20,7 @@ from shipcosim.cosim.master.result import attributes_of
 from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import Slave
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.errors import ShipcosimError
@@ -153,6 +154,9 @@ class _Runs:
         reduce: Reduce | None,
         table: Callable = make_table,
     ):
+        # All FMUs run in this process.
+        if problems := module_clashes(system, late_alone=True):
+            raise ShipcosimError(problems)
         self._system = system
         self._options = options
         self._reduce = reduce

@@ -1,7 +1,8 @@
 """FMI 2.0 interface of an FMU, called by the binary of pythonfmu. Writers of FMUs need `Fmu` only.
 
 The binary looks for a class that has a base class named `Fmi2Slave`, makes an instance per component and calls the
-methods below. It logs the `repr` of what they raise with status fatal, and the queue of messages after other calls.
+methods below. It logs the `repr` of what they raise, and the queue of messages after other calls. A raised
+exception is status fatal to it, which our loader makes an error.
 """
 
 import copy

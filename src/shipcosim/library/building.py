@@ -82,6 +82,14 @@ def built_fmu(source: Path, build: bool = True) -> Path:
     return folder / f"{source.name}.fmu"
 
 
+def build_if_stale(fmu: Path) -> None:
+    """Build an FMU again where it is one of a project's built FMUs and older than its source."""
+    fmu = fmu.resolve()
+    project = fmu.parents[2] if len(fmu.parents) > 2 else fmu.parent
+    if fmu.parent == built_fmus(project) and fmu.stem in fmu_sources(project):
+        build_stale(project)
+
+
 def _shipped_fmus(build: bool) -> Path:
     """Folder of the FMUs that the package ships: in a repository its build/, else in the user's cache."""
     root = shipped()

@@ -5,7 +5,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.library.building import built_fmu
+from shipcosim.library.building import build_if_stale, built_fmu
 from shipcosim.library.names import KINDS, SYSTEM_STRUCTURE, names
 from shipcosim.library.places import StrPath, roots
 
@@ -59,6 +59,8 @@ def find(
         and not is_plain
         and (kind not in ("scenario", "study", "fmu") or path.is_file())
     ):
+        if build and path.suffix == ".fmu":
+            build_if_stale(path)
         return Path(text)
     if text in known:
         return built_fmu(known[text], build) if kind == "fmu" else known[text]

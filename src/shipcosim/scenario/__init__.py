@@ -11,7 +11,6 @@ from shipcosim.scenario.check import (
     check_times,
     step_times,
     time_complaints,
-    whole_steps,
 )
 from shipcosim.scenario.judge import Verdict, judge, within_run
 from shipcosim.scenario.model import Event, Expectation, Scenario
@@ -33,7 +32,6 @@ __all__ = [
     "time_complaints",
     "toml_of",
     "units_of",
-    "whole_steps",
     "with_numbers",
     "within_run",
 ]

@@ -14,7 +14,7 @@ from shipcosim.scenario.amounts import unit_complaints, units_of
 from shipcosim.scenario.locations import problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
-from shipcosim.units import UnitError, amount, number_in
+from shipcosim.units import UnitError, amount, number_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -61,21 +61,6 @@ def check_files(scenario: Scenario) -> list[Problem]:
 
 def _systems(scenario: Scenario) -> list[str]:
     return list(library.names("system", scenario.project))
-
-
-def whole_steps(duration: float, step_size: float) -> int | None:
-    """Number of steps in a duration; None if it is not whole, to a millionth of a step.
-
-    Examples
-    --------
-    >>> whole_steps(1100.0, 0.05)
-    22000
-    >>> whole_steps(0.12, 0.05) is None
-    True
-    """
-    # Rounding errors of decimal step sizes are allowed, half steps are not.
-    count = round(duration / step_size)
-    return count if abs(duration / step_size - count) <= 1e-6 else None
 
 
 def step_times(step_size: float, first: int, last: int, start_time: float = 0.0) -> np.ndarray:

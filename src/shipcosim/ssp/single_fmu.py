@@ -17,16 +17,13 @@ from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.xml.document import AnyPath, Document, Findings, qualified
 from shipcosim.ssp.xml.markup import add
 from shipcosim.ssp.xml.values import Value
-from shipcosim.units import UnitError, seconds
+from shipcosim.units import UnitError, seconds, whole_steps
 
 IN_TABLES = ("Real", "Integer", "Boolean", "Enumeration")
 """Kinds of inputs that a table can feed; the others keep their start value, which can be set."""
 
 STEPS = 500
 """Steps of a run whose FMU does not say how long a step is, as other tools have it."""
-
-WHOLE = 1e-6
-"""Part of a step by which a number of steps may differ from a whole one."""
 
 
 def single_fmu(path: AnyPath) -> Path | None:
@@ -164,7 +161,7 @@ def step_remarks(system: System, start_time: float, stop_time: float) -> list[Pr
     asked = _step_asked(system) if system.file.lower().endswith(".fmu") else None
     step = default_step_size(system, start_time, stop_time)
     is_run = stop_time > start_time  # what ends before it starts is refused elsewhere
-    if asked is None or step is None or not is_run or abs(step - asked) <= WHOLE * asked:
+    if asked is None or step is None or not is_run or step == asked:
         return []
     found = f"Its step of {asked:.9g} s does not divide the run's {stop_time - start_time:.9g} s; it takes {step:.9g} s."
     (name,) = system.components
@@ -180,5 +177,6 @@ def _dividing_step(asked: float | None, duration: float) -> float:
     """A step that divides a run evenly: the one asked for, or the nearest; 500 steps where none is asked for. [s]"""
     if asked is None or not 0.0 < asked < inf or duration <= 0.0:
         return abs(duration or 1.0) / STEPS
-    steps = max(1, round(duration / asked))
-    return asked if abs(duration / asked - steps) <= WHOLE else duration / steps
+    if whole_steps(duration, asked):
+        return asked
+    return duration / max(1, round(duration / asked))

@@ -7,7 +7,7 @@ from shipcosim.errors import ShipcosimError, held_strictly
 from shipcosim.ssp.flatten.assemble import assemble_package
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
-from shipcosim.ssp.read.package import open_package
+from shipcosim.ssp.read.package import open_package, remark_others
 from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.single_fmu import assemble_fmu, single_fmu
 from shipcosim.ssp.xml.document import AnyPath, Findings
@@ -77,6 +77,8 @@ def assemble(
     # The kind of file decides who reads it.
     osp = osp_file(path)
     if osp is not None:
+        if Path(path).is_dir():
+            remark_others(Path(path), str(path), osp.name, "", findings)
         return assemble_osp(osp, parameters, fmus, findings, components), findings
     fmu = single_fmu(path)
     if fmu is not None:

@@ -16,7 +16,6 @@ from shipcosim.scenario import (
     check_scenario,
     read_scenario,
     time_complaints,
-    whole_steps,
 )
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.flatten.swapped import WHERE
@@ -27,6 +26,7 @@ from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.sampling import samples_of
 from shipcosim.sweep.study_model import Study
 from shipcosim.sweep.tuning import ranges_of
+from shipcosim.units import whole_steps
 
 
 def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: bool = True) -> Plan:
@@ -46,7 +46,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         With everything that does not fit together.
     """
     # The scenario with the study's own times, then the system with the study's components.
-    scenario = _scenario(study)
+    scenario, planned = _scenario(study)
     read = _system(
         study,
         scenario,
@@ -83,7 +83,7 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
     samples = ranges_of(study, levels, system) if study.tune else samples_of(study, levels, system)
     # Quantities may name signals that only events of some level change.
     happening = [event for one in found for level in one for event in level.events]
-    measures, problems = measures_of(study, scenario, system, happening)
+    measures, problems = measures_of(study, scenario, system, happening, planned)
     problems = [*levels.problems, *problems, *_of_summaries(study), *_of_fork(study, scenario)]
     problems += [one for one in check_scenario(scenario, system) if one.severity == "error"]
     if problems:
@@ -93,11 +93,11 @@ def plan_of(study: Study, settings: Mapping[str, Any] | None = None, *, build: b
         swapped: _swapped(study, scenario, swapped, system, build)
         for swapped in _combinations(found)
     }
-    return Plan(study, scenario, systems, found, measures, samples)
+    return Plan(study, scenario, systems, found, measures, samples, planned)
 
 
-def _scenario(study: Study) -> Scenario:
-    """The scenario that all runs share."""
+def _scenario(study: Study) -> tuple[Scenario, float]:
+    """The scenario that all runs share, and the stop time of its file. [s]"""
     try:
         path = study.scenario_path
     except ShipcosimError as error:
@@ -109,6 +109,7 @@ def _scenario(study: Study) -> Scenario:
     # Times of the study replace those of the scenario; a wrong one is reported at the study's line.
     times = {name: getattr(study, name) for name in ("stop_time", "step_size", "output_interval")}
     changed = {name: time for name, time in times.items() if time is not None}
+    planned = scenario.stop_time
     scenario = scenario.model_copy(update=changed)
     if missing := check_files(scenario):
         raise ShipcosimError(missing)
@@ -117,7 +118,7 @@ def _scenario(study: Study) -> Scenario:
         raise ShipcosimError(
             [problem_of(study, at, *one[1:3]) for at, one in zip(keys, wrong, strict=True)]
         )
-    return scenario
+    return scenario, planned
 
 
 def _system(

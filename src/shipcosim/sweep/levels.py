@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.scenario import Event, units_of, whole_steps
+from shipcosim.scenario import Event, units_of
 from shipcosim.scenario.check import event_complaints
 from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
 from shipcosim.sweep.study_model import Case, Factor, Study
-from shipcosim.units import Unit, UnitError, amount, number_in
+from shipcosim.units import Unit, UnitError, amount, number_in, whole_steps
 
 if TYPE_CHECKING:
     from shipcosim.scenario import Scenario

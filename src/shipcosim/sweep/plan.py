@@ -87,6 +87,8 @@ class Plan:
         What is kept of each run.
     samples : Samples or None
         Crossed with the factors.
+    planned : float
+        Stop time of the scenario's file, for which its expectations were written. [s]
     """
 
     study: Study
@@ -95,6 +97,7 @@ class Plan:
     levels: Sequence[Sequence[Level]]
     measures: tuple[Measure, ...] = ()
     samples: Samples | None = None
+    planned: float = 0.0
 
     def __len__(self) -> int:
         return prod(self.shape)

@@ -48,6 +48,10 @@ class Measure:
         Where the run's time begins to count. [s]
     margin : Margin or None
         What follows from start values, not from a table.
+    needs : float
+        Time that a run must reach: the end of the last window, or of the run that was planned. [s]
+    remarks : tuple of str
+        What of the scenario's expectations the study does not reach.
     """
 
     name: str
@@ -59,6 +63,8 @@ class Measure:
     argument: float = np.nan
     since: float = 0.0
     margin: Margin | None = None
+    needs: float = 0.0
+    remarks: tuple[str, ...] = ()
 
     @property
     def is_truth(self) -> bool:
@@ -70,8 +76,13 @@ class Measure:
         """True if NaN means never, which counts as later than any time."""
         return self.reduce == "time_beyond"
 
-    def of(self, table: xarray.Dataset) -> float | bool:
-        """The quantity of a run from its table; NaN if it has no row or is never reached."""
+    def of(self, table: xarray.Dataset) -> float | bool | None:
+        """The quantity of a run from its table; NaN if it has no row or is never reached.
+
+        A run that ends before all that is judged or reduced has happened has no value: None of a verdict, or NaN.
+        """
+        if not self.is_reached_at(table["time"].values[-1]):
+            return None if self.is_truth else np.nan
         # A verdict: all expectations must hold.
         if self.is_truth:
             return all(verdict_on(table, one, self.units.__getitem__).passed for one in self.expect)
@@ -87,6 +98,10 @@ class Measure:
         )
         value = float(REDUCED[self.reduce](table["time"].values[rows], single, self.argument))
         return value - self.since if self.since else value
+
+    def is_reached_at(self, end: float) -> bool:
+        """True if a run with this end has all that the quantity needs. [s]"""
+        return end >= self.needs - 1e-9 * max(1.0, abs(self.needs))
 
 
 def _at(times: np.ndarray, values: np.ndarray, time: float) -> Any:
@@ -117,7 +132,11 @@ REDUCED: dict[str, Reduction] = {
 
 
 def measures_of(
-    study: Study, scenario: Scenario, system: System, events: Iterable[Event] = ()
+    study: Study,
+    scenario: Scenario,
+    system: System,
+    events: Iterable[Event] = (),
+    planned: float = 0.0,
 ) -> tuple[tuple[Measure, ...], list[Problem]]:
     """Quantities of a study in a system's units, and their problems.
 
@@ -130,7 +149,12 @@ def measures_of(
         That runs.
     events : iterable of Event
         That some of the runs have.
+    planned : float
+        Stop time for which the scenario's expectations were written. [s]
     """
+    # A case may run longer than the scenario: the longest end counts.
+    ends = [case.stop_time or 0.0 for factor in study.factor for case in factor.case or ()]
+    end = max(scenario.stop_time, *ends, 0.0)
     # Signals that events change count as known, though nothing may feed them.
     changed = {signal for event in [*scenario.events, *events] for _, signal, _ in event.changes}
     problems = [
@@ -141,7 +165,7 @@ def measures_of(
             remedy,
         )
         for number, one in enumerate(study.quantity)
-        for i, expect in enumerate(_claims(one, scenario))
+        for i, expect in enumerate(_claims(one, scenario, end, planned))
         for key, found, remedy in expectation_complaints(expect, system, changed)
     ]
     tracked = study.tracks.signals if study.tracks else []
@@ -153,34 +177,53 @@ def measures_of(
             problems.append(problem_of(study, ("tracks", "signals"), found, remedy))
     margins = [i for i, one in enumerate(study.quantity) if one.margin]
     problems += filter(None, (complaint_of_margin(study, number, system) for number in margins))
-    problems += _outside(study, scenario)
+    problems += _outside(study, scenario, end, planned)
     return () if problems else tuple(
-        _measure(one, scenario, system) for one in study.quantity
+        _measure(one, scenario, system, end, planned) for one in study.quantity
     ), problems
 
 
-def _claims(quantity: Quantity, scenario: Scenario) -> list[Expectation]:
+def _claims(
+    quantity: Quantity, scenario: Scenario, end: float, planned: float
+) -> list[Expectation]:
     if quantity.margin:
         return []
     if not quantity.judges:
         return [quantity.claim]
-    within = [
-        # An expectation with a window beyond the end of the run cannot be judged.
-        one
-        for one in scenario.expect
-        if not one.during or one.during[1] <= scenario.stop_time
-    ]
+    within = [one for one in scenario.expect if _end_of(one, planned) <= end]
     return [*quantity.expect, *(within if quantity.scenario_expectations else ())]
 
 
-def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
-    """Windows and times that lie beyond every run."""
-    # A case may run longer than the scenario: the longest end counts.
-    ends = [case.stop_time or 0.0 for factor in study.factor for case in factor.case or ()]
-    end = max(scenario.stop_time, *ends, 0.0)
+def _end_of(expect: Expectation, planned: float) -> float:
+    """When all that an expectation of the scenario judges has happened; what holds in every row can be judged before."""
+    if expect.during:
+        return expect.during[1]
+    return planned if expect.statistic else 0.0
+
+
+def _remarks(quantity: Quantity, scenario: Scenario, end: float, planned: float) -> Iterable[str]:
+    """What of the scenario's expectations the study does not judge."""
+    if not quantity.scenario_expectations:
+        return
+    late = sum(_end_of(one, planned) > end for one in scenario.expect)
+    if late:
+        yield (
+            f"{quantity.name}: {late} of {len(scenario.expect)} expectations of {scenario.name} are not judged: they"
+            f" need more than the {end:g} s of the runs."
+        )
+    partly = sum(not one.during and not one.statistic for one in scenario.expect)
+    if partly and end < planned:
+        yield (
+            f"{quantity.name}: {partly} of {len(scenario.expect)} expectations of {scenario.name} are judged on the"
+            f" first {end:g} s of its {planned:g} s."
+        )
+
+
+def _outside(study: Study, scenario: Scenario, end: float, planned: float) -> Iterable[Problem]:
+    """Windows and times that no run reaches."""
     for number, one in enumerate(study.quantity):
         starts = (
-            ("during", one.during[0] if one.during else None),
+            ("during", one.during[1] if one.during else None),
             ("time", one.time),
             ("since", one.since),
         )
@@ -190,7 +233,9 @@ def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
                 yield problem_of(
                     study, ("quantity", number, key), found, "Take a time within them."
                 )
-        if one.scenario_expectations and len(_claims(one, scenario)) == len(one.expect):
+        if one.scenario_expectations and len(_claims(one, scenario, end, planned)) == len(
+            one.expect
+        ):
             found = (
                 f"The scenario {study.scenario} expects nothing within {scenario.stop_time:g} s."
             )
@@ -198,7 +243,9 @@ def _outside(study: Study, scenario: Scenario) -> Iterable[Problem]:
             yield problem_of(study, keys, found, "Write expect = [...] here.")
 
 
-def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
+def _measure(
+    quantity: Quantity, scenario: Scenario, system: System, end: float, planned: float
+) -> Measure:
     if quantity.margin:
         # A margin follows from start values and needs no table.
         text = (
@@ -209,10 +256,22 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
         return Measure(quantity.name, text, UNITS[quantity.margin], (), {}, margin=margin)
     unit_of = units_of(system)
     # Limits and windows in plain numbers, in the units of the signals.
-    expect = tuple(expectation_in_numbers(one, unit_of) for one in _claims(quantity, scenario))
+    claims = _claims(quantity, scenario, end, planned)
+    expect = tuple(expectation_in_numbers(one, unit_of) for one in claims)
+    # The study's own expectations without a window are meant for each run as long as it is.
+    needs = [_end_of(one, 0.0 if one in quantity.expect else planned) for one in claims]
     units = {signal: unit_of(signal) for one in expect for signal in one.signals}
     if quantity.reduce is None:
-        return Measure(quantity.name, quantity.description, None, expect, units)
+        remarks = tuple(_remarks(quantity, scenario, end, planned))
+        return Measure(
+            quantity.name,
+            quantity.description,
+            None,
+            expect,
+            units,
+            needs=max(needs),
+            remarks=remarks,
+        )
     first = units[quantity.signal[0]]
     unit = {"time_beyond": "s", "share_beyond": "1"}.get(
         quantity.reduce, first.name if first else "1"
@@ -223,5 +282,14 @@ def _measure(quantity: Quantity, scenario: Scenario, system: System) -> Measure:
     text = quantity.description or f"{quantity.reduce} of {expect[0].subject}"
     since = quantity.since or 0.0
     return Measure(
-        quantity.name, text, unit, expect, units, quantity.reduce, float(argument or 0.0), since
+        quantity.name,
+        text,
+        unit,
+        expect,
+        units,
+        quantity.reduce,
+        float(argument or 0.0),
+        since,
+        # What never happens within a run counts as later than any time, however long the run is.
+        needs=0.0 if quantity.reduce == "time_beyond" else max(*needs, quantity.time or 0.0),
     )

@@ -10,6 +10,7 @@ import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict
+from math import prod
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,7 @@ from shipcosim.scenario.model import Value
 from shipcosim.series import write_file
 from shipcosim.staging import set_aside
 from shipcosim.sweep.plan import ColumnOf, Plan
+from shipcosim.sweep.summary import SHARE
 from shipcosim.sweep.work import Row
 
 if TYPE_CHECKING:
@@ -341,15 +343,20 @@ def _kind(labels: list[Value]) -> Any:
 
 def _of_summaries(plan: Plan) -> list[ColumnOf]:
     units = {column.name: column.unit for column in plan.columns}
+    names = [
+        *(factor.name for factor in plan.study.factor),
+        *["sample"][: plan.samples is not None],
+    ]
     found = []
     for one in plan.study.summary:
         # Shares have no unit; others have that of their quantity.
         unit = {"share": "1", "last_held": None}.get(one.statistic, units.get(one.quantity))
-        found.append(
-            ColumnOf(
-                one.name, "summary", unit, one.description or f"{one.statistic} of {one.quantity}"
-            )
-        )
+        text = one.description or f"{one.statistic} of {one.quantity}"
+        if one.statistic == "last_held":
+            # What is meant by held follows from the study, whatever a description says.
+            sizes = [size for name, size in zip(names, plan.shape, strict=True) if name in one.over]
+            text += f", held in {one.share or SHARE:.0%} of the runs, {prod(sizes)} a case"
+        found.append(ColumnOf(one.name, "summary", unit, text))
     return found
 
 

@@ -108,6 +108,7 @@ def run_study(
     runs = store.runs()
     summary = summarised(plan, runs)
     tables, remarks = _further(plan, runs, search)
+    remarks = [*not_reached(plan), *remarks]
     for name, table in {"summary": summary, **tables}.items():
         write_file(folder / f"{name}.csv", table.to_csv(index=False).encode())
     about = store.write_about(tables=list(tables), remarks=remarks)
@@ -124,6 +125,19 @@ def _further(
         return {}, []
     indices, remarks = indices_of(plan, runs)
     return {"indices": indices}, remarks
+
+
+def not_reached(plan: Plan) -> list[str]:
+    """What is not judged because runs end before it, each as a sentence."""
+    remarks = [remark for measure in plan.measures for remark in measure.remarks]
+    # Measures need no more than the longest run has: where all are as long there is nothing to say.
+    if any(level.stop_time is not None for levels in plan.levels for level in levels):
+        ends = [plan.scenario_of(plan.run(number)).stop_time for number in range(len(plan))]
+        for measure in plan.measures:
+            if short := sum(not measure.is_reached_at(end) for end in ends):
+                found = f"{short} of {len(ends)} runs end before {measure.needs:g} s"
+                remarks.append(f"{measure.name}: {found} and have no value.")
+    return remarks
 
 
 def _parts(plan: Plan, store: Store, search: Search | None) -> Iterator[np.ndarray]:

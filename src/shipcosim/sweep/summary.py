@@ -94,6 +94,7 @@ def _last_held(plan: Plan, one: Summary, part: Any) -> dict[str, Any]:
         held = part.loc[part[one.along].astype(str) == str(level.label), one.quantity].to_numpy(
             dtype=float
         )
+        held = held[~np.isnan(held)]  # of runs that end before what is judged
         if not len(held):
             break
         if held.mean() < share - 1e-12:

@@ -58,6 +58,16 @@ SOURCES = {
             def step(self, t, h):
                 self.start()
         ''',
+    "bounded": '''
+        class Bounded(Fmu):
+            """States a range of its input, and computes outside it all the same."""
+
+            u = Input("1", "input", minimum=-1.0, maximum=2.0)
+            y = Output("1", "the input")
+
+            def step(self, t, h):
+                self.y = self.u
+        ''',
     "clock": '''
         class Clock(Fmu):
             """Puts out the time, the number of steps and whether that is odd."""
@@ -272,7 +282,7 @@ def pythonfmu_code(tmp_path):
     """Function: a system of two FMUs, stock and other, as PythonFMU builds them from a script, without our shell."""
     from pythonfmu.builder import FmuBuilder
 
-    def make(script, connections=(), helpers=("", "")):
+    def make(script, connections=(), helpers=("", ""), **options):
         (tmp_path / "resources").mkdir(exist_ok=True)
         for name, helper in zip(("stock", "other"), helpers, strict=True):
             folder = tmp_path / name
@@ -280,7 +290,7 @@ def pythonfmu_code(tmp_path):
             (folder / "helper.py").write_text(helper)
             (folder / "model.py").write_text(script)
             built = FmuBuilder.build_FMU(
-                folder / "model.py", folder, project_files={folder / "helper.py"}
+                folder / "model.py", folder, project_files={folder / "helper.py"}, **options
             )
             Path(built).rename(tmp_path / "resources" / f"{name}.fmu")
             for module in ("helper", "model"):

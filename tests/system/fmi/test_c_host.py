@@ -292,10 +292,10 @@ def test_values_of_every_type_go_in_and_out_and_what_is_logged_arrives(lag, load
         fmus=[fmu],
     )
     assert lines[:4] == ["one instantiated", "1", "1", "deep 0"]
-    start = "log host one 4 logStatusFatal: one at t = 0.1 s: 100 % sure|one at t = 0.1 s: exception|Traceback"
+    start = "log host one 3 logStatusError: one at t = 0.1 s: 100 % sure|one at t = 0.1 s: exception|Traceback"
     assert lines[-2].startswith(start)
     assert 'File "lag.py"' in lines[-2] and lines[-2].endswith("RuntimeError: 100 %s broken")
-    assert lines[-1] == "step one: status 4"
+    assert lines[-1] == "step one: status 3"
 
 
 def test_failures_and_warnings_are_logged_always_and_the_rest_on_demand(build, loaded, host):

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.scenario import Scenario, check_times, judge, read_scenario, whole_steps, within_run
+from shipcosim.scenario import Scenario, check_times, judge, read_scenario, within_run
 from shipcosim.series import make_table
+from shipcosim.units import whole_steps
 
 GOOD = """\
 description = "a test"

@@ -66,7 +66,7 @@ def fmu(
     )
     keys = {} if step_size is None else {"step_size": step_size}
     system, scenario, _ = system_and_scenario(what, reading, keys, needs_end=False)
-    print_problems(problem for problem in system.remarks if problem.flaw)
+    print_problems(system.deviations)
     system = with_values(system, scenario.set, what)
     target = out / f"{system.name}.fmu"
     set_file_aside(target, force=force)
@@ -115,7 +115,7 @@ def osp(
         what, reading, keys, events, needs_end=events is not None
     )
     has_end = bool(stop_time or system.experiment.stop_time or scenario.path)
-    print_problems([*(problem for problem in system.remarks if problem.flaw), *remarks])
+    print_problems([*system.deviations, *remarks])
     set_aside(out, [STRUCTURE, SCENARIO, *(file.name for file in out.glob("*.fmu"))], force=force)
     print_problems(write_osp(system, scenario, out, has_end=has_end))
     for path in sorted(out.glob("*")):

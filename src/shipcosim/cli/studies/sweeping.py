@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -112,7 +113,7 @@ def _say(swept: Swept) -> None:
         shown = swept.summary.copy()
         for name in [name for name in shown if str(name).endswith(RANGE)]:
             shown[str(name).removesuffix(RANGE)] = shown.pop(name)
-        text = shown.to_string(index=False, na_rep="", float_format=lambda value: f"{value:.4g}")
+        text = shown.to_string(index=False, na_rep="", float_format=_number)
         console.print(text, markup=False)
     if "indices" in swept.tables:
         _say_indices(console, swept)
@@ -135,6 +136,11 @@ def _say(swept: Swept) -> None:
         f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False
     )
     console.print(f"Page: {shown_path(swept.folder / 'report.html')}", markup=False)
+
+
+def _number(value: float) -> str:
+    """A number of the summary; what no run reached is infinite."""
+    return "never in the run" if value == inf else f"{value:.4g}"
 
 
 def _say_indices(console: Console, swept: Swept) -> None:

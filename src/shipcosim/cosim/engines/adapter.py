@@ -21,10 +21,12 @@ from shipcosim.cosim.master.events import changes, external_values, modify
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.plan import WIDE, End, label, make_plan
+from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.result import attributes_of, columns_of, recorded_rows
 from shipcosim.cosim.master.run import Interrupted, RunError
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.options import RunOptions
@@ -169,6 +171,8 @@ class Job:
             | {"start_time": 0.0}
             | dict(attributes)
         )
+        remarks = json.loads(str(known.get("remarks", "[]")))
+        known["remarks"] = json.dumps([*remarks, *range_remarks(self.plan, times, recorded)])
         return make_table(times, columns_of(self.plan, len(times), recorded), known)
 
     def _external_values(self, kind):
@@ -328,7 +332,7 @@ def unsupported(
     others : iterable of Problem
         Problems other than those of connections.
     """
-    problems = list(others)
+    problems = [*others, *module_clashes(job.system)]
     # Types and interfaces that the engine does not have, by component.
     for component in job.system.components.values():
         if interface_type_of(component) == "ModelExchange":

@@ -20,6 +20,7 @@ from shipcosim.cosim.export.container_variables import (
 )
 from shipcosim.cosim.master.order import sources_first
 from shipcosim.cosim.master.plan import label
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp import System
 from shipcosim.ssp.xml.archive import write_archive
@@ -58,7 +59,7 @@ def write_container(
         With everything that the container cannot express.
     """
     # Find all problems before anything is written.
-    problems = list(_problems(system, step_size))
+    problems = [*_problems(system, step_size), *module_clashes(system)]
     exposed = exposed_variables(system, connectors_only, problems)
     if errors := [problem for problem in problems if problem.severity == "error"]:
         raise ShipcosimError(errors)

@@ -15,7 +15,8 @@ from shipcosim.cosim.master.plan import End, Plan
 from shipcosim.cosim.master.signals import Exchange, Modifier, Modifiers
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
-from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.scenario import Scenario
+from shipcosim.units import whole_steps
 
 
 class SignalChange(NamedTuple):

@@ -8,9 +8,10 @@ from shipcosim.cosim.master.signals import InputConnection
 from shipcosim.cosim.slaves.interface_type import interface_type_of, missing_interface_type
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System, Variable
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized
+from shipcosim.units import whole_steps
 
 KINDS = {"Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean", "Real": "Real"}
 """Kind of the arrays that hold values of a type."""

@@ -11,6 +11,7 @@ from shipcosim.cosim.master.result import hashes, start_values
 from shipcosim.cosim.master.signals import Exchange, Modifier
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.interface_type import interface_type_of
+from shipcosim.cosim.slaves.pythonfmu_code import stores_registered_alone
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
@@ -22,6 +23,10 @@ ABILITIES = (
     ("canGetAndSetFMUState", "canSerializeFMUState"),
 )
 """What an FMU has to declare so that its state can be stored, in FMI 2.0 and 3.0."""
+
+
+TRIED = 10
+"""Steps by which a state is tried. Assumed: what an FMU forgets shows in its outputs by then, or seldom does."""
 
 
 def check_storable(system: System) -> None:
@@ -41,6 +46,10 @@ def check_storable(system: System) -> None:
         if lacking:
             found = f"{fmu.path.name} cannot store its state: it does not declare {' and '.join(lacking)}."
             problems.append(Problem(component.name, found, "Run the system without storing it."))
+        elif stores_registered_alone(fmu.path):
+            found = f"{fmu.path.name} stores its registered variables alone: PythonFMU loses what else it keeps."
+            remedy = "Give its class _get_fmu_state and _set_fmu_state, or run the system without storing it."
+            problems.append(Problem(component.name, found, remedy))
     if problems:
         raise ShipcosimError(problems)
 
@@ -152,6 +161,46 @@ def take_snapshot(
             for name, component in components.items()
         },
     )
+
+
+def check_restored(
+    snapshot: Snapshot,
+    exchanges: Mapping[str, Exchange],
+    components: Mapping[str, ComponentInstance],
+    grid: TimeGrid,
+) -> None:
+    """Step FMUs that are not ours on from a snapshot, twice: both times have to give the same outputs.
+
+    What an FMU keeps beside its state shows so, as far as its outputs follow from it within `TRIED` steps. Where the
+    run has no steps left nothing is tried. The components are not those of the run afterwards.
+
+    Raises
+    ------
+    Failure
+        If an FMU gives other outputs after its state was restored.
+    """
+    for name, component in components.items():
+        if getattr(component.slave, "python_object", None) is not None:
+            continue
+        ends = grid.times[grid.last :: component.multiple][: TRIED + 1]
+        live = _stored(component, _stepped, component, exchanges, ends)
+        _stored(component, component.restore, snapshot.states[name])
+        again = _stored(component, _stepped, component, exchanges, ends)
+        if live != again:
+            found = "its state is not complete: restored, it goes on with other outputs than without that."
+            raise Failure(Problem(name, found, "Run the system without storing it."))
+
+
+def _stepped(component, exchanges, times):
+    """Outputs of a component, as bytes, after each of some steps with the inputs as they are."""
+    outputs = []
+    for time, end in zip(times[:-1], times[1:], strict=True):
+        component.write()
+        component.step(float(time), float(end - time))
+        component.read()
+        for kind, (first, variables) in component.output_rows.items():
+            outputs.append(exchanges[kind].sources[first : first + len(variables)].tobytes())
+    return outputs
 
 
 def restore_snapshot(

@@ -24,10 +24,12 @@ from shipcosim.cosim.master.instantiate import (
 from shipcosim.cosim.master.interrupt import delayed_interrupt
 from shipcosim.cosim.master.order import ORDERS, stepping_order
 from shipcosim.cosim.master.plan import make_plan
+from shipcosim.cosim.master.ranges import range_remarks
 from shipcosim.cosim.master.recorder import Recorder, Recorders
 from shipcosim.cosim.master.rerun import can_rewind, changed_values, with_numbers
 from shipcosim.cosim.master.restore import (
     check_fit,
+    check_restored,
     check_storable,
     restore_snapshot,
     take_snapshot,
@@ -36,6 +38,7 @@ from shipcosim.cosim.master.result import Column, attributes_of, columns_of, rec
 from shipcosim.cosim.master.time_grid import TimeGrid, time_grid_of
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.instances import Instances
+from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.options import RunOptions
@@ -71,14 +74,16 @@ def run(system: System, scenario: Scenario, options: RunOptions) -> xarray.Datas
     store = writer(options.store)
     if resume is not None:
         check_fit(resume, system, scenario)
-    if store is not None:
+    if store is not None or resume is not None:
         check_storable(system)
     # A continued run keeps the clock of the first one: steps count from its start.
     start_time, first = (resume.start_time, resume.step) if resume else (options.start_time, 0)
     simulation = Simulation(
         system, scenario, time_grid_of(scenario, start_time, first, options.until), options, resume
     )
-    instances = IsolatedInstances(system, options.timeout) if options.isolate else Instances()
+    # Python has one module of a name in a process: FMUs that would take each other's get their own.
+    is_apart = options.isolate or bool(simulation.clashes)
+    instances = IsolatedInstances(system, options.timeout) if is_apart else Instances()
     # Ctrl-C is held back until the master can stop.
     with delayed_interrupt() as check_interrupt, instances:
         simulation.run(instances, check_interrupt, options.progress)
@@ -115,6 +120,8 @@ class Simulation:
     ----------
     is_ended : bool
         Whether an FMU has ended the run before the end of the grid.
+    clashes : list of Problem
+        Python modules of one name, for which the FMUs need a process each.
 
     Raises
     ------
@@ -153,7 +160,8 @@ class Simulation:
         self._fresh = None
         self._components: Components = {}
         self._together: list[set[str]] = []
-        self._remarks: list[str] = []
+        self.clashes = [] if options.isolate else module_clashes(system, late_alone=True)
+        self._remarks = [f"{p.where}: {p.found} Each has its own process." for p in self.clashes]
         self._master: Master | None = None
         self.is_ended = False
         # All rows are reserved before the run.
@@ -230,7 +238,7 @@ class Simulation:
             else "one after the other, each steps with a solver of its own"
         )
         inner = [] if apart else inner_connections(plan)
-        self._remarks = exchanged_at_steps(plan, inner, apart, step_size)
+        self._remarks += exchanged_at_steps(plan, inner, apart, step_size)
         # Instances first, since the group's solver takes them over.
         self._components = make_components(
             plan, exchanges, slaves, step_size, check_interrupt, inner
@@ -279,12 +287,12 @@ class Simulation:
         return True
 
     def snapshot(self) -> Snapshot:
-        """State of the system at the end of the grid. Raises RunError if an FMU gives none."""
+        """State of the system at the end of the grid, tried. Raises RunError if an FMU gives none, or a part."""
         # Compiled components have their state in arrays; copy it to the objects first.
         if self._master is not None:
             self._master.give_back()
         try:
-            return take_snapshot(
+            taken = take_snapshot(
                 self._plan,
                 self._exchanges,
                 self._components,
@@ -292,6 +300,8 @@ class Simulation:
                 self._scenario,
                 self._active,
             )
+            check_restored(taken, self._exchanges, self._components, self._grid)
+            return taken
         except Failure as failure:
             raise RunError(failure.problem, self.table(complete=True)) from failure
 
@@ -307,12 +317,14 @@ class Simulation:
 
     def columns(self, choose: Callable[[list[str]], Iterable[str]] = tuple) -> list[Column]:
         """Columns of the rows so far; `choose` selects names from all names."""
-        n = self._recorders.n_rows
-        recorded = {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
-        columns = columns_of(self._plan, n, recorded)
+        columns = columns_of(self._plan, self._recorders.n_rows, self._recorded())
         # Copy the chosen columns: the arrays are used again by the next run.
         chosen = frozenset(choose([name for name, *_ in columns]))
         return [(c[0], np.array(c[1]), c[2], c[3]) for c in columns if c[0] in chosen]
+
+    def _recorded(self):
+        n = self._recorders.n_rows
+        return {kind: recorder.columns(n) for kind, recorder in self._recorders.by_kind.items()}
 
     def attributes(self, complete: bool) -> dict[str, object]:
         """Facts about the run. `complete` is 1 or 0, since NetCDF has no truth values."""
@@ -340,6 +352,7 @@ class Simulation:
         remarks += [
             text for component in self._components.values() for text in component.slave.remarks()
         ]
+        remarks += range_remarks(self._plan, self.row_times, self._recorded())
         return list(dict.fromkeys(remarks))
 
     def table(self, complete: bool) -> xarray.Dataset:

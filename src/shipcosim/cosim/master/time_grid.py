@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
-from shipcosim.scenario import Scenario, whole_steps
+from shipcosim.scenario import Scenario
 from shipcosim.scenario.check import step_times
+from shipcosim.units import whole_steps
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.cosim.slaves.slave import FATAL, OK
+from shipcosim.cosim.slaves.slave import ERROR, OK
 from shipcosim.ssp import Variable
 
 
@@ -124,8 +124,8 @@ class DirectCalls:
         return step
 
     def _failed(self, error):
-        self._log(FATAL, str(error))
-        return FATAL
+        self._log(ERROR, str(error))
+        return ERROR
 
 
 def _packer(buffer, code):

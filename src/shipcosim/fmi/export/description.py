@@ -27,8 +27,7 @@ DISPLAYED = {"rad": "deg", "rad/s": "deg/s"}
 LOG_CATEGORIES = {
     "logStatusOk": "what the component tells",
     "logStatusWarning": "what may be wrong",
-    "logStatusError": "what is wrong",
-    "logStatusFatal": "why the component stopped, with its traceback",
+    "logStatusError": "what is wrong: why the component stopped, with its traceback",
 }
 
 

@@ -11,7 +11,7 @@ from shipcosim.report.theme.views import Table
 from shipcosim.scenario import Event, Scenario
 from shipcosim.ssp import System
 
-SHOWN_ELSEWHERE = ("events", "remarks", "changed", "not_reached")
+SHOWN_ELSEWHERE = ("events", "remarks", "changed", "not_reached", "judged_on")
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,9 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
     -------
     Outcome
     """
+    # What holds in every row is judged on a part of a run too, which the sentence says.
+    part = table.attrs.get("judged_on")
+    judged_on = f" Judged on {part}." if part and verdicts else ""
     # An interrupted run is not judged: its windows may lie beyond its end.
     missed = sum(not v.passed for v in verdicts)
     if not is_complete(table):
@@ -58,18 +61,20 @@ def outcome(table: Dataset, verdicts: Sequence[Verdict]) -> Outcome:
             return Outcome(
                 "passed",
                 "PASS",
-                f"{len(verdicts)} of {len(verdicts) + left} hold, {left} not reached.",
+                f"{len(verdicts)} of {len(verdicts) + left} hold, {left} not reached.{judged_on}",
             )
         return Outcome("plain", "DONE", f"None of its {left} expectations was reached.")
     if not verdicts:
         return Outcome("plain", "DONE", "Nothing was expected of this run.")
     # A missed expectation outweighs those that were not reached.
     if missed:
-        return Outcome("failed", "FAIL", f"{missed} of {len(verdicts)} expectations missed.")
+        return Outcome(
+            "failed", "FAIL", f"{missed} of {len(verdicts)} expectations missed.{judged_on}"
+        )
     all_of_them = (
         f"All {len(verdicts)} expectations hold." if len(verdicts) > 1 else "The expectation holds."
     )
-    return Outcome("passed", "PASS", all_of_them)
+    return Outcome("passed", "PASS", f"{all_of_them}{judged_on}")
 
 
 def judged(verdicts: Sequence[Verdict], shown: Dataset) -> tuple[Judged, ...]:
@@ -86,7 +91,10 @@ def judged(verdicts: Sequence[Verdict], shown: Dataset) -> tuple[Judged, ...]:
     -------
     tuple of Judged
     """
-    return tuple(_judged(verdict, shown[verdict.expect.signal[0]].attrs) for verdict in verdicts)
+    whole = str(shown.attrs.get("judged_on", "the whole run"))
+    return tuple(
+        _judged(verdict, shown[verdict.expect.signal[0]].attrs, whole) for verdict in verdicts
+    )
 
 
 def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
@@ -114,11 +122,11 @@ def claims(expectations: Sequence[Expectation], table: Dataset) -> list[str]:
     return said
 
 
-def _judged(verdict: Verdict, shown_as: dict[str, Any]) -> Judged:
+def _judged(verdict: Verdict, shown_as: dict[str, Any], whole: str) -> Judged:
     expect = verdict.expect
     unit = shown_as["units"]
     factor = shown_as["factor"]
-    during = "{:g}–{:g} s".format(*expect.during) if expect.during else "the whole run"
+    during = "{:g}–{:g} s".format(*expect.during) if expect.during else whole
     worst = "no row"
     when = "–"
     # Without a row in its window there is no worst value.

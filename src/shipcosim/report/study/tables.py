@@ -87,11 +87,17 @@ def tables_of(swept: Swept, command: str) -> StudyTables:
     scenario = swept.plan.scenario
     views = swept.about["study"].get("view", ())
     beside, remarks = static_curves(views, scenario.system_path, scenario.parameter_paths)
+    remarks = [*swept.about.get("remarks", ()), *remarks]
     found = (
         re.fullmatch(r"run-([0-9]+)", page.parent.name) for page in folder.glob("run-*/report.html")
     )
     return StudyTables(
-        about={**swept.about, "beside": beside, "remarks": remarks, "ship": _ship(swept)},
+        about={
+            **swept.about,
+            "beside": beside,
+            "remarks": [*swept.about.get("remarks", ()), *remarks],
+            "ship": _ship(swept),
+        },
         runs=swept.runs,
         summary=swept.summary,
         tracks=read_part(tracks) if tracks.is_file() else None,
@@ -181,9 +187,9 @@ class Column:
         >>> Column("wind", FACTOR, "", "m/s", np.zeros(1)).text(7.5, with_name=True)
         'wind 7.5 m/s'
         """
-        # Infinite means never reached.
+        # Infinite means not reached before the end of the run.
         if not np.isfinite(value):
-            return "never" if value == np.inf else "–"
+            return "never in the run" if value == np.inf else "–"
         if self.labels:
             return self.labels[int(value)]
         if self.is_truth:

@@ -5,8 +5,8 @@ geometry, descriptions, files of any kind in the package.
 """
 
 from collections.abc import Iterable
-from pathlib import Path
 
+from shipcosim import library
 from shipcosim.errors import suggestion
 from shipcosim.ssp.edit import bindings, connections, elements
 from shipcosim.ssp.edit.connectors import declare
@@ -51,8 +51,9 @@ class SystemStructure(SystemContents):
         ----------
         name : str
             ``"tow"``, or ``"ship.tow"`` for one in a nested system.
-        fmu : path
-            The FMU. It comes along when the system is written.
+        fmu : path or name
+            The FMU. It comes along when the system is written; a run says where the copy is no longer that of its
+            source.
         kinds : iterable of str
             Kinds of the variables that get a connector. Parameters need none to be set.
         implementation : str, optional
@@ -66,9 +67,10 @@ class SystemStructure(SystemContents):
             If the FMU cannot be read, or the name is taken.
         """
         with self.changes():
-            description = read_fmu(fmu)
+            file = library.find("fmu", fmu, "fmu")
+            description = read_fmu(file)
             elements.add_component(
-                self._draft, name, Path(fmu), description, tuple(kinds), implementation, step_size
+                self._draft, name, file, description, tuple(kinds), implementation, step_size
             )
 
     def add_system(self, name: str) -> None:

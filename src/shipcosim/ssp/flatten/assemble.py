@@ -13,7 +13,7 @@ from shipcosim.ssp.flatten.outer_signals import OuterSignals
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.ports import Key
 from shipcosim.ssp.flatten.start_values import Settings
-from shipcosim.ssp.flatten.system import Component, System
+from shipcosim.ssp.flatten.system import Component, System, alias_remarks
 from shipcosim.ssp.flatten.walk import take_in
 from shipcosim.ssp.read.package import Package
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets, read_parameter_set
@@ -106,6 +106,7 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
         for found in resized(component):
             findings.error(component.name, found, RESIZE)
     remark_unconnected(components, connections, findings)
+    findings.problems += alias_remarks(components, connections)
     # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
     if findings.errors:
@@ -172,10 +173,22 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
                 element.place, f"Two components have the full name '{name}'.", "Rename one of them."
             )
         seen[name] = element
+    # Signals of the results: variables of components and connectors of the outermost system.
+    signals = {}
+    for path, (element, fmu) in tree.components.items():
+        for name in () if fmu is None else fmu.named("input", "output", "parameter"):
+            signal = ".".join((*path, name))
+            if signals.setdefault(signal, path) != path:
+                found = f"Two components have a variable whose full name is '{signal}'."
+                findings.error(element.place, found, "Rename one of the components.")
     for key, port in tree.ports.items():
-        if key.path == () and port.owner == "system" and key.name == "time":
-            found = "A connector of the system is called 'time', as the time of the results."
-            findings.error(port.place, found, "Rename it.")
+        if key.path == () and port.owner == "system":
+            if key.name == "time":
+                found = "A connector of the system is called 'time', as the time of the results."
+                findings.error(port.place, found, "Rename it.")
+            elif key.name in signals:
+                found = f"A connector of the system is called as the variable {key.name}."
+                findings.error(port.place, found, "Rename it.")
 
 
 def remark_unconnected(

@@ -165,6 +165,8 @@ class Settings:
         # Convert to the FMU's own unit, then check its bounds.
         convert = flow.in_unit(port.variable_unit or port.unit)
         if check_bounds(convert(value), variable, place, str(key), self.findings):
+            # In the order of application: of two names of one variable the last one set holds.
+            self.start[key.path].pop(key.name, None)
             self.start[key.path][key.name] = convert(value)
             self.tolerances[key.path].pop(key.name, None)
             # The tolerance is a difference: the offset of the unit must not enter.

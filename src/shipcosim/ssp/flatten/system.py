@@ -1,7 +1,9 @@
 """A system ready to run: flat, checked, with values in the units of the FMUs."""
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from shipcosim.errors import Problem, ShipcosimError, it_has, suggestion
 from shipcosim.ssp.flatten.connections import Connection
@@ -117,6 +119,11 @@ class System:
         default=(), repr=False, compare=False
     )  # keeps what was unpacked on disk
 
+    @property
+    def deviations(self) -> list[Problem]:
+        """Remarks on what a run does otherwise than the files ask; `check` names free inputs as well."""
+        return [one for one in self.remarks if one.flaw or one.where not in self.components]
+
     def __repr__(self) -> str:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
         return f"<System {self.name!r}: {counts}>"
@@ -177,3 +184,42 @@ class System:
         return Problem(
             where, f"There is no component or connector '{element}'.", suggestion(element, known)
         )
+
+
+def alias_remarks(
+    components: Mapping[str, Component], connections: Iterable[Connection]
+) -> list[Problem]:
+    """A remark where two names of one variable of an FMU get two values: which of them is used.
+
+    Parameters
+    ----------
+    components : mapping of str to Component
+        With their start values in the order in which they are set.
+    connections : iterable of Connection
+        Their values are set after the start values: parameters once, inputs in every step.
+    """
+    fed = {connection.target: connection.initial for connection in connections}
+    remarks = []
+    for component in components.values():
+        # Values by variable, in the order in which the FMU gets them; a connection's is not known.
+        given: dict[str, Any] = dict(component.start)
+        for is_initial in (True, False):
+            for name in component.fmu.variables:
+                if fed.get((component.name, name)) is is_initial:
+                    given.pop(name, None)
+                    given[name] = f"the value that is connected to {name}"
+        names: dict[tuple, dict[str, Any]] = defaultdict(dict)
+        for name, value in given.items():
+            variable = component.fmu.variables[name]
+            kind = "Integer" if variable.kind == "Enumeration" else variable.kind
+            if variable.negated and not isinstance(value, str):
+                value = -value
+            names[kind, variable.value_reference, variable.place][name] = value
+        for (_, reference, _), values in names.items():
+            if len(set(values.values())) > 1:
+                *others, used = values
+                found = f"{', '.join(others)} and {used} are one variable of its FMU (value reference {reference})"
+                found += f" and get different values; that of {used} is used."
+                where = f"{component.name}.{used}"
+                remarks.append(Problem(where, found, "Give one of them.", "remark"))
+    return remarks

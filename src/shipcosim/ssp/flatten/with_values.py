@@ -6,7 +6,7 @@ from math import isfinite
 
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp.flatten.start_values import check_bounds
-from shipcosim.ssp.flatten.system import Signal, System
+from shipcosim.ssp.flatten.system import Signal, System, alias_remarks
 from shipcosim.ssp.fmu.description import Variable
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
@@ -70,7 +70,11 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
         name: replace(component, start=starts[name])
         for name, component in system.components.items()
     }
-    return replace(system, components=components, inputs=inputs)
+    # Two names of one variable may have got two values, or no longer have them.
+    before = alias_remarks(system.components, system.connections)
+    kept = [remark for remark in system.remarks if remark not in before]
+    remarks = (*kept, *alias_remarks(components, system.connections))
+    return replace(system, components=components, inputs=inputs, remarks=remarks)
 
 
 TYPES_OF = {
@@ -111,6 +115,8 @@ def _set(
         found = f"It is of causality {variable.causality}, a value that the FMU calculates."
         findings.error(place, found, "Set parameters and inputs.")
     elif check_bounds(value, variable, place, variable.name, findings):
+        # In the order of setting: of two names of one variable the last one holds.
+        start.pop(variable.name, None)
         start[variable.name] = float(value) if variable.kind == "Real" else value
 
 

@@ -65,9 +65,27 @@ def read_variables(document: Document, findings: Findings) -> dict[str, Variable
                         "Names must differ.",
                     )
                 variables.setdefault(name, variable)
+                if outside := _start_outside(variable):
+                    findings.remark(document.place(element, name), outside)
             except ValueError as error:
                 findings.error(document.place(element, name), str(error))
     return variables
+
+
+def _start_outside(variable: Variable) -> str:
+    """Where a variable that can be set starts outside its own range; empty where it does not."""
+    low, high = variable.minimum, variable.maximum
+    start = variable.start
+    if variable.causality not in ("input", "parameter") or variable.required:
+        return ""
+    if not isinstance(start, (int, float)) or isinstance(start, bool):
+        return ""
+    if (low is None or start >= low) and (high is None or start <= high):
+        return ""
+    ends = [
+        f"{word} {end:g}" for word, end in (("at least", low), ("at most", high)) if end is not None
+    ]
+    return f"It starts with {start:g}. Its own range is {' and '.join(ends)}."
 
 
 def _names(element: etree._Element) -> Iterator[tuple[str, str]]:

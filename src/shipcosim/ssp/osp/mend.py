@@ -7,8 +7,8 @@ import lxml.etree as etree
 
 from shipcosim.ssp.osp.schema import NAMESPACE, SCHEMA
 from shipcosim.ssp.xml.document import Document, Findings, local
-from shipcosim.ssp.xml.mend import drop_empty_attributes, mend_boolean
-from shipcosim.ssp.xml.schemas import is_slip, names_in
+from shipcosim.ssp.xml.mend import drop_empty_attributes, drop_unknown, mend_boolean, sort_parts
+from shipcosim.ssp.xml.schemas import names_in
 
 VERSION = "0.1"
 """The only version of the format."""
@@ -52,23 +52,16 @@ def mend_osp(document: Document, findings: Findings) -> None:
         findings.flaw(document.place(root), f"{found}; {VERSION} is taken.", remedy)
     known = names_in(SCHEMA).elements
     for element in list(root.iter(etree.Element)):
-        _drop_unknown(document, element, known, findings)
+        drop_unknown(document, element, known, findings)
         drop_empty_attributes(document, element, findings, EMPTY_IS_ABSENT)
         mend_boolean(document, element, findings)
-    parts = [part for part in root if local(part)]
     # An empty time or algorithm says nothing.
-    for part in parts:
+    for part in [part for part in root if local(part)]:
         if local(part) in TEXTS and not (part.text or "").strip():
             root.remove(part)
             found = f"<{local(part)}> is empty; it is taken as if it were not there."
             findings.flaw(document.place(part), found, "Remove it.")
-    parts = [part for part in root if local(part)]
-    if all(local(part) in ORDER for part in parts):
-        ordered = sorted(parts, key=lambda part: ORDER.index(local(part)))
-        if ordered != parts:
-            root[:] = ordered
-            found = "Its parts are in another order than the schema's."
-            findings.flaw(document.place(root), found, f"Sort them: {', '.join(ORDER)}.")
+    sort_parts(document, root, ORDER, findings)
 
 
 def _set_namespace(document: Document, findings: Findings) -> None:
@@ -82,15 +75,3 @@ def _set_namespace(document: Document, findings: Findings) -> None:
     its = f"the namespace '{space}'" if space else "no namespace"
     found = f"It is in {its}; it is taken for one of {NAMESPACE}."
     findings.flaw(document.place(root), found, f'Add xmlns="{NAMESPACE}".')
-
-
-def _drop_unknown(
-    document: Document, element: etree._Element, known: frozenset[str], findings: Findings
-) -> None:
-    """Remove parts that the schema does not know and that are no misspelt known ones."""
-    for part in [part for part in element if local(part)]:
-        name = local(part)
-        if name not in known and not is_slip(name, known):
-            element.remove(part)
-            found = f"The element <{name}> is not of OSP's schema. It is not used."
-            findings.flaw(document.place(part), found, "Remove it.")

@@ -16,23 +16,22 @@ from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.start_values import Settings
 from shipcosim.ssp.flatten.swapped import take_swapped
-from shipcosim.ssp.flatten.system import System
+from shipcosim.ssp.flatten.system import System, alias_remarks
 from shipcosim.ssp.osp.connections import ConnectionReader
 from shipcosim.ssp.osp.functions import Function, read_function
 from shipcosim.ssp.osp.mend import mend_osp
 from shipcosim.ssp.osp.schema import NAMESPACE, validate_osp
 from shipcosim.ssp.osp.simulators import Simulators
 from shipcosim.ssp.osp.times import read_experiment
+from shipcosim.ssp.read.package import OSP_STRUCTURE, SYSTEM_STRUCTURE
 from shipcosim.ssp.read.parameters import ParameterSet, ParameterSets
 from shipcosim.ssp.xml.document import Document, Findings, local, parts_of, read_document
-
-OSP_STRUCTURE = "OspSystemStructure.xml"
 
 
 def osp_file(path: str | PathLike[str]) -> Path | None:
     """OspSystemStructure.xml of a path: the file, or that in a folder without an SSD; or None."""
     path = Path(path)
-    if path.is_dir() and not (path / "SystemStructure.ssd").is_file():
+    if path.is_dir() and not (path / SYSTEM_STRUCTURE).is_file():
         path = path / OSP_STRUCTURE
     return path if path.suffix.lower() == ".xml" and path.is_file() else None
 
@@ -120,6 +119,7 @@ def _system(
         components_of(tree, settings), experiment.step_size, findings, as_libcosim=True
     )
     remark_unconnected(components, connections, findings)
+    findings.problems += alias_remarks(components, connections)
     return System(
         name=Path(document.file).resolve().parent.name,
         file=document.file,

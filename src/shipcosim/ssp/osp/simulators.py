@@ -15,6 +15,7 @@ from shipcosim.ssp.fmu.reader import describe_fmu
 from shipcosim.ssp.osp.schema import NAMESPACE
 from shipcosim.ssp.osp.times import own_step
 from shipcosim.ssp.read.addresses import PROXY, alike, path_of
+from shipcosim.ssp.read.package import remark_copy
 from shipcosim.ssp.read.parameters import ParameterValue
 from shipcosim.ssp.read.structure import FMU, ComponentElement
 from shipcosim.ssp.xml.document import Document, Findings, local, reporting
@@ -127,9 +128,12 @@ class Simulators:
             # As an address, as a plain name, then by file name in the searched folders.
             path = url2pathname(parts.path) if parts.scheme else unquote(parts.path)
             paths = [self.document.folder / path, self.document.folder / source]
-            paths += [folder / Path(path).name for folder in self.searched]
+            elsewhere = [folder / Path(path).name for folder in self.searched]
+            paths += elsewhere
             paths += alike(paths[0])  # upper and lower case, as Windows takes them
             found = next((path for path in paths if path.is_file()), None)
+            if found is not None:
+                remark_copy(found, elsewhere, place, self.findings)
         except (ValueError, OSError) as error:
             self.findings.error(place, f"'{source[:80]}' is no usable address: {error}.")
             return None

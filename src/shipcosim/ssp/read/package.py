@@ -1,5 +1,6 @@
 """Files of a system: a .ssp (unpacked temporarily), a folder, or a .ssd with its files."""
 
+import filecmp
 import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -21,6 +22,7 @@ from shipcosim.ssp.xml.document import (
 from shipcosim.temporary import temporary_folder
 
 SYSTEM_STRUCTURE = "SystemStructure.ssd"
+OSP_STRUCTURE = "OspSystemStructure.xml"
 INSIDE = "Put the file beside the SSD, in resources/, and name it so."
 
 
@@ -151,6 +153,7 @@ class Package:
             found, name = held, found
         else:
             name = found if found in paths else paths[0]
+            remark_copy(found, elsewhere, place, findings)
         self.located[name.relative_to(folder).as_posix()] = found
         return found
 
@@ -215,6 +218,7 @@ def open_package(
     fmus = tuple(Path(folder) for folder in fmus)
     # A folder, a single SSD, or an archive that is unpacked for as long as the package lives.
     if path.is_dir():
+        remark_others(path, shown, variant or SYSTEM_STRUCTURE, variant, findings)
         return Package(path, shown, variant or SYSTEM_STRUCTURE, fmus)
     if not path.is_file():
         findings.error(
@@ -239,7 +243,31 @@ def open_package(
             shown, f"The archive has no {package.ssd} at its top.", it_has(package.ssd, there)
         )
         return None
+    remark_others(package.folder, shown, package.ssd, variant, findings)
     return package
+
+
+def remark_copy(found: Path, elsewhere: Iterable[Path], place: str, findings: Findings) -> None:
+    """Add a remark where an FMU runs that lies beside its system, and the project has another one of its name."""
+    other = next((path for path in elsewhere if path.is_file()), found)
+    if not filecmp.cmp(found, other, shallow=False):
+        text = f"{found.name} beside the system runs. It is not the same as {other}, which does not run."
+        findings.remark(place, text, "Delete the copy to run that one, or copy it again.")
+
+
+def remark_others(folder: Path, shown: str, taken: str, asked: str, findings: Findings) -> None:
+    """Add a remark where a folder has several system structures and nobody asked for the one that runs."""
+    others = sorted(
+        file.name
+        for file in folder.iterdir()
+        if file.is_file() and (file.suffix.lower() == ".ssd" or file.name == OSP_STRUCTURE)
+    )
+    if not asked and taken in others and len(others) > 1:
+        others.remove(taken)
+        found = (
+            f"It holds {len(others) + 1} system structures. {taken} runs, not {', '.join(others)}."
+        )
+        findings.remark(shown, found, "Name the one to run: FOLDER/NAME, or ARCHIVE.ssp#NAME.")
 
 
 def read_in_component(

@@ -5,7 +5,7 @@ Each is reported as a flaw of the document.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
 import lxml.etree as etree
@@ -96,8 +96,8 @@ def mend(document: Document, tag: str) -> None:
         if is_type and element.get("name") is None and _prefix_in(element) == "ssc":
             element.set("name", "")
         mend_boolean(document, element, noted)
-        _drop_unknown(document, element, noted)
-        _sort(document, element, noted)
+        _drop_what_1_0_lacks(document, element, noted)
+        sort_parts(document, element, ORDER.get(local(element), "").split(), noted)
         _join_lists(document, element, noted)
         _drop_empty_lists(document, element, noted)
         _drop_repeated(document, element, noted)
@@ -253,13 +253,19 @@ def mend_boolean(document: Document, element: etree._Element, noted: Findings) -
             )
 
 
-def _drop_unknown(document: Document, element: etree._Element, noted: Findings) -> None:
-    """Remove elements unknown to SSP 1.0 that are no misspelt known ones."""
+def _drop_what_1_0_lacks(document: Document, element: etree._Element, noted: Findings) -> None:
+    """Remove parts that SSP 1.0 does not know; what 1.0 lacks may be something of 2.0."""
     if (document.root.get("version") or "").startswith("2"):
-        return  # what is unknown there may be something of 2.0
-    known = names_of("ssd").elements | set(KINDS) | {"Dimension", "MetaData", "Signature"}
-    if local(element) not in known or local(element) == "Annotation" or local(element) in KINDS:
         return
+    known = names_of("ssd").elements | set(KINDS) | {"Dimension", "MetaData", "Signature"}
+    if local(element) in known and local(element) != "Annotation" and local(element) not in KINDS:
+        drop_unknown(document, element, known, noted)
+
+
+def drop_unknown(
+    document: Document, element: etree._Element, known: Collection[str], noted: Findings
+) -> None:
+    """Remove parts of an element that are not known and are no misspelt known ones."""
     for part in [part for part in element if local(part)]:
         name = local(part)
         if name not in known and not is_slip(name, known):
@@ -271,9 +277,10 @@ def _drop_unknown(document: Document, element: etree._Element, noted: Findings) 
             element.remove(part)
 
 
-def _sort(document: Document, element: etree._Element, noted: Findings) -> None:
-    # Only elements all of whose parts are known can be sorted.
-    order = ORDER.get(local(element), "").split()
+def sort_parts(
+    document: Document, element: etree._Element, order: Sequence[str], noted: Findings
+) -> None:
+    """Sort the parts of an element as the standard orders them; only where all of them are known."""
     parts = [part for part in element if local(part)]
     if not order or any(local(part) not in order for part in parts):
         return

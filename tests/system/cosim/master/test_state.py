@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from ships import given_to
 
-from shipcosim.cosim import RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
+from shipcosim.cosim import RunError, RunOptions, Snapshot, read_snapshot, simulate, write_snapshot
 from shipcosim.cosim.master.component import set_start_values
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
@@ -240,6 +240,60 @@ def test_components_that_cannot_be_stored_are_named_before_the_run(pythonfmu_sys
         for problem in error.value.problems
     ]
     assert found == [("stock", True), ("other", True)]
+
+
+HIDDEN = """
+from pythonfmu import Fmi2Slave, Fmi2Causality, Real
+
+
+class Hidden(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.y = self.hidden = 0.0
+        self.register_variable(Real("y", causality=Fmi2Causality.output))
+
+    def do_step(self, t, h):
+        self.hidden += h
+        self.y = self.hidden
+        return True
+"""
+OWN_STATE = """
+    def _get_fmu_state(self):
+        return {**super()._get_fmu_state(), "hidden": self.hidden}
+"""
+
+
+PART_OF_IT = """
+    def _get_fmu_state(self):
+        return super()._get_fmu_state()
+"""
+
+
+def test_a_state_that_leaves_something_out_is_not_stored(pythonfmu_code, make_scenario):
+    options = {"canGetAndSetFMUstate": True, "canSerializeFMUstate": True}
+    system = pythonfmu_code(HIDDEN + PART_OF_IT, **options)
+    taken = []
+    for isolate in (False, True):
+        with pytest.raises(RunError, match="its state is not complete") as error:
+            how = RunOptions(until=0.5, store=taken.append, isolate=isolate)
+            simulate(system, make_scenario(1.0, 0.1), how)
+        assert error.value.table.sizes["time"] == 6 and not taken
+
+
+@pytest.mark.parametrize("own", ["", OWN_STATE])
+def test_what_pythonfmu_does_not_store_is_refused_or_stored_by_the_class(
+    pythonfmu_code, make_scenario, own
+):
+    system = pythonfmu_code(HIDDEN + own, canGetAndSetFMUstate=True, canSerializeFMUstate=True)
+    scenario, taken = make_scenario(1.0, 0.1), []
+    options = RunOptions(until=0.5, store=taken.append)
+    if not own:
+        with pytest.raises(ShipcosimError, match="stores its registered variables alone"):
+            simulate(system, scenario, options)
+        return
+    first = simulate(system, scenario, options)
+    rest = simulate(system, scenario, RunOptions(resume=taken[0]))
+    assert_same(simulate(system, scenario), first, rest)
 
 
 @pytest.fixture

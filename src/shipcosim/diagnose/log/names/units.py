@@ -4,6 +4,7 @@ import re
 from functools import cache
 
 from shipcosim.diagnose.log.names.vocabulary import vocabulary
+from shipcosim.dialects import name_in
 from shipcosim.units import relation, spelled_unit
 
 _BRACKETS = re.compile(r"^(?P<name>.*?)\s*\[(?P<unit>[^\[\]]*)\]\s*$")
@@ -39,6 +40,11 @@ def name_and_unit(header: str) -> tuple[str, str]:
     >>> name_and_unit("surge (m/s)"), name_and_unit("time [s]"), name_and_unit("heading (true)")
     (('surge', 'm/s'), ('time', 's'), ('heading (true)', ''))
     """
+    # A name that we have written in quotes is taken as it is.
+    if (found := _BRACKETS.match(header.strip())) and (name := name_in(found["name"])) != found[
+        "name"
+    ]:
+        return name, found["unit"].strip()
     header = header.strip().strip("'\"").strip()
     if found := _BRACKETS.match(header):
         return found["name"].strip(), found["unit"].strip()

@@ -87,11 +87,18 @@ static struct {
     FUNCTIONS(FIELD)
 } other;
 
+/* pythonfmu's binary calls every exception fatal, after which FMI lets a host call nothing of any instance. The
+   instance is as it was before the call, and the others as well: an error. */
+static Status not_fatal(Status status)
+{
+    return status == FATAL ? ERROR : status;
+}
+
 /* No component is what a failed fmi2Instantiate gave, and nothing may be loaded then. */
 #define PASS_ON(name, parameters, arguments) \
     EXPORT Status fmi2##name parameters \
     { \
-        return component ? other.name arguments : ERROR; \
+        return component ? not_fatal(other.name arguments) : ERROR; \
     }
 FUNCTIONS(PASS_ON)
 
@@ -167,7 +174,7 @@ static void tell(const Callbacks *host, const char *name, Status status, const c
    only names functions of C. */
 static void log_for(void *environment, const char *name, Status status, const char *category, const char *format, ...)
 {
-    static const char *const categories[] = {"Ok", "Warning", "Discard", "Error", "Fatal", "Pending"};
+    static const char *const categories[] = {"Ok", "Warning", "Discard", "Error", "Error", "Pending"};
     static const char before_exceptions[] = "Fatal py exception encountered: ";
     const Instance *instance = environment;
     va_list values;
@@ -186,7 +193,7 @@ static void log_for(void *environment, const char *name, Status status, const ch
     va_end(values);
     snprintf(own, sizeof own, "logStatus%s", categories[status <= PENDING ? status : ERROR]);
     second = strncmp(text, before_exceptions, sizeof before_exceptions - 1) ? NULL : strchr(text, '\n');
-    tell(&instance->host, name, status, category ? category : own, second ? second + 1 : text);
+    tell(&instance->host, name, not_fatal(status), category ? category : own, second ? second + 1 : text);
     free(text);
 }
 
