@@ -240,9 +240,10 @@ def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     progress("how does the ship answer?")
     if problem.comparison.obstacles:
         return judged(with_causes(problem))
-    identification = with_learnt_form(corrected(problem))
+    plain = corrected(problem)
+    identification = with_learnt_form(plain)
     progress("which causes explain it?")
     explained = with_settled_form(with_causes(identification))
-    explained = with_course(with_right_inputs(explained))
+    explained = with_course(with_right_inputs(explained), plain)
     progress("what do healthy ships look like?")
     return with_crude_model(judged(explained))

@@ -22,6 +22,7 @@ from shipcosim.diagnose.explanation.course import (
     CourseFound,
     SizeOverTime,
 )
+from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.explanation.search import ExplainedLog, without_causes
 from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import admissible
@@ -35,6 +36,7 @@ from shipcosim.diagnose.inference.fitting import (
     deviations,
     fitted,
     own_columns,
+    prepared,
 )
 from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
@@ -43,15 +45,18 @@ from shipcosim.diagnose.inference.problem import identification_problem
 from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
 from shipcosim.diagnose.inference.thresholds import (
     APART,
+    CALM_WALK,
     COURSE_BLOCK,
     COURSE_GAIN,
     DEVIATIONS,
     ENOUGH,
+    FORM_COST,
     LIKELIEST_COURSES,
     MOST_COURSE_BLOCKS,
     ROUNDS_OF_COURSE,
     SHORTEST_SPELL,
     SIZES_OVER_TIME,
+    WALK_IN_YAW,
 )
 
 
@@ -103,20 +108,31 @@ class _Fitted(NamedTuple):
         return self.fit.covariance[count:, count:]
 
 
-def with_course(explained: ExplainedLog) -> ExplainedLog:
+def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     """The log with a cause that has a course, where that explains it better than any set of steady causes.
 
-    The identification is then of the rows in which the cause acts, with it and without.
+    Parameters
+    ----------
+    given : ExplainedLog
+    plain : Identification
+        The log before another form of the ship's loads was learnt from it: such a form, free in every row, hides changes.
+
+    Returns
+    -------
+    ExplainedLog
+        As given, or with the course and of the rows in which the cause acts.
     """
-    found = explained.identification
-    problem = found.problem
+    found = given.identification
     if found.comparison.obstacles or any(fault.alternatives for fault in found.faults):
-        return explained
-    likely = [one for base in _bases(explained) for one in _tries(problem, base)]
-    tries = sorted((_fitted(problem, one) for one in likely), key=lambda one: -one.score)
-    tries = [one for one in tries if _is_clear(one)]
-    if not tries or tries[0].score < explained.fits[0].score + COURSE_GAIN:
-        return explained
+        return given
+    explained, tries = max(
+        ((one, _clear_tries(one)) for one in (given, *_otherwise(given, plain))),
+        key=lambda pair: pair[1][0].score - _cost(pair[0]) if pair[1] else -np.inf,
+    )
+    steady = given.fits[0].score - _cost(given)
+    if not tries or tries[0].score - _cost(explained) < steady + COURSE_GAIN:
+        return given
+    problem = explained.identification.problem
     # Fewer causes are preferred where they explain the log nearly as well.
     best = next(
         one
@@ -138,7 +154,7 @@ def with_course(explained: ExplainedLog) -> ExplainedLog:
     course = CourseFound(
         _finding(best, float(chances[0])),
         hypothesis,
-        best.score - explained.fits[0].score,
+        best.score - _cost(explained) - steady,
         rivals,
         _sizes_over_time(problem, best),
         {of.name: of.neutral * of.factor for of in hypothesis.parameters},
@@ -147,6 +163,36 @@ def with_course(explained: ExplainedLog) -> ExplainedLog:
         unmodelled_gains(problem, best.fit),
     )
     return _of_its_rows(explained, best.of, course)
+
+
+def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
+    """Causes with a course that are large enough to be named, likeliest first."""
+    problem = explained.identification.problem
+    likely = [one for base in _bases(explained) for one in _tries(problem, base)]
+    fitted = (_fitted(problem, one) for one in likely)
+    return sorted((one for one in fitted if _is_clear(one)), key=lambda one: -one.score)
+
+
+def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[ExplainedLog]:
+    """The log without a cause as it is sought besides: by the model's form, and with a force that wanders no faster
+    than on healthy ships, as noise that was tuned without the course grows to cover it.
+    """
+    found = given.identification
+    if found.faults != plain.faults:  # labels were put right since
+        return
+    if found.problem.model.form_scale:
+        yield replace(given, identification=plain, fits=(fitted(plain.problem),))
+    walk = np.minimum(plain.problem.noise.walk, CALM_WALK * np.array([1.0, 1.0, WALK_IN_YAW]))
+    if np.any(walk < 0.9 * np.asarray(plain.problem.noise.walk)):
+        noise = replace(plain.problem.noise, walk=walk)
+        calm = prepared(replace(plain.problem, noise=noise), rounds=1)
+        yield replace(given, identification=replace(plain, problem=calm), fits=(fitted(calm),))
+
+
+def _cost(explained: ExplainedLog) -> float:
+    """What the form of a log's ship costs, where it is another than the model's. [nats]"""
+    model = explained.identification.problem.model
+    return FORM_COST if model.form_scale and not model.directions else 0.0
 
 
 def _bases(explained: ExplainedLog) -> list[Fit]:

@@ -97,6 +97,11 @@ LIKELIEST_COURSES = 4
 """Causes that are fitted with a course, the likeliest of twice as many that are looked at closely."""
 ROUNDS_OF_COURSE = 3
 """Rounds of linearisation of such a fit."""
+CALM_WALK = 3e-6
+"""Random walk of the unexplained acceleration beside which courses are sought, too. [m/s2.5] Healthy developing logs have
+a third of it, one with a tow that came and went ten times it."""
+WALK_IN_YAW = 0.12
+"""The same of the acceleration in yaw. [1/m] As tuned on the same logs."""
 SHORTEST_SPELL = 300.0
 """Spell of a cause whose rows are predicted by themselves. [s] Assumed."""
 SIZES_OVER_TIME = 12
