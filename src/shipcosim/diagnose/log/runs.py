@@ -16,6 +16,8 @@ from shipcosim.ssp import AnyPath
 LogSource = AnyPath | xarray.Dataset
 """A log: a file, the folder of a run, or a table."""
 
+_LONGEST_HEADER = 1 << 20
+"""Characters of a header that are looked at: what unpacks to one line without end is no table of a run."""
 _SHIP = {
     "north": ("x", "m"),
     "east": ("y", "m"),
@@ -141,8 +143,10 @@ def _names_components(path: Path) -> bool:
     """Whether a file has columns with a dot in their names, of which nothing but the names is read."""
     try:
         return any("." in name for name in _names(path))
-    except (OSError, EOFError, ValueError):
-        return False  # reading it says what is wrong
+    except (
+        Exception
+    ):  # of a damaged file the libraries raise anything; reading it says what is wrong
+        return False
 
 
 def _names(path: Path) -> list[str]:
@@ -154,7 +158,7 @@ def _names(path: Path) -> list[str]:
         return []
     opened = gzip.open if path.suffix == ".gz" else open
     with opened(path, "rt", encoding="utf-8") as file:
-        return [name.partition("[")[0] for name in file.readline().split(",")]
+        return [name.partition("[")[0] for name in file.readline(_LONGEST_HEADER).split(",")]
 
 
 def _is_run(signals: Mapping[str, object]) -> bool:
