@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, reading
 from shipcosim.series import make_table, read_columns
 from shipcosim.ssp import AnyPath
 
@@ -97,10 +97,12 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         for name in signals
         if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name
     }
-    table = make_table(
-        np.asarray(signals["time"], float),
-        [_column(*pair, ship, signals, units) for pair in named.items()],
-    )
+    # Damaged cells make a column of texts.
+    with reading(file.get("source", "log")):
+        table = make_table(
+            np.asarray(signals["time"], float),
+            [_column(*pair, ship, signals, units) for pair in named.items()],
+        )
     table.encoding |= file
     return table
 
