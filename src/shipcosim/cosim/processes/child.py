@@ -89,9 +89,15 @@ def serve() -> None:
                 failure = None
 
 
-def end_with_parent() -> None:
-    """Have this process end where the one that started it ends, also where that is killed."""
-    parent = os.getppid()
+def end_with_parent(parent: int | None = None) -> None:
+    """Have this process end where the one that started it ends, also where that is killed.
+
+    Parameters
+    ----------
+    parent : int, optional
+        Number of that process, where it may have ended already.
+    """
+    parent = os.getppid() if parent is None else parent
     # Linux does it itself. Elsewhere a thread looks whether the parent has changed.
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
