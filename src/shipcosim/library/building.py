@@ -106,6 +106,7 @@ def _build_into_cache(root: Path, folder: Path) -> None:
         ) from None
     with stage as name:
         made = Path(name, "fmus")
+        made.mkdir()
         build_all(root / "fmus", out=made)
         try:
             made.rename(folder)
