@@ -70,6 +70,9 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Quantity | N
                 "Write '# source: ...' above it.",
             )
         )
+    if not rows:
+        problems.append(Problem(str(file), "it has no rows.", "Write a header, then numbers."))
+        return None
     # Each row has a number for each column.
     for number, row in enumerate(rows, 1):
         if len(row) != len(header) or not all(_is_number_text(cell) for cell in row):
