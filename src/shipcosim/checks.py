@@ -317,9 +317,9 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
     problems = check_file(file, fmus=fmus)
     is_readable = not any(problem.severity == "error" for problem in problems)
     if path.suffix.lower() == ".fmu" and is_readable:
-        from shipcosim.cosim.slaves.validation import validation_problems
+        from shipcosim.cosim.slaves.validation import missing_libraries, validation_problems
 
-        problems += validation_problems(path)
+        problems += [*validation_problems(path), *missing_libraries(path)]
     if any(problem.severity == "error" for problem in problems):
         missing = [
             folder

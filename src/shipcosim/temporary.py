@@ -31,6 +31,29 @@ def temporary_folder(
     return tempfile.TemporaryDirectory(prefix=prefix, dir=parent, ignore_cleanup_errors=True)
 
 
+def replace_file(path: Path, content: bytes) -> None:
+    """Write a file beside its place, then rename it: nobody reads half of it, and no half of it stays.
+
+    Parameters
+    ----------
+    path : Path
+        Its place; the folder is made if needed.
+    content : bytes
+        All of it.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with temporary_folder(path.parent, unfinished=True) as folder:
+        new = Path(folder, path.name)
+        new.write_bytes(content)
+        new.chmod(0o644)  # others may read it, whatever the umask is
+        os.replace(new, path)
+
+
 def _clear(parent: Path) -> None:
     """Remove folders of processes of this machine that have ended."""
     with suppress(OSError):

@@ -7,6 +7,8 @@ import sys
 
 import pint
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from shipcosim.units import (
     BASE_UNITS,
@@ -21,6 +23,26 @@ from shipcosim.units import (
     spelled_conversion,
     spelled_unit,
 )
+
+PARTS = st.sampled_from(
+    "m s deg kn C dB % ° µ ² 9 1e9 0 ** ^ * / . ( ) - + , = @ ' [ ]".split() + [" "]
+)
+
+
+@given(st.lists(PARTS, min_size=1, max_size=8).map("".join))
+@settings(max_examples=200, deadline=None)
+def test_a_text_is_a_unit_or_is_refused_as_one(text):
+    """pint, which is asked in the end, raises anything."""
+    for convert in (
+        lambda: spelled_unit(text),
+        lambda: spelled_conversion(text, "m"),
+        lambda: number_in(f"5 {text}", fmi_unit("m")),
+    ):
+        try:
+            convert()
+        except UnitError:
+            pass
+
 
 REGISTRY = pint.UnitRegistry()
 SAME_IN_PINT = {

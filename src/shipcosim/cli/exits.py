@@ -33,6 +33,11 @@ def guarded(function: Callable[..., Any]) -> Callable[..., Any]:
         except KeyboardInterrupt:
             say("Interrupted.", err=True)
             raise typer.Exit(INTERRUPTED) from None
+        except OSError as error:
+            # The disk or the rights, not shipcosim: a name that is too long, a folder that nobody may write.
+            place = str(error.filename or "system")
+            explain([Problem(place, f"{error.strerror or error}.")], debug)
+            raise typer.Exit(UNUSABLE) from None
         except Exception as error:
             remedy = "This is a fault of shipcosim. Run the command again with --debug for the traceback."
             explain([Problem("shipcosim", f"{type(error).__name__}: {error}", remedy)], debug)

@@ -14,7 +14,7 @@ import typer
 from shipcosim import library
 from shipcosim.cli.console import print_problems, shown_path
 from shipcosim.cli.terminal import say
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, reading
 from shipcosim.ships.writing import LAYOUTS, Answers, ship_text, thruster_from, usual
 from shipcosim.temporary import temporary_folder
 
@@ -136,7 +136,8 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
     project = library.project_of() or Path.cwd()
     target = project / "ships" / name / "ship.toml"
     source = file_of(library.find("ship", origin)) if origin else target
-    text = source.read_text(encoding="utf-8-sig") if origin and source.is_file() else ""
+    with reading(source):
+        text = source.read_text(encoding="utf-8-sig") if origin and source.is_file() else ""
     text = text if answers is None else ship_text(answers)
     ship = describe(source, read_file(source) if answers is None else file_from(text, target))
     found = check_described(ship)

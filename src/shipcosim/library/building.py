@@ -3,14 +3,13 @@
 import functools
 import hashlib
 import os
-import shutil
-import tempfile
 from pathlib import Path
 
 from shipcosim import __version__
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.library.names import fmu_sources
 from shipcosim.library.places import CACHE, PACKAGE, StrPath, cache, project_of, shipped
+from shipcosim.temporary import temporary_folder
 
 IN_EVERY_FMU = ("interfaces", "models", "angles.py", "fmi", "units.py")
 """Of this package: what travels in FMUs, and what builds them."""
@@ -107,21 +106,21 @@ def _build_into_cache(root: Path, folder: Path) -> None:
 
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".building-"))
+        stage = temporary_folder(folder.parent, unfinished=True)
     except OSError as error:
         remedy = f"Set {CACHE} to a folder that can be written to."
         raise ShipcosimError(
             Problem(str(folder), f"cannot be written: {error.strerror}.", remedy)
         ) from None
-    try:
-        build_all(root / "fmus", out=temporary)
-        temporary.chmod(0o755)
-        temporary.rename(folder)
-    except OSError:
-        if not folder.is_dir():  # else another process was first, with the same FMUs
-            raise
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    with stage as name:
+        made = Path(name, "fmus")
+        made.mkdir()
+        build_all(root / "fmus", out=made)
+        try:
+            made.rename(folder)
+        except OSError:
+            if not folder.is_dir():  # else another process was first, with the same FMUs
+                raise
 
 
 @functools.cache

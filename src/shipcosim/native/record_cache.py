@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import pickle
 import sys
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -17,6 +15,7 @@ import shipcosim
 from shipcosim.library import cache
 from shipcosim.native.number_rows import Flat
 from shipcosim.native.trace import Shape, Step
+from shipcosim.temporary import replace_file
 
 
 class KeptCall(NamedTuple):
@@ -132,14 +131,9 @@ def keep_record(key: str, record: Record) -> None:
     """Add a record to the cached ones of its key. A cache that cannot be written keeps nothing."""
     path = _path(key)
     try:
-        # The newest first; old ones drop out beyond the limit. The rename keeps readers from half a
-        # file.
+        # The newest first; old ones drop out beyond the limit.
         records = pickle.loads(path.read_bytes()) if path.is_file() else []
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(pickle.dumps([record, *records][:MOST]))
-        os.replace(temporary, path)
+        replace_file(path, pickle.dumps([record, *records][:MOST]))
     except (
         OSError,
         EOFError,

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from shipcosim.errors import Problem
+from shipcosim.errors import Problem, reading
 
 
 class Quantity(NamedTuple):
@@ -47,7 +47,8 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Quantity | N
     if not file.is_file():
         problems.append(Problem(where, f"there is no file {file}."))
         return None
-    lines = file.read_text(encoding="utf-8").splitlines()
+    with reading(file):
+        lines = file.read_text(encoding="utf-8").splitlines()
     # The source stands in a comment above the table.
     source = next(
         (
@@ -69,6 +70,9 @@ def table_entry(file: Path, where: str, problems: list[Problem]) -> Quantity | N
                 "Write '# source: ...' above it.",
             )
         )
+    if not rows:
+        problems.append(Problem(str(file), "it has no rows.", "Write a header, then numbers."))
+        return None
     # Each row has a number for each column.
     for number, row in enumerate(rows, 1):
         if len(row) != len(header) or not all(_is_number_text(cell) for cell in row):

@@ -103,7 +103,7 @@ def number_in(found: Any, unit: str) -> float:
     if isinstance(found, str) and not _PLAIN.fullmatch(found):
         value = units.number_in(found, units.spelled_unit(unit))
     elif isinstance(found, (int, float, str)) and not isinstance(found, bool):
-        value = float(found)
+        value = math.inf if isinstance(found, int) and abs(found) > 1e300 else float(found)
     else:
         raise ValueError(
             f"found {_text(found)}. Write a number in {unit}, or a text such as '12.5 {unit}'."

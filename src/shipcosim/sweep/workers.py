@@ -6,10 +6,12 @@ import os
 import pickle
 import signal
 import sys
+import tempfile
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from types import ModuleType
@@ -94,7 +96,8 @@ class Processes(Workers):
         return isinstance(error, (BrokenExecutor, CancelledError))
 
     def _new(self) -> ProcessPoolExecutor:
-        return ProcessPoolExecutor(self.n, mp_context=get_context("spawn"), initializer=_begin)
+        begin = partial(_begin, os.getpid(), self._folder.name)
+        return ProcessPoolExecutor(self.n, mp_context=get_context("spawn"), initializer=begin)
 
     def _end(self) -> None:
         # Processes in a crashed or hanging run would not end by themselves.
@@ -172,9 +175,12 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _begin() -> None:
-    """Prepare a worker: it ends with this process, no Ctrl-C, and one thread for numerical libraries."""
-    end_with_parent()
+def _begin(parent: int, folder: str) -> None:
+    """Prepare a worker: it ends with its parent, no Ctrl-C, and one thread for numerical libraries."""
+    end_with_parent(parent)
+    # Workers are ended by a signal and remove nothing: what they leave goes with the folder of the study.
+    tempfile.tempdir = folder
+    os.environ["TMPDIR"] = folder
     # All cores have a process each; more threads would only compete.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     from threadpoolctl import threadpool_limits

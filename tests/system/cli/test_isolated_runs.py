@@ -1,7 +1,13 @@
 """--isolate: components in processes of their own."""
 
+import subprocess
+import sys
+
+import pytest
+
 from shipcosim.series import read_table
 
+QUIT = "import ctypes; ctypes.CDLL(None).exit(0)"
 PARTIAL = ["result-partial.csv", "result-partial.html", "result-partial.nc"]
 
 
@@ -59,3 +65,18 @@ def test_a_time_limit_alone_and_one_that_is_none_are_refused(call, project):
     )
     assert (alone.code, none.code) == (2, 2)
     assert "Without isolate" in alone.err and "0 s is no time limit" in none.err
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the guard uses C's list of Linux")
+@pytest.mark.parametrize("command", ["run fill", "simulate tank --stop-time 5 --step-size 0.1"])
+@pytest.mark.parametrize("isolate", [[], ["--isolate"]])
+def test_an_fmu_that_calls_exit_0_is_no_run_that_went_well(project, command, isolate):
+    file = project / "fmus" / "lag" / "lag.py"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace('raise ValueError("the pump has run dry")', QUIT))
+    main = [sys.executable, "-c", "from shipcosim.cli import main; main()"]
+    started = [*main, *command.split(), "--set", "lag.fails_at=2.0", "--out", "out", *isolate]
+    ended = subprocess.run(started, capture_output=True, text=True, check=False)
+    assert ended.returncode == 1
+    assert "ended itself in DoStep" in ended.stderr if isolate else "--isolate" in ended.stderr
+    assert not list(project.rglob("*.unfinished*"))

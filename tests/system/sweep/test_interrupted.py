@@ -109,3 +109,37 @@ def test_a_killed_study_goes_on_where_it_stopped(project, study):
     )
     assert 1 < done[0] <= 12 and done[-1] == 12, "what was on disk was not done again"
     pandas.testing.assert_frame_equal(rest.runs, whole.runs)
+
+
+def marked(text):
+    """Processes with a text in their environment that are not only waiting to be asked how they ended."""
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        try:
+            ended = ") Z " in (process / "stat").read_text()
+            if not ended and text.encode() in (process / "environ").read_bytes():
+                found.append(process.name)
+        except OSError:
+            pass
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux ends children with their parent")
+@pytest.mark.parametrize("seconds", [1.1, 2.5])
+def test_nothing_is_left_of_a_study_that_is_killed_after_the_next(project, seconds):
+    """Also where its workers have just been started and do not know their parent yet."""
+    temporary = project / "temporary"
+    temporary.mkdir()
+    environment = os.environ | {"TMPDIR": str(temporary), "MARK": str(project)}
+    command = [*SWEEP, "killed", "levels"]
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)
+    time.sleep(seconds)
+    process.kill()
+    process.wait()
+    deadline = time.monotonic() + 60.0
+    while marked(f"MARK={project}") and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert not marked(f"MARK={project}")
+    again = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert again.returncode == 0, again.stderr
+    assert not list(temporary.iterdir()) and not list(project.rglob("*.unfinished*"))

@@ -10,7 +10,7 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, reading
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -120,7 +120,8 @@ def system_files(name: str, origin: str) -> Files:
         raise ShipcosimError(
             Problem(origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy)
         )
-    text = (folder / STRUCTURE).read_text(encoding="utf-8")
+    with reading(folder / STRUCTURE):
+        text = (folder / STRUCTURE).read_text(encoding="utf-8")
     named = re.search(r'<(?:\w+:)?System\b[^>]*?\sname="([^"]*)"', text)
     if named:
         text = text.replace(f'name="{named[1]}"', f'name="{name}"', 2)

@@ -117,7 +117,7 @@ def _say(swept: Swept) -> None:
         console.print(text, markup=False)
     if "indices" in swept.tables:
         _say_indices(console, swept)
-    if "trials" in swept.tables:
+    if "pareto" in swept.tables.get("trials", ()):  # not where no trial is done yet
         _say_trials(console, swept)
     for remark in swept.about.get("remarks", ()):
         console.print(remark, markup=False)

@@ -20,24 +20,37 @@ from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 from shipcosim.ssp import Component, Variable
 
+MARK = b"shipcosim"
+"""Begin of each message between a run and the process of a component."""
 DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux: a component that hangs does not outlive the run
 
 
+class Garbled(Exception):
+    """What came through a pipe is no message: an FMU has written into it."""
+
+
 def send(pipe: BinaryIO, message: object) -> None:
-    # Length and content: a pipe has no boundaries between messages.
     """Write a message into a pipe."""
+    # Mark, length and content: a pipe has no boundaries between messages.
     data = pickle.dumps(message, protocol=5)
-    pipe.write(len(data).to_bytes(8, "little") + data)
+    pipe.write(MARK + len(data).to_bytes(8, "little") + data)
     pipe.flush()
 
 
 def receive(pipe: BinaryIO) -> Any:
-    """Read a message from a pipe. Raises EOFError where the other end is closed."""
-    head = pipe.read(8)
-    data = pipe.read(int.from_bytes(head, "little"))
-    if len(head) < 8 or len(data) < int.from_bytes(head, "little"):
+    """Read a message from a pipe. Raises EOFError where the other end is closed, Garbled where it is no message."""
+    head = pipe.read(len(MARK) + 8)
+    # Without the mark the length may be any number, and reading would not end.
+    if not head.startswith(MARK[: len(head)]):
+        raise Garbled
+    size = int.from_bytes(head[len(MARK) :], "little")
+    data = pipe.read(size)
+    if len(head) < len(MARK) + 8 or len(data) < size:
         raise EOFError
-    return pickle.loads(data)
+    try:
+        return pickle.loads(data)
+    except Exception as error:
+        raise Garbled from error
 
 
 def serve() -> None:
@@ -76,9 +89,15 @@ def serve() -> None:
                 failure = None
 
 
-def end_with_parent() -> None:
-    """Have this process end where the one that started it ends, also where that is killed."""
-    parent = os.getppid()
+def end_with_parent(parent: int | None = None) -> None:
+    """Have this process end where the one that started it ends, also where that is killed.
+
+    Parameters
+    ----------
+    parent : int, optional
+        Number of that process, where it may have ended already.
+    """
+    parent = os.getppid() if parent is None else parent
     # Linux does it itself. Elsewhere a thread looks whether the parent has changed.
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)

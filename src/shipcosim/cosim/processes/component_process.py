@@ -1,7 +1,6 @@
 """The process of a component as the run sees it: start, requests, watchdog, end."""
 
 import os
-import pickle
 import signal
 import subprocess
 import sys
@@ -11,7 +10,7 @@ from threading import Thread
 from time import monotonic
 from typing import Any, BinaryIO, cast
 
-from shipcosim.cosim.processes.child import receive, send
+from shipcosim.cosim.processes.child import Garbled, receive, send
 from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 from shipcosim.errors import printable
 
@@ -113,8 +112,15 @@ class ComponentProcess:
         try:
             return action(*arguments)
         # A broken pipe means that the process has ended: find out why.
-        except (OSError, EOFError, pickle.UnpicklingError):
+        except (OSError, EOFError):
             raise SlaveError(self._cause_of_end(what, limit)) from None
+        # Where an answer begins and ends is lost: as after a crash, the process is of no use.
+        except Garbled:
+            self._kill()
+            raise SlaveError(
+                f"Its process gave no answer to {what} but other bytes: the FMU writes into files "
+                "that it did not open. It was ended."
+            ) from None
         # After an interrupt the answer would belong to an old request: end the process.
         except BaseException:
             self._kill()
@@ -143,8 +149,10 @@ class ComponentProcess:
         try:
             self._process.wait(max(0.0, limit - monotonic()))
         except subprocess.TimeoutExpired:
-            self._kill()
-            self._process.wait()
+            pass
+        # What the FMU has started and left behind ends as well.
+        self._kill()
+        self._process.wait()
         self._reader.join(1.0)
         self._answers.close()
 

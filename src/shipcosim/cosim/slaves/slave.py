@@ -55,7 +55,9 @@ class Slave:
     def remarks(self) -> list[str]:
         """Warnings that the FMU logged, with its name in front."""
         texts = [text for status, text in self.messages if status == WARNING]
-        return [text if text.startswith(self.name) else f"{self.name}: {text}" for text in texts]
+        # PythonFMU's begin with the name already; a word that begins with the same letters is none.
+        own = (f"{self.name} ", f"{self.name}:", f"{self.name},")
+        return [text if text.startswith(own) else f"{self.name}: {text}" for text in texts]
 
     def setter(
         self, kind: str, variables: Sequence[Variable], buffer: np.ndarray

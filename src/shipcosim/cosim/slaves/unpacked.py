@@ -10,7 +10,6 @@ import os
 import re
 import shutil
 import sys
-import tempfile
 import time
 import zipfile
 import zlib
@@ -127,13 +126,11 @@ def _unpack_into_cache(fmu: Path, folder: Path) -> None:
     for other in folder.parent.iterdir():
         if time.time() - other.stat().st_mtime > UNUSED:
             shutil.rmtree(other, ignore_errors=True)
-    temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".unpacking-"))
-    try:
-        unpack(fmu, temporary)
-        temporary.chmod(0o755)
-        temporary.rename(folder)
-    except OSError:
-        if not folder.is_dir():  # else another process was first
-            raise
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    with temporary_folder(folder.parent, unfinished=True) as name:
+        unpacked = Path(name, "fmu")
+        unpack(fmu, unpacked)
+        try:
+            unpacked.rename(folder)
+        except OSError:
+            if not folder.is_dir():  # else another process was first
+                raise

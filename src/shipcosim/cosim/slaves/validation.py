@@ -1,8 +1,15 @@
-"""Check of an FMU's description by FMPy's validator: XML schema, start values, variabilities, units, structure."""
+"""Checks of an FMU beyond what a system needs: its description by FMPy's validator, what its binary needs."""
 
+import os
+import re
+import subprocess
 from pathlib import Path
 
+from shipcosim.cosim.slaves.unpacked import UnpackedFmus
 from shipcosim.errors import Problem
+
+LONGEST = 10.0
+"""For the system's loader to list what a binary needs. [s]"""
 
 
 def validation_problems(path: Path) -> list[Problem]:
@@ -18,3 +25,40 @@ def validation_problems(path: Path) -> list[Problem]:
     found = (" ".join(str(one).split()) for one in validate_fmu(str(path)))
     remedy = "FMI does not allow it; export the FMU anew."
     return [Problem(str(path), text, remedy) for text in dict.fromkeys(found) if text]
+
+
+def missing_libraries(path: Path) -> list[Problem]:
+    """Libraries that an FMU's binary for this platform needs and that are not here, as errors.
+
+    Only on Linux with glibc: its loader lists them without running any code of the binary. Elsewhere nothing is looked
+    at, and nothing is said.
+
+    Parameters
+    ----------
+    path : Path
+        Of the FMU.
+    """
+    from fmpy import platform, platform_tuple
+
+    loader = next(Path("/").glob("lib*/ld-linux-*.so.*"), None)
+    if loader is None:
+        return []
+    problems = []
+    with UnpackedFmus() as unpacked:
+        for name in (platform, platform_tuple):
+            for binary in sorted(unpacked.folder(path).glob(f"binaries/{name}/*.so")):
+                listing = [loader, "--list", binary]
+                listed = subprocess.run(listing, capture_output=True, timeout=LONGEST, check=False)
+                needed = re.findall(
+                    rb"(?m)^\s*(\S+) => not found|: (\S+): cannot open shared object file",
+                    listed.stdout + listed.stderr,
+                )
+                problems += [
+                    Problem(
+                        f"{path}, binaries/{name}/{binary.name}",
+                        f"It needs {os.fsdecode(library)}, which is not here.",
+                        "Install it, or put its folder into LD_LIBRARY_PATH.",
+                    )
+                    for library in dict.fromkeys(one or other for one, other in needed)
+                ]
+    return problems

@@ -9,13 +9,15 @@ import numpy as np
 import xarray
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, reading
 from shipcosim.series import make_table, read_columns
 from shipcosim.ssp import AnyPath
 
 LogSource = AnyPath | xarray.Dataset
 """A log: a file, the folder of a run, or a table."""
 
+_LONGEST_HEADER = 1 << 20
+"""Characters of a header that are looked at: what unpacks to one line without end is no table of a run."""
 _SHIP = {
     "north": ("x", "m"),
     "east": ("y", "m"),
@@ -95,10 +97,12 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         for name in signals
         if name.endswith(("_rpm", "_azimuth", "_thrust")) and "." not in name
     }
-    table = make_table(
-        np.asarray(signals["time"], float),
-        [_column(*pair, ship, signals, units) for pair in named.items()],
-    )
+    # Damaged cells make a column of texts.
+    with reading(file.get("source", "log")):
+        table = make_table(
+            np.asarray(signals["time"], float),
+            [_column(*pair, ship, signals, units) for pair in named.items()],
+        )
     table.encoding |= file
     return table
 
@@ -141,8 +145,10 @@ def _names_components(path: Path) -> bool:
     """Whether a file has columns with a dot in their names, of which nothing but the names is read."""
     try:
         return any("." in name for name in _names(path))
-    except (OSError, EOFError, ValueError):
-        return False  # reading it says what is wrong
+    except (
+        Exception
+    ):  # of a damaged file the libraries raise anything; reading it says what is wrong
+        return False
 
 
 def _names(path: Path) -> list[str]:
@@ -154,7 +160,7 @@ def _names(path: Path) -> list[str]:
         return []
     opened = gzip.open if path.suffix == ".gz" else open
     with opened(path, "rt", encoding="utf-8") as file:
-        return [name.partition("[")[0] for name in file.readline().split(",")]
+        return [name.partition("[")[0] for name in file.readline(_LONGEST_HEADER).split(",")]
 
 
 def _is_run(signals: Mapping[str, object]) -> bool:

@@ -166,6 +166,10 @@ def record_of(log: xarray.Dataset, model: ShipModel) -> Record:
     """
     rows = log.sizes["time"]
     time = log["time"].values.astype(float)
+    # One row has no step; of two or more `_check_length` says what this ship would need.
+    if rows < 2:
+        right = f"A diagnosis takes {_FEWEST_ROWS} rows at the least."
+        raise error_at(str(log.attrs.get("source", "log")), f"{rows} rows.", right)
     missing = [role for role in ("north", "east", "heading") if role not in log]
     if missing:
         found = f"no channel {', '.join(missing)}."
@@ -248,7 +252,7 @@ def _about_stretches(time: np.ndarray) -> list[str]:
 
 def _thinned_for(model: ShipModel, record: Record) -> Record:
     """The record at the rate that a ship's answer needs."""
-    rows = rows_averaged(model.parts["hull"].length, record.step)
+    rows = min(rows_averaged(model.parts["hull"].length, record.step), record.time.size // 2)
     thinned = _thinned(record, rows, model)
     thinned = replace(thinned, rate=fastest_rate(model, first_motion(thinned, model)))
     if rows == 1:

@@ -8,9 +8,7 @@ import importlib
 import importlib.metadata
 import importlib.util
 import io
-import os
 import sys
-import tempfile
 import traceback
 import zipfile
 from collections.abc import Iterable, Iterator
@@ -22,6 +20,7 @@ from shipcosim.fmi.export.bundle import Bundle, bundle, entry_module
 from shipcosim.fmi.export.description import model_description
 from shipcosim.fmi.export.loader import SUFFIXES, loader_for
 from shipcosim.fmi.fmu import Fmu
+from shipcosim.temporary import replace_file, temporary_folder
 
 EPOCH = (1980, 1, 1, 0, 0, 0)
 PAGE = """<!DOCTYPE html>
@@ -166,7 +165,7 @@ def _imported(bundled: Bundle) -> Iterator[ModuleType]:
     """The script's module as the FMU will contain it; unloaded afterwards."""
     before = set(sys.modules)
     # Import from a copy: what the bundle lacks is then missing here too.
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         for path, data in bundled.files.items():
             file = Path(folder, path)
             file.parent.mkdir(parents=True, exist_ok=True)
@@ -333,19 +332,8 @@ def write_archive(path: Path, files: dict[str, bytes]) -> Path:
             info.create_system = 3
             info.external_attr = 0o644 << 16
             archive.writestr(info, data)
-    # Write next to the target, then replace it in one step.
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-")
+        replace_file(path, content.getvalue())
     except OSError as error:
         raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content.getvalue())
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
-    finally:
-        Path(temporary).unlink(missing_ok=True)
     return path

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
 import struct
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.library import cache
 from shipcosim.native.compiler import EXACT, check_installed
+from shipcosim.temporary import replace_file, temporary_folder
 
 OPTIONS = ("-shared", "-O1", "-g0", "-s", "-fPIC", "-std=c11", "-fvisibility=hidden", EXACT)
 
@@ -92,18 +91,13 @@ def _compiled(source, triple, suffix) -> bytes:
     if path.is_file():
         return path.read_bytes()
     library = _from_compiler(source, triple, suffix)
-    # Write aside, then rename: a reader never sees half a library.
     with contextlib.suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent)
-        with os.fdopen(handle, "wb") as file:
-            file.write(library)
-        os.replace(temporary, path)
+        replace_file(path, library)
     return library
 
 
 def _from_compiler(source, triple, suffix) -> bytes:
-    with tempfile.TemporaryDirectory() as folder:
+    with temporary_folder() as folder:
         text = Path(folder, "all.c")
         library = Path(folder, f"all{suffix}")
         text.write_text(source, encoding="utf-8")

@@ -7,16 +7,19 @@ which a browser asks the server first.
 
 from __future__ import annotations
 
+import io
 import json
 import mimetypes
+import os
 import re
+import shutil
 import sys
 import threading
 from collections.abc import Callable, Collection
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from urllib.parse import unquote, urlsplit
 
 from shipcosim.errors import ShipcosimError, error_at
@@ -25,6 +28,9 @@ ADDRESS = "127.0.0.1"
 HEADER = "X-Shipcosim"
 SLOWEST = 30.0
 """Time that a request may take to arrive. [s]"""
+MOST_WAITING = 1024
+"""Requests that may wait for the server to take them; the system may allow fewer. At 5, Python's default, 200 requests
+at once left 74 without an answer for 20 s: the system drops what finds no room, and asks again ever later."""
 SHOWN = {".html", ".csv", ".json", ".parquet", ".nc", ".png", ".svg", ".txt"}
 """Endings of the files that are served."""
 RUN = re.compile(r"/run/([0-9]{1,9})")
@@ -51,6 +57,7 @@ class StudyServer(ThreadingHTTPServer):
 
     daemon_threads = True
     allow_reuse_address = False
+    request_queue_size = MOST_WAITING
 
     def __init__(
         self, folder: Path, runs: Collection[int], simulate: Callable[[int], object], port: int = 0
@@ -122,11 +129,12 @@ class _Handler(BaseHTTPRequestHandler):
         if path == "/study-server":
             self._answer(HTTPStatus.OK, {"pages": self.server.pages()})
         elif file := self._file(path):
-            self._send(
-                HTTPStatus.OK,
-                file.read_bytes(),
-                mimetypes.guess_type(file.name)[0] or "application/octet-stream",
-            )
+            with file.open("rb") as body:
+                self._send(
+                    HTTPStatus.OK,
+                    body,
+                    mimetypes.guess_type(file.name)[0] or "application/octet-stream",
+                )
         else:
             self._refuse(HTTPStatus.NOT_FOUND, "There is no such file in the folder of this study.")
 
@@ -208,14 +216,17 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer(status, {"error": why})
 
     def _answer(self, status: HTTPStatus, said: object) -> None:
-        self._send(status, json.dumps(said).encode(), "application/json")
+        self._send(status, io.BytesIO(json.dumps(said).encode()), "application/json")
 
-    def _send(self, status: HTTPStatus, body: bytes, kind: str) -> None:
+    def _send(self, status: HTTPStatus, body: BinaryIO, kind: str) -> None:
+        # The size first, then the content piece by piece: many may ask for a large page at once.
+        size = body.seek(0, os.SEEK_END)
+        body.seek(0)
         self.close_connection = True  # whatever else was sent is not read as another request
         self.send_response(status)
         for name, value in {
             "Content-Type": f"{kind}; charset=utf-8" if kind.startswith("text/") else kind,
-            "Content-Length": str(len(body)),
+            "Content-Length": str(size),
             "Content-Security-Policy": POLICY,
             "X-Content-Type-Options": "nosniff",
             "Cross-Origin-Resource-Policy": "same-origin",
@@ -225,7 +236,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_header(name, value)
         self.end_headers()
         if self.command != "HEAD":
-            self.wfile.write(body)
+            shutil.copyfileobj(body, self.wfile)
 
     def log_message(self, format: str, *args: object) -> None:
         """Log nothing: the terminal shows only what matters."""

@@ -2,9 +2,7 @@
 
 import os
 import stat
-import struct
 import zipfile
-import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -17,20 +15,6 @@ MOST_ENTRIES = 20_000
 LARGEST_TOTAL = 2**30  # bytes, unpacked
 LARGEST_RATIO = 200  # unpacked to packed; text reaches some 20
 SMALL = 64 * 2**20  # bytes; below this size any ratio is harmless
-BROKEN = (
-    zipfile.BadZipFile,
-    zlib.error,
-    EOFError,
-    struct.error,
-    NotImplementedError,
-    RuntimeError,
-    ValueError,
-)
-CANNOT = (
-    *BROKEN,
-    OSError,
-    MemoryError,
-)  # sizes and places that a damaged directory states can be absurd
 
 
 def unpack(path: AnyPath, folder: AnyPath, shown: str | None = None) -> None:
@@ -57,13 +41,13 @@ def unpack(path: AnyPath, folder: AnyPath, shown: str | None = None) -> None:
         try:
             for entry in archive.infolist():
                 archive.extract(entry, folder)
-        except BROKEN as error:
-            raise _damaged(shown, error) from None
         except OSError as error:
             found = f"Cannot be unpacked into {folder}: {error.strerror}."
             raise error_at(
                 shown, found, "Make room there, or name another folder in TMPDIR."
             ) from None
+        except Exception as error:  # of a damaged archive the decompressors raise anything
+            raise _damaged(shown, error) from None
 
 
 def entries(path: AnyPath, shown: str | None = None) -> list[str]:
@@ -112,17 +96,17 @@ def read_entry(path: AnyPath, name: str, limit: int, shown: str | None = None) -
             raise error_at(shown, f"{name} is larger than {limit >> 20} MiB.")
         try:
             return archive.read(name)
-        except CANNOT as error:
+        except Exception as error:  # sizes and places that a damaged directory states can be absurd
             raise _damaged(shown, error) from None
 
 
 def _opened(path: AnyPath, shown: str) -> zipfile.ZipFile:
     try:
         archive = zipfile.ZipFile(path)
-    except BROKEN as error:
-        raise _damaged(shown, error) from None
     except OSError as error:
         raise error_at(shown, f"Cannot be read: {error.strerror}.") from None
+    except Exception as error:
+        raise _damaged(shown, error) from None
     # The first entry must start at 0: otherwise this is the tail of another archive.
     if min((entry.header_offset for entry in archive.infolist()), default=0) > 0:
         archive.close()  # cut off within an archive that it contains, whose directory was taken for its own

@@ -78,7 +78,7 @@ def read_enumerations(elements: Iterable[etree._Element]) -> dict[str, dict[str,
         If an item's value is no whole number.
     """
     return {
-        element.get("name"): {
+        element.get("name", ""): {
             item.get("name"): read_value("Integer", item.get("value", ""))
             for item in children(element, "ssc:Item")
         }

@@ -1,6 +1,7 @@
 """Components in processes of their own: the results stay the same, and what one of them does hurts no other."""
 
 import gc
+import io
 import os
 import signal
 import subprocess
@@ -12,9 +13,12 @@ import time
 import c_fmus
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from shipcosim.cosim import RunError, RunOptions, simulate
 from shipcosim.cosim.master.component import set_start_values
+from shipcosim.cosim.processes.child import Garbled, receive, send
 from shipcosim.cosim.processes.remote_slave import IsolatedInstances
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import ShipcosimError
@@ -97,6 +101,16 @@ class Dangerous(Fmu):
         if self.how == "garbage":
             for end in (0, 1, 2):
                 os.write(1, b"\\x01\\x00\\x00\\x00\\x00\\x00\\x00\\x00" * 1000)
+        if self.how == "pipes":
+            for pipe in range(1, 50):
+                try:
+                    os.write(pipe, b"\\x1b[31m 12345")
+                except OSError:
+                    pass
+        if self.how == "exit":
+            ctypes.CDLL(None).exit(0)
+        if self.how == "child" and os.fork() == 0:
+            os.execvp("sleep", ["sleep", "600.125"])
         if self.how == "close":
             os.closerange(3, 100)
         if self.how == "warn":
@@ -229,6 +243,8 @@ def test_the_dp_ship_gives_the_same_digits(root):
         ("read", "Its process was ended in DoStep by signal 11, Segmentation fault."),
         ("abort", "by signal 6, Aborted. It printed last:\nsomething is badly wrong"),
         ("leave", "Its process ended itself in DoStep, with exit code 3."),
+        ("exit", "Its process ended itself in DoStep, with exit code 0."),
+        ("pipes", "the FMU writes into files that it did not open. It was ended."),
         ("close", "Its process ended itself in DoStep, with exit code 1."),
         ("fork", "Its process ended itself in DoStep, with exit code 4."),
         ("hang", f"Its process gave no answer to DoStep within {LIMIT:g} s and was ended."),
@@ -356,7 +372,19 @@ def processes(parent):
     return [(int(pid), command) for pid, command in listed if "cosim.processes.child" in command]
 
 
-@pytest.mark.parametrize("how", ["read", "", "raise"])
+@given(noise=st.binary(min_size=1, max_size=64))
+@settings(max_examples=200, deadline=None)
+def test_bytes_before_an_answer_are_never_taken_for_one(noise):
+    """They are seen at the mark, or, where they begin as it does, at what follows."""
+    pipe = io.BytesIO()
+    send(pipe, (True, None, []))
+    answer = pipe.getvalue()
+    with pytest.raises((Garbled, EOFError)):
+        receive(io.BytesIO(noise + answer))
+    assert receive(io.BytesIO(answer)) == (True, None, [])
+
+
+@pytest.mark.parametrize("how", ["read", "", "raise", "pipes"])
 def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
@@ -373,6 +401,13 @@ def test_nothing_is_left_behind(system, make_scenario, how, tmp_path, monkeypatc
     assert threading.active_count() == 1
     if sys.platform == "linux":
         assert len(os.listdir("/proc/self/fd")) <= descriptors
+
+
+def test_what_a_component_has_started_ends_with_it(system, make_scenario):
+    table = simulate(system("child"), make_scenario(1.0, 0.1), RunOptions(isolate=True))
+    assert table["engine.count"].values[-1] == 10
+    left = subprocess.run(["pgrep", "-f", "^sleep 600.125"], capture_output=True, text=True).stdout
+    assert not [pid for pid in left.split() if is_running(pid)]
 
 
 RUN = """

@@ -234,6 +234,28 @@ def test_nonsense_is_refused_and_the_server_stays(ask, server, simulations, sent
     assert ask("GET", "/")[0] == 200
 
 
+@pytest.mark.parametrize("kind", ["files", "simulations"])
+def test_two_hundred_requests_at_once_are_answered_or_refused(server, simulations, kind):
+    (simulations.folder / "report.html").write_bytes(b"x" * 1_000_000)
+    together, statuses = threading.Barrier(200), []
+
+    def ask(number):
+        together.wait(60.0)
+        connection = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=20.0)
+        method, path = ("GET", "/") if kind == "files" or number % 2 else ("POST", "/run/1")
+        connection.request(method, path, headers=OURS)
+        answer = connection.getresponse()
+        if len(answer.read()) == int(answer.headers["Content-Length"]):
+            statuses.append(answer.status)
+
+    threads = [threading.Thread(target=ask, args=(number,)) for number in range(200)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(statuses) == 200 and set(statuses) <= {200, 409}
+
+
 def test_only_this_machine_is_answered(server):
     assert server.server_address[0] == "127.0.0.1"
 

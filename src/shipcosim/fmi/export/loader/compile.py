@@ -6,10 +6,10 @@ That compiler brings the headers and start-up code of every platform, so the byt
 import hashlib
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 from shipcosim.fmi.export.loader import FOLDER, SUFFIXES, loader_for
+from shipcosim.temporary import temporary_folder
 
 SOURCES = {
     "linux64": ("fmu.c", "interpreter.c", "system_posix.c"),
@@ -65,7 +65,7 @@ def compile_loader(platform: str, out: Path) -> Path:
     """
     target = out / f"{platform}{SUFFIXES[platform]}"
     with (
-        tempfile.TemporaryDirectory() as folder
+        temporary_folder() as folder
     ):  # takes the import library that the linker leaves for Windows
         library = Path(folder, target.name)
         command = [

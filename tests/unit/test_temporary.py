@@ -1,0 +1,25 @@
+"""What a killed process leaves is cleared away by the next one; files are there whole or not at all."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from shipcosim.temporary import replace_file
+
+BEGUN = (
+    "import os, sys, pathlib, shipcosim.temporary as t; path = pathlib.Path(sys.argv[1]);"
+    "os.replace = lambda *_: os._exit(9); t.replace_file(path, b'new')"
+)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such question")
+def test_a_file_of_which_the_writing_is_killed_stays_as_it_was(tmp_path):
+    path = tmp_path / "x.fmu"
+    path.write_bytes(b"old")
+    killed = subprocess.run([sys.executable, "-c", BEGUN, str(path)], check=False)
+    assert killed.returncode == 9 and path.read_bytes() == b"old"
+    assert len(list(tmp_path.iterdir())) == 2
+    replace_file(path, b"new")
+    assert path.read_bytes() == b"new" and list(tmp_path.iterdir()) == [path]
