@@ -1,12 +1,15 @@
 """Causes that begin, grow, or come and go, in logs of the independent truth: by name, course and size over time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from diagnose import twin
 
 from shipcosim.diagnose.explanation.course import RAMP, SPELL, STEP, SWITCHING, Course
+from shipcosim.diagnose.explanation.summary import evidence_of
 from shipcosim.diagnose.pipeline import find_causes
-from shipcosim.report.diagnosis.cause_figures import course_figures
+from shipcosim.report.diagnosis.cause_section import cause_section
 from shipcosim.report.diagnosis.words import told
 from truth import draw
 
@@ -67,7 +70,10 @@ def test_page_and_words_say_when_it_is_there(answered):
         SWITCHING: "coming and going, ",
     }
     assert words[kind] in said
-    (figure,) = course_figures(found.basis.explained.course)
+    complete = replace(found, evidence=evidence_of(found.basis))
+    section = cause_section(complete, complete.evidence)
+    assert words[kind].strip(", ") in section.course
+    (figure,) = section.sizes
     assert figure.unit == "%" and len(figure.traces) == 2
 
 

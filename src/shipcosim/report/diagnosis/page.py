@@ -66,7 +66,7 @@ def _page(diagnosis: Diagnosis) -> DiagnosisPage:
     extension = extension_section(diagnosis)
     gain = gain_section(diagnosis)
     # All figures in the order in which the page draws them.
-    causes = (*cause.figures, *cause.unmodelled, *cause.whiteness)
+    causes = (*cause.sizes, *cause.figures, *cause.unmodelled, *cause.whiteness)
     tracks = (
         ()
         if diagnosis.tracks is None
