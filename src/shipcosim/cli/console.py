@@ -25,6 +25,7 @@ STYLES = {"error": "bold red", "remark": "yellow"}
 VERDICTS = {
     "passed": "bold green",
     "consistent": "bold green",
+    "form": "bold yellow",
     "named": "bold blue",
     "partial": "bold yellow",
 }

@@ -53,7 +53,8 @@ class Diagnosis:
     Attributes
     ----------
     verdict : str
-        ``"consistent"``, ``"named"``, ``"ambiguous"`` or ``"unknown"``.
+        ``"consistent"``, ``"form"`` (no cause, and loads of another form than the model's), ``"named"``,
+        ``"ambiguous"`` or ``"unknown"``.
     findings : tuple of Finding
         Most certain first.
     candidates, indistinguishable : tuple of Candidate

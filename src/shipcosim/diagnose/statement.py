@@ -3,6 +3,8 @@
 from dataclasses import replace
 from pathlib import Path
 
+import xarray
+
 from shipcosim.diagnose.experiment.design import design_experiment, manoeuvre_of
 from shipcosim.diagnose.experiment.testability import (
     excitation_of,
@@ -11,7 +13,7 @@ from shipcosim.diagnose.experiment.testability import (
     untestable_causes,
     visible_sizes,
 )
-from shipcosim.diagnose.explanation.summary import evidence_of, load_form
+from shipcosim.diagnose.explanation.summary import LoadForm, evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.finding import label_of
@@ -19,7 +21,7 @@ from shipcosim.diagnose.inference.thresholds import BESIDE_UNKNOWN
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.validation.conditions import PredictedLog, with_predictions
-from shipcosim.diagnose.validation.gain import baseline, gain, rms
+from shipcosim.diagnose.validation.gain import HORIZONS, baseline, gain, rms
 from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.thresholds import WORSE
@@ -55,8 +57,13 @@ def stated(log: JudgedLog) -> Diagnosis:
     # How far the form of the ship's loads differs from the model's, with what that hides.
     form = load_form(log)
     form_of = replace(form, hides=hidden_by_form(log, excitation)) if form else None
+    verdict = judgement.verdict
+    if verdict == "consistent" and of_log:
+        verdict = "named"
+    elif verdict == "consistent" and form_of and form_of.numbers:
+        verdict = "form"
     return Diagnosis(
-        "named" if of_log and judgement.verdict == "consistent" else judgement.verdict,
+        verdict,
         (
             *of_log,
             *judgement.findings,
@@ -122,6 +129,14 @@ def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:
     return found.comparison.spoken_for(found.causes[cause], seen, found.causes)
 
 
+def _with_errors(form: LoadForm | None, errors: xarray.Dataset) -> LoadForm | None:
+    """A form with the errors of predictions without it and with it, on rows that its numbers were not fitted on."""
+    if form is None:
+        return None
+    before, after = (rms(errors, "position", model) for model in ("plain", "calibrated"))
+    return replace(form, horizon_s=float(HORIZONS[-1]), before_m=before, after_m=after)
+
+
 def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
     """What the crude model gains over the craft's own horizon, where it is named and was measured."""
     crude = log.explained.identification.comparison.crude
@@ -173,6 +188,7 @@ def completed(
         complete,
         baseline=measured if same_times else told,
         gain=gain(errors) if found.is_named else complete.gain,
+        form=_with_errors(found.form, predicted.comparison.errors),
         predictions=prediction_errors(
             predicted.comparison,
             errors,

@@ -120,10 +120,10 @@ def score(answers, diagnosis, span):
     missed = [answer for answer in answers if all(answer is not hidden for hidden, _ in pairs)]
     return Score(
         verdict=verdict,
-        right=verdict == expected and complete,
+        right=(verdict == expected or not answers and verdict == "form") and complete,
         named=bool(findings),
         precise=bool(findings) and len(pairs) == len(findings),
-        alarm=verdict != "consistent",
+        alarm=verdict not in ("consistent", "form"),
         contained=all(_listed(answer, diagnosis.get("indistinguishable", [])) for answer in missed),
         excused=all(answer["cause"] in diagnosis.get("not_testable", []) for answer in missed),
         overlap=_least_overlap(answers, pairs, span),

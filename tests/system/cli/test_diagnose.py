@@ -102,6 +102,9 @@ class LoadForm(Strict):
     differs: dict[str, float]
     numbers: list[FormNumber]
     hides: list[str]
+    horizon_s: float | None = None
+    before_m: float | None = None
+    after_m: float | None = None
 
 
 class VisibleSize(Strict):
@@ -116,7 +119,7 @@ class Schema(Strict):
     """diagnosis.json, version 1."""
 
     version: Literal["shipcosim-diagnosis/1"] = Field(alias="schema")
-    verdict: Literal["consistent", "named", "ambiguous", "unknown"]
+    verdict: Literal["consistent", "form", "named", "ambiguous", "unknown"]
     findings: list[Finding]
     discrepancies: list[Discrepancy]
     form: LoadForm | None

@@ -54,12 +54,18 @@ class LoadForm:
         Those that differ by more than twice their standard deviations, most certain first.
     hides : tuple of str
         Causes that the log could have shown on a ship of the model's form: another form of her loads does the same.
+    horizon_s, before_m, after_m : float or None
+        Position error of predictions after this time, without the form and with it, on rows that its numbers were not
+        fitted on; None where there are too few. [s, m, m]
     """
 
     scale: float
     differs: dict[str, float]
     numbers: tuple[FormNumber, ...] = ()
     hides: tuple[str, ...] = ()
+    horizon_s: float | None = None
+    before_m: float | None = None
+    after_m: float | None = None
 
 
 @dataclass(frozen=True)

@@ -111,9 +111,11 @@ def cause_section(diagnosis: Diagnosis, evidence: Evidence) -> CauseSection:
 
 def _found(diagnosis: Diagnosis) -> str:
     names = [title(f.cause, f.component) for f in diagnosis.findings if f.kind == "physics"]
-    return ", ".join(names) or {"consistent": "none", "named": "none"}.get(
-        diagnosis.verdict, diagnosis.verdict
-    )
+    return ", ".join(names) or {
+        "consistent": "none",
+        "named": "none",
+        "form": "none: loads of another form",
+    }.get(diagnosis.verdict, diagnosis.verdict)
 
 
 def _estimates(diagnosis: Diagnosis) -> Table:

@@ -29,7 +29,9 @@ HELD = {"other headings": "headings not fitted on", "free drift": "free drift, n
 
 def models_to_show(models: Sequence[str], diagnosis: Diagnosis) -> list[str]:
     """Models to show; the noise floor is unknown while an unnamed error acts."""
-    return [m for m in models if m != "floor" or diagnosis.verdict in ("named", "consistent")]
+    return [
+        m for m in models if m != "floor" or diagnosis.verdict in ("named", "consistent", "form")
+    ]
 
 
 def error_figures(overall: ConditionErrors, models: Sequence[str]) -> list[Figure]:

@@ -3,13 +3,14 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.explanation.summary import LoadForm
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
-from shipcosim.report.theme.numbers import metres, span
+from shipcosim.report.theme.numbers import metres, percent, span
 from shipcosim.report.theme.views import Outcome
 
 ADD_A_CAUSE = (
@@ -149,13 +150,33 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
             "NAMED",
             f"The log is faulty: {listed(data)}. Apart from that, simulation and log agree.",
         )
-    # Nothing wrong; perhaps loads of another form.
+    # No cause, and the log is explained by loads of another form alone; or perhaps so.
+    if diagnosis.verdict == "form" and diagnosis.form:
+        return "FORM", _form(diagnosis, diagnosis.form)
     if diagnosis.form:
         return (
             "CONSISTENT",
             "Simulation and log agree, where the loads may have another form than the model's.",
         )
     return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
+
+
+def _form(diagnosis: Diagnosis, form: LoadForm) -> str:
+    """What another form of the loads does, how much of the error it explains, and which causes may hide in it."""
+    name, share = max(form.differs.items(), key=lambda pair: pair[1])
+    text = (
+        "No cause is found, but the loads on the ship have another form than the model's, beyond its tolerances: most "
+        f"of all {name}, by {percent(share)}."
+    )
+    if form.before_m is not None and form.after_m is not None:
+        text += (
+            f" After {form.horizon_s:g} s the simulation is {metres(form.before_m)} off the log, with that form "
+            f"{metres(form.after_m)}."
+        )
+    if form.hides:
+        hidden = listed([title(name).lower() for name in form.hides])
+        text += f" It can hide {hidden}."
+    return text
 
 
 def _better_predictor(diagnosis: Diagnosis) -> str:
@@ -250,6 +271,11 @@ def next_steps(
     elif diagnosis.verdict == "unknown":
         steps.append("Look on the page how the missing force goes with time, heading and wind.")
         steps.append(ADD_A_CAUSE)
+    elif diagnosis.verdict == "form":
+        steps.append(
+            "If the ship was well, make these logs her reference: shipcosim calibrate. A later diagnosis then says what "
+            "has changed since."
+        )
     # What is possible now, and what this log cannot say.
     if extended:
         steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")

@@ -14,6 +14,7 @@ from shipcosim.report.theme.views import Page, Table
 COLOURS = {
     "passed": "#007a5a",
     "consistent": "#007a5a",
+    "form": "#8a5a00",
     "named": "#0072b2",
     "plain": "#52606d",
     "replayed": "#0072b2",

@@ -1,8 +1,11 @@
 """What a diagnosis says in words: numbers with fitting digits, causes, verdicts, what to do next."""
 
+from dataclasses import replace
+
 import pytest
 
 from shipcosim.diagnose.experiment.design import ExperimentDesign
+from shipcosim.diagnose.explanation.summary import LoadForm
 from shipcosim.diagnose.finding import Candidate, Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.result import Diagnosis
@@ -226,3 +229,16 @@ def test_a_better_predictor_than_the_extended_model_is_named():
         "predicts better"
         not in outcome(Diagnosis("named", (LOSS,), gain=gain | {"after_m": 0.5})).sentence
     )
+
+
+def test_another_form_is_an_answer_with_what_it_explains_and_hides():
+    form = LoadForm(1.0, {"drag across the hull": 0.3, "wind load": 0.1}, hides=("crossflow",))
+    form = replace(form, horizon_s=60.0, before_m=3.1, after_m=1.2)
+    said = outcome(Diagnosis("form", form=form))
+    assert said.word == "FORM" and said.kind == "form"
+    for text in (
+        "drag across the hull, by 30 %",
+        "3.1 m off the log, with that form 1.2 m",
+        "crossflow",
+    ):
+        assert text in said.sentence
