@@ -14,6 +14,9 @@ from shipcosim.diagnose.ship.model import ShipModel
 
 MOVED = 2.0
 """Standard deviations, before and after the log, by which a number of the form has moved. [1]"""
+STRAINED = 4.0
+"""Tolerances by which a number that is known within one is off, from which on it is said. [1] Healthy ships of the
+model's form reached 3.4."""
 LAGS = 30
 """Lags of the autocorrelation of the innovations. [rows]"""
 
@@ -51,7 +54,8 @@ class LoadForm:
     differs : dict of str to float
         By function, in words: root mean square of what it differs by, as a share of the model's. [1]
     numbers : tuple of FormNumber
-        Those that differ by more than twice their standard deviations, most certain first.
+        Those of the form that differ by more than twice their standard deviations, and those known within a tolerance
+        that are off by more than `STRAINED` of it; most certain first.
     hides : tuple of str
         Causes that the log could have shown on a ship of the model's form: another form of her loads does the same.
     horizon_s, before_m, after_m : float or None
@@ -202,39 +206,34 @@ def whiteness(problem: IdentificationProblem, fit: Fit, as_it_is: bool = False) 
 
 
 def load_form(log: JudgedLog) -> LoadForm | None:
-    """How far the form of the ship's loads differs from the model's, beside the causes of the verdict.
+    """How far the form of the ship's loads, or a number of hers, differs from the model's, beside the verdict's causes.
 
-    None where it is the model's, or where a reference says what is known of it.
+    None where neither does, or where a reference says what is known of her.
     """
     model = log.problem.model
     fit = log.fit
-    if not model.form_scale or model.directions:
+    if model.directions:
         return None
-    sizes = model.form_sizes
-    theta = fit.theta
+    sizes = model.form_sizes if model.form_scale else {}
     std = np.sqrt(np.diag(fit.covariance))
     found = []
     squares = {}
-    for column, share, deviation in zip(fit.columns, theta, std, strict=True):
+    for column, share, deviation in zip(fit.columns, fit.theta, std, strict=True):
         path, size = next(iter(column.changes.items()))
-        if (
-            len(column.changes) > 1
-            or path not in sizes
-            or column.prior != 1.0
-            or path in fit.values
-        ):
+        if len(column.changes) > 1 or path in fit.values or ShipModel.is_of_day(path):
             continue
-        squares[path] = size**2 * (share**2 + deviation**2)
-        if abs(share) > max(1.0, MOVED * deviation):
-            found.append(
-                (
-                    abs(share) / deviation,
-                    _form_number(log.problem.model, path, size * share, size * deviation),
-                )
-            )
+        is_form = path in sizes and column.prior == 1.0
+        if is_form:
+            squares[path] = size**2 * (share**2 + deviation**2)
+        least = 1.0 if is_form else STRAINED * column.prior
+        if abs(share) > max(least, MOVED * deviation):
+            number = _form_number(model, path, size * share, size * deviation)
+            found.append((abs(share) / deviation, number))
+    if not model.form_scale and not found:
+        return None
     differs = {
         name: float(np.sqrt(sum(share * squares.get(path, 0.0) for path, share in numbers.items())))
-        for name, numbers in model.form_functions.items()
+        for name, numbers in (model.form_functions.items() if model.form_scale else ())
     }
     return LoadForm(
         model.form_scale, differs, tuple(one for _, one in sorted(found, key=lambda pair: -pair[0]))

@@ -20,24 +20,27 @@ class FormSection:
 
 def form_section(form: LoadForm) -> FormSection:
     """The part on the form of loads for the template."""
+    head = ("Number", "In the model", "As logged", "Std", "Unit")
+    numbers = Table([_row(one) for one in form.numbers], head, tight=(1, 2, 3, 4))
+    if not form.differs:
+        return FormSection("Numbers of the ship lie beyond their tolerances.", Table(()), numbers)
     # How unusual the difference is, compared with other ships.
     scale = SCALES.get(form.scale, f"{form.scale:g} times")
     functions = tuple(
         (name[0].upper() + name[1:], percent(size)) for name, size in form.differs.items()
     )
-    head = ("Number", "In the model", "As logged", "Std", "Unit")
     return FormSection(
         f"Over place, angle and speed the loads on this ship have another shape than the model's. They differ {scale} "
         "ships usually do from their models. Causes were sought beside that.",
         Table(functions, head=("Load", "Differs from the model's by about"), tight=(1,)),
-        Table([_row(one) for one in form.numbers], head, tight=(1, 2, 3, 4)),
+        numbers,
     )
 
 
 def _row(number: FormNumber) -> tuple[str, str, str, str, str]:
     # A thruster's number has the thruster's name in front.
     thruster, of_form, _ = number.number.rpartition(".form.")
-    what = f"{thruster}: {number.what}" if of_form else number.what
+    what = f"{thruster}: {number.what}" if of_form else number.what or number.number
     unit = "" if number.unit == "1" else number.unit
     return (
         what[0].upper() + what[1:],

@@ -10,7 +10,7 @@ from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
-from shipcosim.report.theme.numbers import metres, percent, span
+from shipcosim.report.theme.numbers import metres, percent, plain, span
 from shipcosim.report.theme.views import Outcome
 
 ADD_A_CAUSE = (
@@ -163,11 +163,19 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
 
 def _form(diagnosis: Diagnosis, form: LoadForm) -> str:
     """What another form of the loads does, how much of the error it explains, and which causes may hide in it."""
-    name, share = max(form.differs.items(), key=lambda pair: pair[1])
-    text = (
-        "No cause is found, but the loads on the ship have another form than the model's, beyond its tolerances: most "
-        f"of all {name}, by {percent(share)}."
-    )
+    if form.differs:
+        name, share = max(form.differs.items(), key=lambda pair: pair[1])
+        text = (
+            "No cause is found, but the loads on the ship have another form than the model's, beyond its tolerances: "
+            f"most of all {name}, by {percent(share)}."
+        )
+    else:
+        one = form.numbers[0]
+        size = plus_minus(ParameterEstimate(one.estimate, one.std, one.unit))
+        text = (
+            f"No cause is found, but numbers of the ship are beyond their tolerances: {one.number} is "
+            f"{plain(one.model)} {one.unit} in the system, and {size} by the log."
+        )
     if form.before_m is not None and form.after_m is not None:
         text += (
             f" After {form.horizon_s:g} s the simulation is {metres(form.before_m)} off the log, with that form "

@@ -1,5 +1,7 @@
 """How far the form differs is learnt: not at all on a ship of the model's form, beside the cause on another."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray
@@ -17,6 +19,9 @@ from shipcosim.diagnose.explanation.search import ExplainedLog, explain
 from shipcosim.diagnose.explanation.summary import load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog, Judgement
 from shipcosim.diagnose.inference.fitting import fitted
+from shipcosim.diagnose.result import Diagnosis
+from shipcosim.report.diagnosis.form_section import form_section
+from shipcosim.report.diagnosis.words import outcome
 
 FORM = {
     "hull_form.cross_flow_1": 0.35,
@@ -111,3 +116,26 @@ def test_a_form_that_the_causes_found_do_without_is_given_up_again(explained):
                 == settled.identification.problem.model.form_scale
             )
             assert settled.fits[0].label == "thrust_loss of port"
+
+
+@pytest.mark.parametrize("off", [3.5, -4.5])
+def test_a_number_far_beyond_its_tolerance_is_said_on_a_ship_of_the_models_form(off):
+    """One chi-square over all numbers forgives a single one that stands for a cause outside the catalogue."""
+    problem = twin.problem("healthy")
+    fit = fitted(problem)
+    place = [column.changes for column in fit.columns].index(
+        {"tunnel.thrust_coefficient": problem.model.tolerances["tunnel.thrust_coefficient"]}
+    )
+    theta = fit.theta.copy()
+    theta[place] = off
+    judgement = Judgement("consistent", replace(fit, theta=theta), (), (), ())
+    log = JudgedLog(ExplainedLog(identification_of(problem), (fit,), True), judgement, {}, {})
+    form = load_form(log)
+    if abs(off) < 4.0:
+        assert form is None
+    else:
+        assert [one.number for one in form.numbers] == ["tunnel.thrust_coefficient"]
+        assert form.differs == {} and form.numbers[0].estimate < form.numbers[0].model
+        said = outcome(Diagnosis("form", form=form))
+        assert "tunnel.thrust_coefficient is" in said.sentence
+        assert form_section(form).numbers.rows
