@@ -121,4 +121,6 @@ def _errors(gain: Mapping[str, Any] | None) -> Table:
     ]
     if gain["share_of_explainable"] is not None:
         rows.append(("Explainable error removed", removed(gain)))
-    return Table(rows, head=("Position error after 60 s", "Root mean square"))
+    return Table(
+        rows, head=("Position error after 60 s, rows kept from the fit", "Root mean square")
+    )

@@ -5,7 +5,7 @@ from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import KeyFigure
 
 _GAIN = {
-    "before_m": "position error of the simulation after {:g} s",
+    "before_m": "position error of the simulation after {:g} s, on rows kept from the fit",
     "bias_observer_m": "the same with a bias observer, as DP systems have",
     "after_m": "the same with the cause in the model",
     "noise_floor_m": "what a perfect model would still miss",

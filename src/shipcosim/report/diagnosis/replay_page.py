@@ -55,5 +55,5 @@ def replay_outcome(replay: LogReplay) -> Outcome:
     return Outcome(
         "replayed",
         "REPLAYED",
-        f"Position error after {float(last['after']):.0f} s, root mean square: {told}.",
+        f"Position error after {float(last['after']):.0f} s, root mean square of predictions over the whole log: {told}.",
     )
