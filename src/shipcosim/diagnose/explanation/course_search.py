@@ -4,7 +4,7 @@ All rows stay in and the ship's numbers are common to them: only the cause has a
 course c(t) does what its columns do, times c(t), as they are linear in θ.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, islice
@@ -125,13 +125,16 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     found = given.identification
     if found.comparison.obstacles or any(fault.alternatives for fault in found.faults):
         return given
-    explained, tries = max(
-        ((one, _clear_tries(one)) for one in (given, *_otherwise(given, plain))),
-        key=lambda pair: pair[1][0].score - _cost(pair[0]) if pair[1] else -np.inf,
-    )
     steady = given.fits[0].score - _cost(given)
-    if not tries or tries[0].score - _cost(explained) < steady + COURSE_GAIN:
+    sought = ((one, _clear_tries(one)) for one in (given, *_otherwise(given, plain)))
+    enough = [
+        (one, tries)
+        for one, tries in sought
+        if tries and tries[0].score - _cost(one) >= steady + COURSE_GAIN
+    ]
+    if not enough:
         return given
+    explained, tries = max(enough, key=lambda pair: pair[1][0].score - _cost(pair[0]))
     problem = explained.identification.problem
     # Fewer causes are preferred where they explain the log nearly as well.
     best = next(
@@ -139,20 +142,10 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         for one in sorted(tries, key=lambda one: len(one.of.base.hypotheses))
         if one.score > tries[0].score - ENOUGH * len(tries[0].of.base.hypotheses) - APART
     )
-    # Other causes as likely, each by its best course.
-    others = {}
-    for one in tries:
-        if one.score > best.score - APART and one.of.hypothesis is not best.of.hypothesis:
-            others.setdefault(one.of.hypothesis.label, one)
-    weights = np.exp([one.score - best.score for one in (best, *others.values())])
-    chances = np.minimum(weights / weights.sum(), 0.99)
-    rivals = tuple(
-        Candidate(one.of.hypothesis.cause, one.of.hypothesis.component, float(chance))
-        for one, chance in zip(others.values(), chances[1:], strict=True)
-    )
+    chance, rivals = _rivals(best, tries, [others[0] for _, others in enough])
     hypothesis = best.of.hypothesis
     course = CourseFound(
-        _finding(best, float(chances[0])),
+        _finding(best, chance),
         hypothesis,
         best.score - _cost(explained) - steady,
         rivals,
@@ -163,6 +156,31 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
         unmodelled_gains(problem, best.fit),
     )
     return _of_its_rows(explained, best.of, course)
+
+
+def _rivals(
+    best: _Fitted, tries: Sequence[_Fitted], others: Sequence[_Fitted]
+) -> tuple[float, tuple[Candidate, ...]]:
+    """How likely a cause with a course is, and those that the log cannot tell from it.
+
+    Causes as likely as it beside the same noise; and the best beside other noise or form, which weigh as much: what
+    the name depends on is not known.
+    """
+    weights = {best.of.hypothesis.label: 1.0}
+    known = {best.of.hypothesis.label: best.of.hypothesis}
+    near = [(one, float(np.exp(one.score - best.score))) for one in tries]
+    for one, weight in [*((one, 1.0) for one in others), *near]:
+        hypothesis = one.of.hypothesis
+        if weight > np.exp(-APART) and hypothesis.label not in weights:
+            weights[hypothesis.label] = weight
+            known[hypothesis.label] = hypothesis
+    total = sum(weights.values())
+    chance, *rest = (min(weight / total, 0.99) for weight in weights.values())
+    _, *hypotheses = known.values()
+    return chance, tuple(
+        Candidate(one.cause, one.component, share)
+        for one, share in zip(hypotheses, rest, strict=True)
+    )
 
 
 def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
