@@ -10,13 +10,13 @@ is missing. Any other unit has a fixed direction and reverses. The parameters `p
 from dataclasses import dataclass
 from math import inf, pi
 
+from shipcosim.models.allocation.cones import ConeChoice, cone_choice, cone_step
 from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
 from shipcosim.models.allocation.sqp import (
     AllocatedThruster,
     OptimalProblem,
     Turned,
     designed,
-    power_step,
     resting,
 )
 from shipcosim.models.allocation.units import NamedUnits
@@ -74,6 +74,20 @@ class OptimalParameters(NamedUnits):
         minimum=0.0,
     )
 
+    cone_margin: float = quantity(
+        0.05,
+        "1",
+        "share of the present cost by which other cones must be cheaper to be taken",
+        "assumed",
+        minimum=0.0,
+    )
+    cone_wait: float = quantity(
+        30.0, "s", "time for which other cones must be cheaper to be taken", "assumed", minimum=0.0
+    )
+    cone_average: float = quantity(
+        60.0, "s", "time constant of averaging what cones cost", "assumed", minimum=0.0
+    )
+
     @property
     def by_unit(self) -> dict[str, tuple]:
         """As of `NamedUnits`, and what belongs to turning."""
@@ -105,6 +119,11 @@ class OptimalParameters(NamedUnits):
     def prices(self) -> tuple:
         """Power over thrust^1.5, relative to an azimuth. [1]"""
         return 1.0, 1.0, self.tunnel_price
+
+    @property
+    def choice(self) -> ConeChoice | None:
+        """How the cones of the azimuths are chosen."""
+        return cone_choice(self.turning, self.cone_margin, self.cone_wait, self.cone_average)
 
     @property
     def lever_degraded(self) -> float:
@@ -162,6 +181,11 @@ class OptimalUnitsParameters(numbered_units(_fields), FixedAngleParameters):
         )
 
     @property
+    def choice(self) -> ConeChoice | None:
+        """Units keep their interval of angles."""
+        return None
+
+    @property
     def lever_degraded(self) -> float:
         """The lever is the same where a unit is missing. [m]"""
         return self.yaw_lever
@@ -189,7 +213,8 @@ def design(parameters: OptimalParameters | OptimalUnitsParameters) -> OptimalPro
     columns = map(p.of_units, (*names, "azimuth_rate", "thrust_least"))
     rows = zip(*columns, p.turning, p.sectors, p.prices, strict=True)
     units = tuple(_unit(*row) for row in rows)
-    return designed(units, p.turning_time, p.yaw_lever, p.lever_degraded)
+    problem = designed(units, p.turning_time, p.yaw_lever, p.lever_degraded)
+    return problem._replace(choice=p.choice)
 
 
 def _unit(x, y, azimuth, low, high, thrust_rate, azimuth_rate, least, turns, sector, price):
@@ -225,4 +250,4 @@ def at_rest(tau: Load, *, parameters: OptimalParameters | OptimalUnitsParameters
     return resting(tau, parameters.start_azimuths)
 
 
-step = power_step
+step = cone_step

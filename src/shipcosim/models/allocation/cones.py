@@ -1,0 +1,307 @@
+"""Choice of the cones of angles that azimuths keep to: ahead or astern, one each.
+
+The forbidden sectors leave an azimuth two cones, half a turn apart. For each pair of cones a plan runs beside the
+commands: the law of `sqp` on the same request, as if these were the only cones. What each plan costs, power and missed
+load, is averaged. The commands change to the cheapest pair if it has been cheaper by a margin for a while. One azimuth
+changes at a time: its thrust goes to zero, it turns through the sector, and its thrust comes back, all within the
+limits of their rates. The other units take its load over. No thrust is reversed.
+"""
+
+from itertools import product
+from typing import Any, NamedTuple
+
+from shipcosim.models.allocation.sqp import OptimalProblem, Turned, power_step, resting
+from shipcosim.models.core.maths import Arithmetic, atan2, clip, floor, pi, sincos, sqrt, where
+from shipcosim.models.core.motion import Load
+
+_FAR = 0.5  # rad from its plan: beyond it a unit can be at the wrong end of its cone
+_THERE = 0.1  # rad from its plan: nearer, a unit that shifts has arrived
+
+
+class ConeChoice(NamedTuple):
+    """How cones are chosen.
+
+    Parameters
+    ----------
+    cones : tuple of tuples of float
+        Every admissible choice: of each unit 0 for the interval of its parameters, 1 for the opposite one. [1]
+    margin : float
+        Share of the present cost by which another choice must be cheaper. [1]
+    wait : float
+        Time for which it must be cheaper. [s]
+    average : float
+        Time constant of averaging the costs. [s]
+    """
+
+    cones: tuple
+    margin: float
+    wait: float
+    average: float
+
+
+class ConeMemory(NamedTuple):
+    """What the choice remembers.
+
+    Parameters
+    ----------
+    half_turns : tuple of floats or (...) arrays or tensors
+        Half turns of each unit's present interval from that of its parameters. [1]
+    shifting : tuple, as many
+        1 while a unit turns idle to where the plan has it, else 0. [1]
+    wanted : tuple, as many
+        Cone that each unit is to have, as of `ConeChoice.cones`. [1]
+    waited, strayed : like a half turn
+        How long another choice has been cheaper, and how long the wanted plan has been cheaper than the commands. [s]
+    plans : tuple of Turned
+        State of the plan of each choice. [as its fields]
+    costs : tuple of floats or (...) arrays or tensors
+        Averaged cost of each plan. [price of power]
+    turn : int
+        Plan that is next. [1]
+    """
+
+    half_turns: tuple
+    shifting: tuple
+    wanted: tuple
+    waited: Arithmetic
+    strayed: Arithmetic
+    plans: tuple
+    costs: tuple
+    turn: int
+
+
+def cone_choice(two_cones: tuple, margin: float, wait: float, average: float) -> ConeChoice:
+    """Every choice of one cone a unit.
+
+    Parameters
+    ----------
+    two_cones : tuple of bool
+        Units that have the opposite cone too. [1]
+    margin, wait, average : float
+        As of `ConeChoice`. [1, s, s]
+
+    Returns
+    -------
+    ConeChoice
+        The first choice has the intervals of the parameters.
+
+    References
+    ----------
+    Definition.
+    """
+    cones = tuple(product(*((0.0, 1.0) if two else (0.0,) for two in two_cones)))
+    return ConeChoice(cones, margin, wait, average)
+
+
+def cone_step(
+    state: Turned,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    design: OptimalProblem,
+    shares: tuple | None = None,
+    parameters: Any = None,
+) -> Turned:
+    """Commands at the least power, in the cones that have been the cheapest.
+
+    Parameters
+    ----------
+    state, tau, available, h, shares, parameters
+        As of `sqp.power_step`. [as there]
+    design : OptimalProblem
+        The units and how their cones are chosen; without a choice units keep their intervals. [as its fields]
+
+    Returns
+    -------
+    Turned
+        Commands and the load they give.
+
+    References
+    ----------
+    As `sqp.power_step`; the choice of cones is this project's.
+    """
+    if design.choice is None:
+        return power_step(state, tau, available, h, design=design, shares=shares)
+    memory = state.memory or _started(state, tau, design)
+    memory = _planned(memory, tau, available, h, design, shares)
+    memory = _decided(memory, available, h, design)
+    # Angles of the plan of the wanted cones, and how far each unit is from them.
+    aimed = _aimed(memory, design)
+    gaps = tuple(_gap(aim, now) for aim, now in zip(aimed.azimuths, state.azimuths, strict=True))
+    memory = _strayed(memory, state, aimed, h, design)
+    memory, now = _shifted(_sent(memory, state, gaps, design), state, gaps, design)
+    new = power_step(state, tau, available, h, design=now, shares=shares)
+    return new._replace(memory=memory)
+
+
+def _within(design, half_turns):
+    """The problem with its intervals turned by half turns."""
+    units = tuple(
+        unit._replace(first=unit.first + pi * turns, last=unit.last + pi * turns)
+        for unit, turns in zip(design.units, half_turns, strict=True)
+    )
+    return design._replace(units=units)
+
+
+def _started(state, tau, design):
+    """Memory at the start: units keep to the intervals of their parameters; plans are at rest."""
+    zero = 0.0 * tau[0]
+    none = (zero,) * len(design.units)
+    plans = []
+    for cones in design.choice.cones:
+        units = zip(_within(design, cones).units, state.azimuths, strict=True)
+        angles = tuple(clip(zero + angle, unit.first, unit.last) for unit, angle in units)
+        plans.append(resting(tau, angles))
+    costs = (zero,) * len(plans)
+    # The start counts for nothing: thrusts come from zero, and angles from anywhere.
+    waited = zero - design.choice.average
+    return ConeMemory(none, none, none, waited, zero, tuple(plans), costs, 0)
+
+
+def _planned(memory, tau, available, h, design, shares):
+    """One plan goes on: they take turns, to save time, and each steps as far as all of them together."""
+    k = memory.turn
+    count = len(memory.plans)
+    far = count * h
+    within = _within(design, design.choice.cones[k])
+    plan = power_step(memory.plans[k], tau, available, far, design=within, shares=shares)
+    # Missed load counts as thrust of the dearest unit, which is more than any unit asks for it.
+    missed = abs(tau[0] - plan.tau_X) + abs(tau[1] - plan.tau_Y)
+    missed = missed + abs(tau[2] - plan.tau_N) / design.yaw_lever
+    # What only the rates keep from it is missed by every plan, and counts for none.
+    # What only the rates keep from it is missed by every plan, and counts for none.
+    cost = _power(plan, design) + where(plan.saturated, design.dearest * missed, 0.0 * missed)
+    # First-order average of the cost.
+    costs = list(memory.costs)
+    costs[k] = costs[k] + (cost - costs[k]) * (far / (design.choice.average + far))
+    plans = (*memory.plans[:k], plan, *memory.plans[k + 1 :])
+    return memory._replace(plans=plans, costs=tuple(costs), turn=(k + 1) % count)
+
+
+def _decided(memory, available, h, design):
+    """Change what is wanted where another choice has been cheaper for long enough."""
+    choice = design.choice
+    zero = 0.0 * memory.waited
+    present = zero
+    least = memory.costs[0]
+    cheapest = tuple(zero + cone for cone in choice.cones[0])
+    for cones, cost in zip(choice.cones, memory.costs, strict=True):
+        # Cost of what is wanted now.
+        differs = sum(abs(cone - want) for cone, want in zip(cones, memory.wanted, strict=True))
+        present = where(differs < 0.5, cost, present)
+        # Least cost of all.
+        less = cost < least
+        least = where(less, cost, least)
+        cheapest = tuple(
+            where(less, zero + cone, old) for cone, old in zip(cones, cheapest, strict=True)
+        )
+    # Where a unit is missing the others reverse instead: no cones change.
+    missing = sum(
+        where(on, 0.0, 1.0)
+        for on, unit in zip(available, design.units, strict=True)
+        if unit.most > 0.0
+    )
+    better = (least < (1.0 - choice.margin) * present) & (zero + missing < 0.5)
+    waited = where(better | (memory.waited < 0.0), memory.waited + h, zero)
+    change = waited > choice.wait
+    wanted = tuple(
+        where(change, new, old) for new, old in zip(cheapest, memory.wanted, strict=True)
+    )
+    return memory._replace(wanted=wanted, waited=where(change, zero, waited))
+
+
+def _aimed(memory, design):
+    """Plan of the wanted cones."""
+    found = memory.plans[0]._replace(memory=None)
+    for cones, plan in zip(design.choice.cones, memory.plans, strict=True):
+        differs = sum(abs(cone - want) for cone, want in zip(cones, memory.wanted, strict=True))
+        rows = zip(plan.azimuths, found.azimuths, strict=True)
+        azimuths = tuple(where(differs < 0.5, new, old) for new, old in rows)
+        rows = zip(plan.thrusts, found.thrusts, strict=True)
+        thrusts = tuple(where(differs < 0.5, new, old) for new, old in rows)
+        found = found._replace(thrusts=thrusts, azimuths=azimuths)
+    return found
+
+
+def _strayed(memory, state, aimed, h, design):
+    """Count how long the wanted plan has been cheaper: units can be at the wrong end of a cone."""
+    dear = (1.0 - design.choice.margin) * _power(state, design) > _power(aimed, design)
+    return memory._replace(strayed=where(dear, memory.strayed + h, 0.0 * memory.strayed))
+
+
+def _sent(memory, state, gaps, design):
+    """Send one unit to where the plan has it, if all run: the one with the least thrust first."""
+    units = _within(design, memory.half_turns).units
+    zero = 0.0 * memory.waited
+    idle = zero
+    first = zero + 1e300
+    due = []
+    rows = zip(
+        units, state.thrusts, state.azimuths, memory.half_turns, memory.wanted, gaps, strict=True
+    )
+    for unit, f, angle, turns, want, gap in rows:
+        # Due: in the wrong cone, or far from the plan although that has long been cheaper.
+        wrong = abs(_cone(turns) - want) > 0.5
+        strays = (memory.strayed > design.choice.wait) & (abs(gap) > _FAR)
+        sends = (wrong | strays) & (zero + unit.azimuth_rate > 0.0)
+        due.append(sends)
+        first = where(sends & (f < first), f, first)
+        # A unit runs if it is within its interval and gives its least thrust.
+        if unit.azimuth_rate > 0.0:
+            runs = (clip(angle, unit.first, unit.last) == angle) & (f > 0.99 * unit.least)
+            idle = idle + where(runs, zero, zero + 1.0)
+    ready = idle < 0.5
+    half_turns = []
+    shifting = []
+    rows = zip(
+        state.thrusts, memory.half_turns, memory.shifting, memory.wanted, gaps, due, strict=True
+    )
+    for f, turns, shifts, want, gap, sends in rows:
+        goes = sends & ready & (f <= first)
+        ready = ready & (goes == False)  # noqa: E712
+        # The shorter way, through the sector on that side.
+        side = where(gap > 0.0, zero + 1.0, zero - 1.0)
+        half_turns.append(turns + where(goes & (abs(_cone(turns) - want) > 0.5), side, zero))
+        shifting.append(where(goes, zero + 1.0, shifts))
+    return memory._replace(half_turns=tuple(half_turns), shifting=tuple(shifting))
+
+
+def _shifted(memory, state, gaps, design):
+    """The problem with the present intervals: of a unit that shifts it is where the plan has it."""
+    zero = 0.0 * memory.waited
+    within = _within(design, memory.half_turns)
+    units = []
+    shifting = []
+    rows = zip(within.units, state.azimuths, memory.shifting, gaps, strict=True)
+    for unit, angle, shifts, gap in rows:
+        if unit.azimuth_rate > 0.0:
+            # Outside of this interval the law takes the thrust away, then turns the unit there.
+            first = clip(angle + gap - _THERE, unit.first, unit.last)
+            last = clip(angle + gap + _THERE, unit.first, unit.last)
+            shifts = where((first <= angle) & (angle <= last), zero, shifts)
+            moves = shifts > 0.5
+            unit = unit._replace(
+                first=where(moves, first, zero + unit.first),
+                last=where(moves, last, zero + unit.last),
+            )
+        units.append(unit)
+        shifting.append(shifts)
+    return memory._replace(shifting=tuple(shifting)), within._replace(units=tuple(units))
+
+
+def _cone(half_turns):
+    """Cone after half turns: 0 or 1."""
+    return half_turns - 2.0 * floor(0.5 * half_turns)
+
+
+def _gap(aim, angle):
+    """Angle to an aim, the short way."""
+    s, c = sincos(aim - angle)
+    return atan2(s, c)
+
+
+def _power(state, design):
+    """Power of commands, in the unit of the prices."""
+    rows = zip(design.units, state.thrusts, strict=True)
+    return sum(unit.price * abs(f) * sqrt(abs(f)) for unit, f in rows)
