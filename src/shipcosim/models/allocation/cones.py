@@ -11,9 +11,21 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from shipcosim.models.allocation.sqp import OptimalProblem, Turned, power_step, resting
-from shipcosim.models.core.maths import Arithmetic, atan2, clip, floor, pi, sincos, sqrt, where
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    atan2,
+    clip,
+    floor,
+    maximum,
+    minimum,
+    pi,
+    sincos,
+    sqrt,
+    where,
+)
 from shipcosim.models.core.motion import Load
 
+_DEAR = 2.0  # cost over that of the cheapest plan, beyond which no plan counts
 _FAR = 0.5  # rad from its plan: beyond it a unit can be at the wrong end of its cone
 _THERE = 0.1  # rad from its plan: nearer, a unit that shifts has arrived
 
@@ -31,12 +43,15 @@ class ConeChoice(NamedTuple):
         Time for which it must be cheaper. [s]
     average : float
         Time constant of averaging the costs. [s]
+    thrust_most : float
+        Most thrust of a unit that may change its cone. [N]
     """
 
     cones: tuple
     margin: float
     wait: float
     average: float
+    thrust_most: float
 
 
 class ConeMemory(NamedTuple):
@@ -54,8 +69,8 @@ class ConeMemory(NamedTuple):
         How long another choice has been cheaper, and how long the wanted plan has been cheaper than the commands. [s]
     plans : tuple of Turned
         State of the plan of each choice. [as its fields]
-    costs : tuple of floats or (...) arrays or tensors
-        Averaged cost of each plan. [price of power]
+    latest, costs : tuple of floats or (...) arrays or tensors
+        Cost of each plan, at its last step and averaged. [price of power]
     turn : int
         Plan that is next. [1]
     """
@@ -66,19 +81,22 @@ class ConeMemory(NamedTuple):
     waited: Arithmetic
     strayed: Arithmetic
     plans: tuple
+    latest: tuple
     costs: tuple
     turn: int
 
 
-def cone_choice(two_cones: tuple, margin: float, wait: float, average: float) -> ConeChoice:
+def cone_choice(
+    two_cones: tuple, margin: float, wait: float, average: float, thrust_most: float
+) -> ConeChoice:
     """Every choice of one cone a unit.
 
     Parameters
     ----------
     two_cones : tuple of bool
         Units that have the opposite cone too. [1]
-    margin, wait, average : float
-        As of `ConeChoice`. [1, s, s]
+    margin, wait, average, thrust_most : float
+        As of `ConeChoice`. [1, s, s, N]
 
     Returns
     -------
@@ -90,7 +108,7 @@ def cone_choice(two_cones: tuple, margin: float, wait: float, average: float) ->
     Definition.
     """
     cones = tuple(product(*((0.0, 1.0) if two else (0.0,) for two in two_cones)))
-    return ConeChoice(cones, margin, wait, average)
+    return ConeChoice(cones, margin, wait, average, thrust_most)
 
 
 def cone_step(
@@ -156,7 +174,7 @@ def _started(state, tau, design):
     costs = (zero,) * len(plans)
     # The start counts for nothing: thrusts come from zero, and angles from anywhere.
     waited = zero - design.choice.average
-    return ConeMemory(none, none, none, waited, zero, tuple(plans), costs, 0)
+    return ConeMemory(none, none, none, waited, zero, tuple(plans), costs, costs, 0)
 
 
 def _planned(memory, tau, available, h, design, shares):
@@ -172,11 +190,19 @@ def _planned(memory, tau, available, h, design, shares):
     # What only the rates keep from it is missed by every plan, and counts for none.
     # What only the rates keep from it is missed by every plan, and counts for none.
     cost = _power(plan, design) + where(plan.saturated, design.dearest * missed, 0.0 * missed)
-    # First-order average of the cost.
-    costs = list(memory.costs)
-    costs[k] = costs[k] + (cost - costs[k]) * (far / (design.choice.average + far))
+    latest = (*memory.latest[:k], cost, *memory.latest[k + 1 :])
+    # First-order average. A plan that misses much counts as one of twice the cost of the cheapest:
+    # so it is soon believed when the request has changed.
+    most = latest[0]
+    for cost in latest[1:]:
+        most = minimum(most, cost)
+    share = h / (design.choice.average + h)
+    costs = tuple(
+        old + (minimum(new, _DEAR * most) - old) * share
+        for old, new in zip(memory.costs, latest, strict=True)
+    )
     plans = (*memory.plans[:k], plan, *memory.plans[k + 1 :])
-    return memory._replace(plans=plans, costs=tuple(costs), turn=(k + 1) % count)
+    return memory._replace(plans=plans, latest=latest, costs=costs, turn=(k + 1) % count)
 
 
 def _decided(memory, available, h, design):
@@ -213,7 +239,7 @@ def _decided(memory, available, h, design):
 
 def _aimed(memory, design):
     """Plan of the wanted cones."""
-    found = memory.plans[0]._replace(memory=None)
+    found = memory.plans[0]._replace(memory=())
     for cones, plan in zip(design.choice.cones, memory.plans, strict=True):
         differs = sum(abs(cone - want) for cone, want in zip(cones, memory.wanted, strict=True))
         rows = zip(plan.azimuths, found.azimuths, strict=True)
@@ -244,7 +270,9 @@ def _sent(memory, state, gaps, design):
         # Due: in the wrong cone, or far from the plan although that has long been cheaper.
         wrong = abs(_cone(turns) - want) > 0.5
         strays = (memory.strayed > design.choice.wait) & (abs(gap) > _FAR)
-        sends = (wrong | strays) & (zero + unit.azimuth_rate > 0.0)
+        sends = (
+            (wrong | strays) & (f <= design.choice.thrust_most) & (zero + unit.azimuth_rate > 0.0)
+        )
         due.append(sends)
         first = where(sends & (f < first), f, first)
         # A unit runs if it is within its interval and gives its least thrust.
@@ -303,5 +331,7 @@ def _gap(aim, angle):
 
 def _power(state, design):
     """Power of commands, in the unit of the prices."""
-    rows = zip(design.units, state.thrusts, strict=True)
-    return sum(unit.price * abs(f) * sqrt(abs(f)) for unit, f in rows)
+    # Sizes above nothing keep the derivative of the root finite.
+    sizes = [maximum(abs(f), 1e-9) for f in state.thrusts]
+    rows = zip(design.units, sizes, strict=True)
+    return sum(unit.price * (size * sqrt(size)) for unit, size in rows)

@@ -119,7 +119,7 @@ class Turned(NamedTuple):
     tau_N: Arithmetic
     saturated: Arithmetic
     marginal: tuple
-    memory: Any = None
+    memory: tuple = ()
 
 
 def designed(
