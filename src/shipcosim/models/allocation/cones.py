@@ -26,8 +26,8 @@ from shipcosim.models.core.maths import (
 from shipcosim.models.core.motion import Load
 
 _DEAR = 2.0  # cost over that of the cheapest plan, beyond which no plan counts
-_FAR = 0.5  # rad from its plan: beyond it a unit can be at the wrong end of its cone
-_THERE = 0.1  # rad from its plan: nearer, a unit that shifts has arrived
+_FAR = 1.2  # rad from its plan: beyond it a unit can be at the wrong end of its cone
+_THERE = 1.0  # rad from its plan: nearer, a unit that shifts gives thrust again
 
 
 class ConeChoice(NamedTuple):
@@ -39,8 +39,8 @@ class ConeChoice(NamedTuple):
         Every admissible choice: of each unit 0 for the interval of its parameters, 1 for the opposite one. [1]
     margin : float
         Share of the present cost by which another choice must be cheaper. [1]
-    wait : float
-        Time for which it must be cheaper. [s]
+    wait, wait_missed : float
+        Time for which it must be cheaper; the same where the present one misses load. [s]
     average : float
         Time constant of averaging the costs. [s]
     thrust_most : float
@@ -50,6 +50,7 @@ class ConeChoice(NamedTuple):
     cones: tuple
     margin: float
     wait: float
+    wait_missed: float
     average: float
     thrust_most: float
 
@@ -65,8 +66,9 @@ class ConeMemory(NamedTuple):
         1 while a unit turns idle to where the plan has it, else 0. [1]
     wanted : tuple, as many
         Cone that each unit is to have, as of `ConeChoice.cones`. [1]
-    waited, strayed : like a half turn
-        How long another choice has been cheaper, and how long the wanted plan has been cheaper than the commands. [s]
+    waited, missed, strayed : like a half turn
+        How long another choice has been cheaper, how long the wanted one has missed load that another gives, and how
+        long the wanted plan has been cheaper than the commands. [s]
     plans : tuple of Turned
         State of the plan of each choice. [as its fields]
     latest, costs : tuple of floats or (...) arrays or tensors
@@ -79,6 +81,7 @@ class ConeMemory(NamedTuple):
     shifting: tuple
     wanted: tuple
     waited: Arithmetic
+    missed: Arithmetic
     strayed: Arithmetic
     plans: tuple
     latest: tuple
@@ -87,7 +90,12 @@ class ConeMemory(NamedTuple):
 
 
 def cone_choice(
-    two_cones: tuple, margin: float, wait: float, average: float, thrust_most: float
+    two_cones: tuple,
+    margin: float,
+    wait: float,
+    wait_missed: float,
+    average: float,
+    thrust_most: float,
 ) -> ConeChoice:
     """Every choice of one cone a unit.
 
@@ -95,8 +103,8 @@ def cone_choice(
     ----------
     two_cones : tuple of bool
         Units that have the opposite cone too. [1]
-    margin, wait, average, thrust_most : float
-        As of `ConeChoice`. [1, s, s, N]
+    margin, wait, wait_missed, average, thrust_most : float
+        As of `ConeChoice`. [1, s, s, s, N]
 
     Returns
     -------
@@ -108,7 +116,7 @@ def cone_choice(
     Definition.
     """
     cones = tuple(product(*((0.0, 1.0) if two else (0.0,) for two in two_cones)))
-    return ConeChoice(cones, margin, wait, average, thrust_most)
+    return ConeChoice(cones, margin, wait, wait_missed, average, thrust_most)
 
 
 def cone_step(
@@ -174,7 +182,7 @@ def _started(state, tau, design):
     costs = (zero,) * len(plans)
     # The start counts for nothing: thrusts come from zero, and angles from anywhere.
     waited = zero - design.choice.average
-    return ConeMemory(none, none, none, waited, zero, tuple(plans), costs, costs, 0)
+    return ConeMemory(none, none, none, waited, zero, zero, tuple(plans), costs, costs, 0)
 
 
 def _planned(memory, tau, available, h, design, shares):
@@ -206,48 +214,64 @@ def _planned(memory, tau, available, h, design, shares):
 
 
 def _decided(memory, available, h, design):
-    """Change what is wanted where another choice has been cheaper for long enough."""
+    """Change what is wanted: where other cones have long been cheaper, or soon where the present ones miss load."""
     choice = design.choice
     zero = 0.0 * memory.waited
-    present = zero
-    least = memory.costs[0]
-    cheapest = tuple(zero + cone for cone in choice.cones[0])
-    for cones, cost in zip(choice.cones, memory.costs, strict=True):
-        # Cost of what is wanted now.
-        differs = sum(abs(cone - want) for cone, want in zip(cones, memory.wanted, strict=True))
-        present = where(differs < 0.5, cost, present)
-        # Least cost of all.
-        less = cost < least
-        least = where(less, cost, least)
-        cheapest = tuple(
-            where(less, zero + cone, old) for cone, old in zip(cones, cheapest, strict=True)
-        )
     # Where a unit is missing the others reverse instead: no cones change.
     missing = sum(
         where(on, 0.0, 1.0)
         for on, unit in zip(available, design.units, strict=True)
         if unit.most > 0.0
     )
-    better = (least < (1.0 - choice.margin) * present) & (zero + missing < 0.5)
+    whole = zero + missing < 0.5
+    # To save power: by averaged costs, slowly.
+    cheaper, least, present = _cheapest(memory, memory.costs, choice)
+    better = (least < (1.0 - choice.margin) * present) & whole
     waited = where(better | (memory.waited < 0.0), memory.waited + h, zero)
-    change = waited > choice.wait
-    wanted = tuple(
-        where(change, new, old) for new, old in zip(cheapest, memory.wanted, strict=True)
-    )
-    return memory._replace(wanted=wanted, waited=where(change, zero, waited))
+    saves = better & (waited > choice.wait)
+    # To give the load: by costs of this moment, soon. Missed load costs far more than power.
+    giving, least, present = _cheapest(memory, memory.latest, choice)
+    misses = (least * _DEAR < present) & whole
+    missed = where(misses, memory.missed + h, zero)
+    gives = misses & (missed > choice.wait_missed)
+    rows = zip(giving, cheaper, memory.wanted, strict=True)
+    wanted = tuple(where(gives, a, where(saves, b, old)) for a, b, old in rows)
+    # A change that was needed is not soon undone to save power.
+    waited = where(gives, zero - choice.average, where(saves, zero, waited))
+    return memory._replace(wanted=wanted, waited=waited, missed=where(gives, zero, missed))
+
+
+def _cheapest(memory, costs, choice):
+    """Cones of the least cost, that cost, and the cost of those that are wanted now."""
+    zero = 0.0 * memory.waited
+    present = zero
+    least = costs[0]
+    found = tuple(zero + cone for cone in choice.cones[0])
+    for cones, cost in zip(choice.cones, costs, strict=True):
+        present = where(_differ(cones, memory.wanted), present, cost)
+        less = cost < least
+        least = where(less, cost, least)
+        found = tuple(where(less, zero + cone, old) for cone, old in zip(cones, found, strict=True))
+    return found, least, present
+
+
+def _differ(cones, others):
+    """Whether two choices of cones differ."""
+    return sum(abs(cone - other) for cone, other in zip(cones, others, strict=True)) > 0.5
 
 
 def _aimed(memory, design):
     """Plan of the wanted cones."""
-    found = memory.plans[0]._replace(memory=())
+    found = memory.plans[0]
+    azimuths = found.azimuths
+    thrusts = found.thrusts
     for cones, plan in zip(design.choice.cones, memory.plans, strict=True):
-        differs = sum(abs(cone - want) for cone, want in zip(cones, memory.wanted, strict=True))
-        rows = zip(plan.azimuths, found.azimuths, strict=True)
-        azimuths = tuple(where(differs < 0.5, new, old) for new, old in rows)
-        rows = zip(plan.thrusts, found.thrusts, strict=True)
-        thrusts = tuple(where(differs < 0.5, new, old) for new, old in rows)
-        found = found._replace(thrusts=thrusts, azimuths=azimuths)
-    return found
+        other = _differ(cones, memory.wanted)
+        rows = zip(azimuths, plan.azimuths, strict=True)
+        azimuths = tuple(where(other, old, new) for old, new in rows)
+        rows = zip(thrusts, plan.thrusts, strict=True)
+        thrusts = tuple(where(other, old, new) for old, new in rows)
+    return found._replace(thrusts=thrusts, azimuths=azimuths)
 
 
 def _strayed(memory, state, aimed, h, design):

@@ -134,6 +134,13 @@ class OptimalParameters(TurningParameters):
     cone_wait: float = quantity(
         30.0, "s", "time for which other cones must be cheaper to be taken", "assumed", minimum=0.0
     )
+    cone_wait_missed: float = quantity(
+        2.0,
+        "s",
+        "the same where the present cones miss load that others give",
+        "assumed: shorter than a thrust takes to build up",
+        minimum=0.0,
+    )
     cone_average: float = quantity(
         60.0, "s", "time constant of averaging what cones cost", "assumed", minimum=0.0
     )
@@ -151,7 +158,7 @@ class OptimalParameters(TurningParameters):
         # An interval of half a turn or more has no opposite one.
         rows = zip(self.turning, self.sectors, strict=True)
         two = tuple(turns and last - first < pi for turns, (first, last) in rows)
-        times = self.cone_wait, self.cone_average
+        times = self.cone_wait, self.cone_wait_missed, self.cone_average
         return cone_choice(two, self.cone_margin, *times, self.cone_thrust_most)
 
 
