@@ -25,6 +25,7 @@ from shipcosim.models.core.maths import (
 )
 from shipcosim.models.core.motion import Load
 
+_LOSS = 10.0  # price of a missed newton over the largest price of a newton of thrust
 _DEAR = 2.0  # cost over that of the cheapest plan, beyond which no plan counts
 _FAR = 1.2  # rad from its plan: beyond it a unit can be at the wrong end of its cone
 _THERE = 1.0  # rad from its plan: nearer, a unit that shifts gives thrust again
@@ -43,6 +44,8 @@ class ConeChoice(NamedTuple):
         Time for which it must be cheaper; the same where the present one misses load. [s]
     average : float
         Time constant of averaging the costs. [s]
+    missed_most : float
+        Most force that the present one may miss and another not, a moment counted by the yaw lever. [N]
     thrust_most : float
         Most thrust of a unit that may change its cone. [N]
     """
@@ -52,6 +55,7 @@ class ConeChoice(NamedTuple):
     wait: float
     wait_missed: float
     average: float
+    missed_most: float
     thrust_most: float
 
 
@@ -89,34 +93,29 @@ class ConeMemory(NamedTuple):
     turn: int
 
 
-def cone_choice(
-    two_cones: tuple,
-    margin: float,
-    wait: float,
-    wait_missed: float,
-    average: float,
-    thrust_most: float,
-) -> ConeChoice:
-    """Every choice of one cone a unit.
+def cone_choices(two_cones: tuple) -> tuple:
+    """Every choice of one cone a unit, those of the parameters first.
 
     Parameters
     ----------
     two_cones : tuple of bool
         Units that have the opposite cone too. [1]
-    margin, wait, wait_missed, average, thrust_most : float
-        As of `ConeChoice`. [1, s, s, s, N]
 
     Returns
     -------
-    ConeChoice
-        The first choice has the intervals of the parameters.
+    tuple of tuples of float
+        As of `ConeChoice.cones`. [1]
 
     References
     ----------
     Definition.
+
+    Examples
+    --------
+    >>> cone_choices((True, False))
+    ((0.0, 0.0), (1.0, 0.0))
     """
-    cones = tuple(product(*((0.0, 1.0) if two else (0.0,) for two in two_cones)))
-    return ConeChoice(cones, margin, wait, wait_missed, average, thrust_most)
+    return tuple(product(*((0.0, 1.0) if two else (0.0,) for two in two_cones)))
 
 
 def cone_step(
@@ -192,12 +191,14 @@ def _planned(memory, tau, available, h, design, shares):
     far = count * h
     within = _within(design, design.choice.cones[k])
     plan = power_step(memory.plans[k], tau, available, far, design=within, shares=shares)
-    # Missed load counts as thrust of the dearest unit, which is more than any unit asks for it.
+    # Missed load counts far more than any unit asks for it.
     missed = abs(tau[0] - plan.tau_X) + abs(tau[1] - plan.tau_Y)
     missed = missed + abs(tau[2] - plan.tau_N) / design.yaw_lever
     # What only the rates keep from it is missed by every plan, and counts for none.
     # What only the rates keep from it is missed by every plan, and counts for none.
-    cost = _power(plan, design) + where(plan.saturated, design.dearest * missed, 0.0 * missed)
+    cost = _power(plan, design) + where(
+        plan.saturated, _LOSS * design.dearest * missed, 0.0 * missed
+    )
     latest = (*memory.latest[:k], cost, *memory.latest[k + 1 :])
     # First-order average. A plan that misses much counts as one of twice the cost of the cheapest:
     # so it is soon believed when the request has changed.
@@ -231,7 +232,7 @@ def _decided(memory, available, h, design):
     saves = better & (waited > choice.wait)
     # To give the load: by costs of this moment, soon. Missed load costs far more than power.
     giving, least, present = _cheapest(memory, memory.latest, choice)
-    misses = (least * _DEAR < present) & whole
+    misses = (present - least > _LOSS * design.dearest * choice.missed_most) & whole
     missed = where(misses, memory.missed + h, zero)
     gives = misses & (missed > choice.wait_missed)
     rows = zip(giving, cheaper, memory.wanted, strict=True)

@@ -11,7 +11,7 @@ is missing. Any other unit has a fixed direction and reverses. The parameters `p
 from dataclasses import dataclass
 from math import inf, pi
 
-from shipcosim.models.allocation.cones import ConeChoice, cone_choice, cone_step
+from shipcosim.models.allocation.cones import ConeChoice, cone_choices, cone_step
 from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
 from shipcosim.models.allocation.sqp import (
     AllocatedThruster,
@@ -134,11 +134,18 @@ class OptimalParameters(TurningParameters):
     cone_wait: float = quantity(
         30.0, "s", "time for which other cones must be cheaper to be taken", "assumed", minimum=0.0
     )
+    cone_missed_most: float = quantity(
+        1000.0,
+        "N",
+        "force that the present cones may miss and others give; more changes them at once",
+        "assumed: some 2 % of full thrust",
+        minimum=0.0,
+    )
     cone_wait_missed: float = quantity(
-        2.0,
+        5.0,
         "s",
-        "the same where the present cones miss load that others give",
-        "assumed: shorter than a thrust takes to build up",
+        "time for which the present cones must miss more than that",
+        "assumed: longer than noise and gusts",
         minimum=0.0,
     )
     cone_average: float = quantity(
@@ -158,8 +165,15 @@ class OptimalParameters(TurningParameters):
         # An interval of half a turn or more has no opposite one.
         rows = zip(self.turning, self.sectors, strict=True)
         two = tuple(turns and last - first < pi for turns, (first, last) in rows)
-        times = self.cone_wait, self.cone_wait_missed, self.cone_average
-        return cone_choice(two, self.cone_margin, *times, self.cone_thrust_most)
+        return ConeChoice(
+            cone_choices(two),
+            self.cone_margin,
+            self.cone_wait,
+            self.cone_wait_missed,
+            self.cone_average,
+            self.cone_missed_most,
+            self.cone_thrust_most,
+        )
 
 
 def _fields(number):
