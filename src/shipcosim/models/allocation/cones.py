@@ -150,7 +150,7 @@ def cone_step(
         return power_step(state, tau, available, h, design=design, shares=shares)
     memory = state.memory or _started(state, tau, design)
     memory = _planned(memory, tau, available, h, design, shares)
-    memory = _decided(memory, available, h, design)
+    memory = _decided(memory, state, available, h, design)
     # Angles of the plan of the wanted cones, and how far each unit is from them.
     aimed = _aimed(memory, design)
     gaps = tuple(_gap(aim, now) for aim, now in zip(aimed.azimuths, state.azimuths, strict=True))
@@ -214,25 +214,25 @@ def _planned(memory, tau, available, h, design, shares):
     return memory._replace(plans=plans, latest=latest, costs=costs, turn=(k + 1) % count)
 
 
-def _decided(memory, available, h, design):
+def _decided(memory, state, available, h, design):
     """Change what is wanted: where other cones have long been cheaper, or soon where the present ones miss load."""
     choice = design.choice
     zero = 0.0 * memory.waited
-    # Where a unit is missing the others reverse instead: no cones change.
-    missing = sum(
-        where(on, 0.0, 1.0)
-        for on, unit in zip(available, design.units, strict=True)
-        if unit.most > 0.0
-    )
-    whole = zero + missing < 0.5
+    # Where a unit is missing the others reverse instead, and where one pushes much it keeps its cone.
+    busy = zero
+    for unit, f, on in zip(design.units, state.thrusts, available, strict=True):
+        if unit.most > 0.0:
+            much = (zero + unit.azimuth_rate > 0.0) & (f > choice.thrust_most)
+            busy = busy + where(on, where(much, zero + 1.0, zero), zero + 1.0)
+    free = busy < 0.5
     # To save power: by averaged costs, slowly.
     cheaper, least, present = _cheapest(memory, memory.costs, choice)
-    better = (least < (1.0 - choice.margin) * present) & whole
+    better = (least < (1.0 - choice.margin) * present) & free
     waited = where(better | (memory.waited < 0.0), memory.waited + h, zero)
     saves = better & (waited > choice.wait)
     # To give the load: by costs of this moment, soon. Missed load costs far more than power.
     giving, least, present = _cheapest(memory, memory.latest, choice)
-    misses = (present - least > _LOSS * design.dearest * choice.missed_most) & whole
+    misses = (present - least > _LOSS * design.dearest * choice.missed_most) & free
     missed = where(misses, memory.missed + h, zero)
     gives = misses & (missed > choice.wait_missed)
     rows = zip(giving, cheaper, memory.wanted, strict=True)
