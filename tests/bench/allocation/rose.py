@@ -13,6 +13,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).res
 from ships import parameters  # noqa: E402
 
 from allocation.laws import LAWS  # noqa: E402
+from allocation.loops import loads  # noqa: E402
 from allocation.optimum import best  # noqa: E402
 from shipcosim.models.allocation.power import PowerParameters  # noqa: E402
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters  # noqa: E402
@@ -40,10 +41,11 @@ def balance(speed: float, wind_from: np.ndarray) -> np.ndarray:
 def held_power(law: str, tau: tuple) -> float:
     """Power at the end of a request that is held from rest, or infinite where it is not met. [W]"""
     one = LAWS[law]()
+    commands = one.step(tau, (True, True, True), STEP)
     for _ in range(round(HELD / STEP)):
         commands = one.step(tau, (True, True, True), STEP)
-    fmu = one.fmu
-    if max(abs(fmu.slack_X), abs(fmu.slack_Y), abs(fmu.slack_N) / 10.0) > 5.0:
+    missed = np.abs(np.array(tau) - loads(np.array(commands.thrusts), np.array(commands.azimuths)))
+    if (missed > (5.0, 5.0, 50.0)).any():
         return np.inf
     ship, full = parameters(AllocationParameters), parameters(PowerParameters)
     most = ship.azimuth_thrust_max, ship.azimuth_thrust_max, ship.tunnel_thrust_max
