@@ -13,14 +13,14 @@ from shipcosim.angles import wrap
 from shipcosim.models.allocation import neural_law
 from shipcosim.models.allocation.neural import Units
 from shipcosim.models.allocation.neural_law import NeuralLaw, Remembered, resting
-from shipcosim.models.allocation.optimal import OptimalParameters, OptimalUnitsParameters
+from shipcosim.models.allocation.optimal import OptimalUnitsParameters, TurningParameters
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import UNITS, numbered_units, quantity
 from shipcosim.models.propulsion.interaction import InteractionParameters, pair_table
 
 
 @dataclass(frozen=True, kw_only=True)
-class NeuralParameters(OptimalParameters):
+class NeuralParameters(TurningParameters):
     """Two azimuth thrusters that turn and a tunnel thruster."""
 
     azimuth_diameter: float = quantity(
@@ -34,7 +34,7 @@ class NeuralParameters(OptimalParameters):
 
     @property
     def by_unit(self) -> dict[str, tuple]:
-        """As of `OptimalParameters`, and the propeller diameters."""
+        """As of `TurningParameters`, and the propeller diameters."""
         return super().by_unit | {"diameter": (self.azimuth_diameter, self.azimuth_diameter, 0.0)}
 
     @property

@@ -83,6 +83,8 @@ class OptimalProblem(NamedTuple):
         A missed yaw moment weighs as a missed force at this distance; the same where a unit is missing. [m]
     dearest : float
         Largest price of one newton more of a unit. [W/N]
+    choice : ConeChoice, optional
+        How `cones` chooses the intervals of angles; without it they stay. [as its fields]
     """
 
     units: tuple
@@ -90,6 +92,7 @@ class OptimalProblem(NamedTuple):
     yaw_lever: float
     yaw_lever_degraded: float
     dearest: float
+    choice: Any = None
 
 
 class Turned(NamedTuple):
@@ -105,6 +108,8 @@ class Turned(NamedTuple):
         True where limits or missing units keep the commands from meeting the request. [1]
     marginal : tuple of three, like a thrust
         Power that one unit more of each load would cost. [W/N, W/N, W/(N.m)]
+    memory : ConeMemory, optional
+        What the choice of cones remembers. [as its fields]
     """
 
     thrusts: tuple
@@ -114,6 +119,7 @@ class Turned(NamedTuple):
     tau_N: Arithmetic
     saturated: Arithmetic
     marginal: tuple
+    memory: tuple = ()
 
 
 def designed(

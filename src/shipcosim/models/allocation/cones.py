@@ -1,0 +1,362 @@
+"""Choice of the cones of angles that azimuths keep to: ahead or astern, one each.
+
+The forbidden sectors leave an azimuth two cones, half a turn apart. For each pair of cones a plan runs beside the
+commands: the law of `sqp` on the same request, as if these were the only cones. What each plan costs, power and missed
+load, is averaged. The commands change to the cheapest pair if it has been cheaper by a margin for a while. One azimuth
+changes at a time: its thrust goes to zero, it turns through the sector, and its thrust comes back, all within the
+limits of their rates. The other units take its load over. No thrust is reversed.
+"""
+
+from itertools import product
+from typing import Any, NamedTuple
+
+from shipcosim.models.allocation.sqp import OptimalProblem, Turned, power_step, resting
+from shipcosim.models.core.maths import (
+    Arithmetic,
+    atan2,
+    clip,
+    floor,
+    maximum,
+    minimum,
+    pi,
+    sincos,
+    sqrt,
+    where,
+)
+from shipcosim.models.core.motion import Load
+
+_LOSS = 10.0  # price of a missed newton over the largest price of a newton of thrust
+_DEAR = 2.0  # cost over that of the cheapest plan, beyond which no plan counts
+_FAR = 1.2  # rad from its plan: beyond it a unit can be at the wrong end of its cone
+_THERE = 1.0  # rad from its plan: nearer, a unit that shifts gives thrust again
+
+
+class ConeChoice(NamedTuple):
+    """How cones are chosen.
+
+    Parameters
+    ----------
+    cones : tuple of tuples of float
+        Every admissible choice: of each unit 0 for the interval of its parameters, 1 for the opposite one. [1]
+    margin : float
+        Share of the present cost by which another choice must be cheaper. [1]
+    wait, wait_missed : float
+        Time for which it must be cheaper; the same where the present one misses load. [s]
+    average : float
+        Time constant of averaging the costs. [s]
+    missed_most : float
+        Most force that the present one may miss and another not, a moment counted by the yaw lever. [N]
+    thrust_most : float
+        Most thrust of a unit that may change its cone. [N]
+    """
+
+    cones: tuple
+    margin: float
+    wait: float
+    wait_missed: float
+    average: float
+    missed_most: float
+    thrust_most: float
+
+
+class ConeMemory(NamedTuple):
+    """What the choice remembers.
+
+    Parameters
+    ----------
+    half_turns : tuple of floats or (...) arrays or tensors
+        Half turns of each unit's present interval from that of its parameters. [1]
+    shifting : tuple, as many
+        1 while a unit turns idle to where the plan has it, else 0. [1]
+    wanted : tuple, as many
+        Cone that each unit is to have, as of `ConeChoice.cones`. [1]
+    waited, missed, strayed : like a half turn
+        How long another choice has been cheaper, how long the wanted one has missed load that another gives, and how
+        long the wanted plan has been cheaper than the commands. [s]
+    plans : tuple of Turned
+        State of the plan of each choice. [as its fields]
+    latest, costs : tuple of floats or (...) arrays or tensors
+        Cost of each plan, at its last step and averaged. [price of power]
+    turn : int
+        Plan that is next. [1]
+    """
+
+    half_turns: tuple
+    shifting: tuple
+    wanted: tuple
+    waited: Arithmetic
+    missed: Arithmetic
+    strayed: Arithmetic
+    plans: tuple
+    latest: tuple
+    costs: tuple
+    turn: int
+
+
+def cone_choices(two_cones: tuple) -> tuple:
+    """Every choice of one cone a unit, those of the parameters first.
+
+    Parameters
+    ----------
+    two_cones : tuple of bool
+        Units that have the opposite cone too. [1]
+
+    Returns
+    -------
+    tuple of tuples of float
+        As of `ConeChoice.cones`. [1]
+
+    References
+    ----------
+    Definition.
+
+    Examples
+    --------
+    >>> cone_choices((True, False))
+    ((0.0, 0.0), (1.0, 0.0))
+    """
+    return tuple(product(*((0.0, 1.0) if two else (0.0,) for two in two_cones)))
+
+
+def cone_step(
+    state: Turned,
+    tau: Load,
+    available: tuple,
+    h: float,
+    *,
+    design: OptimalProblem,
+    shares: tuple | None = None,
+    parameters: Any = None,
+) -> Turned:
+    """Commands at the least power, in the cones that have been the cheapest.
+
+    Parameters
+    ----------
+    state, tau, available, h, shares, parameters
+        As of `sqp.power_step`. [as there]
+    design : OptimalProblem
+        The units and how their cones are chosen; without a choice units keep their intervals. [as its fields]
+
+    Returns
+    -------
+    Turned
+        Commands and the load they give.
+
+    References
+    ----------
+    As `sqp.power_step`; the choice of cones is this project's.
+    """
+    if design.choice is None:
+        return power_step(state, tau, available, h, design=design, shares=shares)
+    memory = state.memory or _started(state, tau, design)
+    memory = _planned(memory, tau, available, h, design, shares)
+    memory = _decided(memory, state, available, h, design)
+    # Angles of the plan of the wanted cones, and how far each unit is from them.
+    aimed = _aimed(memory, design)
+    gaps = tuple(_gap(aim, now) for aim, now in zip(aimed.azimuths, state.azimuths, strict=True))
+    memory = _strayed(memory, state, aimed, h, design)
+    memory, now = _shifted(_sent(memory, state, gaps, design), state, gaps, design)
+    new = power_step(state, tau, available, h, design=now, shares=shares)
+    return new._replace(memory=memory)
+
+
+def _within(design, half_turns):
+    """The problem with its intervals turned by half turns."""
+    units = tuple(
+        unit._replace(first=unit.first + pi * turns, last=unit.last + pi * turns)
+        for unit, turns in zip(design.units, half_turns, strict=True)
+    )
+    return design._replace(units=units)
+
+
+def _started(state, tau, design):
+    """Memory at the start: units keep to the intervals of their parameters; plans are at rest."""
+    zero = 0.0 * tau[0]
+    none = (zero,) * len(design.units)
+    plans = []
+    for cones in design.choice.cones:
+        units = zip(_within(design, cones).units, state.azimuths, strict=True)
+        angles = tuple(clip(zero + angle, unit.first, unit.last) for unit, angle in units)
+        plans.append(resting(tau, angles))
+    costs = (zero,) * len(plans)
+    # The start counts for nothing: thrusts come from zero, and angles from anywhere.
+    waited = zero - design.choice.average
+    return ConeMemory(none, none, none, waited, zero, zero, tuple(plans), costs, costs, 0)
+
+
+def _planned(memory, tau, available, h, design, shares):
+    """One plan goes on: they take turns, to save time, and each steps as far as all of them together."""
+    k = memory.turn
+    count = len(memory.plans)
+    far = count * h
+    within = _within(design, design.choice.cones[k])
+    plan = power_step(memory.plans[k], tau, available, far, design=within, shares=shares)
+    # Missed load counts far more than any unit asks for it.
+    missed = abs(tau[0] - plan.tau_X) + abs(tau[1] - plan.tau_Y)
+    missed = missed + abs(tau[2] - plan.tau_N) / design.yaw_lever
+    # What only the rates keep from it is missed by every plan, and counts for none.
+    # What only the rates keep from it is missed by every plan, and counts for none.
+    cost = _power(plan, design) + where(
+        plan.saturated, _LOSS * design.dearest * missed, 0.0 * missed
+    )
+    latest = (*memory.latest[:k], cost, *memory.latest[k + 1 :])
+    # First-order average. A plan that misses much counts as one of twice the cost of the cheapest:
+    # so it is soon believed when the request has changed.
+    most = latest[0]
+    for cost in latest[1:]:
+        most = minimum(most, cost)
+    share = h / (design.choice.average + h)
+    costs = tuple(
+        old + (minimum(new, _DEAR * most) - old) * share
+        for old, new in zip(memory.costs, latest, strict=True)
+    )
+    plans = (*memory.plans[:k], plan, *memory.plans[k + 1 :])
+    return memory._replace(plans=plans, latest=latest, costs=costs, turn=(k + 1) % count)
+
+
+def _decided(memory, state, available, h, design):
+    """Change what is wanted: where other cones have long been cheaper, or soon where the present ones miss load."""
+    choice = design.choice
+    zero = 0.0 * memory.waited
+    # Where a unit is missing the others reverse instead, and where one pushes much it keeps its cone.
+    busy = zero
+    for unit, f, on in zip(design.units, state.thrusts, available, strict=True):
+        if unit.most > 0.0:
+            much = (zero + unit.azimuth_rate > 0.0) & (f > choice.thrust_most)
+            busy = busy + where(on, where(much, zero + 1.0, zero), zero + 1.0)
+    free = busy < 0.5
+    # To save power: by averaged costs, slowly.
+    cheaper, least, present = _cheapest(memory, memory.costs, choice)
+    better = (least < (1.0 - choice.margin) * present) & free
+    waited = where(better | (memory.waited < 0.0), memory.waited + h, zero)
+    saves = better & (waited > choice.wait)
+    # To give the load: by costs of this moment, soon. Missed load costs far more than power.
+    giving, least, present = _cheapest(memory, memory.latest, choice)
+    misses = (present - least > _LOSS * design.dearest * choice.missed_most) & free
+    missed = where(misses, memory.missed + h, zero)
+    gives = misses & (missed > choice.wait_missed)
+    rows = zip(giving, cheaper, memory.wanted, strict=True)
+    wanted = tuple(where(gives, a, where(saves, b, old)) for a, b, old in rows)
+    # A change that was needed is not soon undone to save power.
+    waited = where(gives, zero - choice.average, where(saves, zero, waited))
+    return memory._replace(wanted=wanted, waited=waited, missed=where(gives, zero, missed))
+
+
+def _cheapest(memory, costs, choice):
+    """Cones of the least cost, that cost, and the cost of those that are wanted now."""
+    zero = 0.0 * memory.waited
+    present = zero
+    least = costs[0]
+    found = tuple(zero + cone for cone in choice.cones[0])
+    for cones, cost in zip(choice.cones, costs, strict=True):
+        present = where(_differ(cones, memory.wanted), present, cost)
+        less = cost < least
+        least = where(less, cost, least)
+        found = tuple(where(less, zero + cone, old) for cone, old in zip(cones, found, strict=True))
+    return found, least, present
+
+
+def _differ(cones, others):
+    """Whether two choices of cones differ."""
+    return sum(abs(cone - other) for cone, other in zip(cones, others, strict=True)) > 0.5
+
+
+def _aimed(memory, design):
+    """Plan of the wanted cones."""
+    found = memory.plans[0]
+    azimuths = found.azimuths
+    thrusts = found.thrusts
+    for cones, plan in zip(design.choice.cones, memory.plans, strict=True):
+        other = _differ(cones, memory.wanted)
+        rows = zip(azimuths, plan.azimuths, strict=True)
+        azimuths = tuple(where(other, old, new) for old, new in rows)
+        rows = zip(thrusts, plan.thrusts, strict=True)
+        thrusts = tuple(where(other, old, new) for old, new in rows)
+    return found._replace(thrusts=thrusts, azimuths=azimuths)
+
+
+def _strayed(memory, state, aimed, h, design):
+    """Count how long the wanted plan has been cheaper: units can be at the wrong end of a cone."""
+    dear = (1.0 - design.choice.margin) * _power(state, design) > _power(aimed, design)
+    return memory._replace(strayed=where(dear, memory.strayed + h, 0.0 * memory.strayed))
+
+
+def _sent(memory, state, gaps, design):
+    """Send one unit to where the plan has it, if all run: the one with the least thrust first."""
+    units = _within(design, memory.half_turns).units
+    zero = 0.0 * memory.waited
+    idle = zero
+    first = zero + 1e300
+    due = []
+    rows = zip(
+        units, state.thrusts, state.azimuths, memory.half_turns, memory.wanted, gaps, strict=True
+    )
+    for unit, f, angle, turns, want, gap in rows:
+        # Due: in the wrong cone, or far from the plan although that has long been cheaper.
+        wrong = abs(_cone(turns) - want) > 0.5
+        strays = (memory.strayed > design.choice.wait) & (abs(gap) > _FAR)
+        sends = (
+            (wrong | strays) & (f <= design.choice.thrust_most) & (zero + unit.azimuth_rate > 0.0)
+        )
+        due.append(sends)
+        first = where(sends & (f < first), f, first)
+        # A unit runs if it is within its interval and gives its least thrust.
+        if unit.azimuth_rate > 0.0:
+            runs = (clip(angle, unit.first, unit.last) == angle) & (f > 0.99 * unit.least)
+            idle = idle + where(runs, zero, zero + 1.0)
+    ready = idle < 0.5
+    half_turns = []
+    shifting = []
+    rows = zip(
+        state.thrusts, memory.half_turns, memory.shifting, memory.wanted, gaps, due, strict=True
+    )
+    for f, turns, shifts, want, gap, sends in rows:
+        goes = sends & ready & (f <= first)
+        ready = ready & (goes == False)  # noqa: E712
+        # The shorter way, through the sector on that side.
+        side = where(gap > 0.0, zero + 1.0, zero - 1.0)
+        half_turns.append(turns + where(goes & (abs(_cone(turns) - want) > 0.5), side, zero))
+        shifting.append(where(goes, zero + 1.0, shifts))
+    return memory._replace(half_turns=tuple(half_turns), shifting=tuple(shifting))
+
+
+def _shifted(memory, state, gaps, design):
+    """The problem with the present intervals: of a unit that shifts it is where the plan has it."""
+    zero = 0.0 * memory.waited
+    within = _within(design, memory.half_turns)
+    units = []
+    shifting = []
+    rows = zip(within.units, state.azimuths, memory.shifting, gaps, strict=True)
+    for unit, angle, shifts, gap in rows:
+        if unit.azimuth_rate > 0.0:
+            # Outside of this interval the law takes the thrust away, then turns the unit there.
+            first = clip(angle + gap - _THERE, unit.first, unit.last)
+            last = clip(angle + gap + _THERE, unit.first, unit.last)
+            shifts = where((first <= angle) & (angle <= last), zero, shifts)
+            moves = shifts > 0.5
+            unit = unit._replace(
+                first=where(moves, first, zero + unit.first),
+                last=where(moves, last, zero + unit.last),
+            )
+        units.append(unit)
+        shifting.append(shifts)
+    return memory._replace(shifting=tuple(shifting)), within._replace(units=tuple(units))
+
+
+def _cone(half_turns):
+    """Cone after half turns: 0 or 1."""
+    return half_turns - 2.0 * floor(0.5 * half_turns)
+
+
+def _gap(aim, angle):
+    """Angle to an aim, the short way."""
+    s, c = sincos(aim - angle)
+    return atan2(s, c)
+
+
+def _power(state, design):
+    """Power of commands, in the unit of the prices."""
+    # Sizes above nothing keep the derivative of the root finite.
+    sizes = [maximum(abs(f), 1e-9) for f in state.thrusts]
+    rows = zip(design.units, sizes, strict=True)
+    return sum(unit.price * (size * sqrt(size)) for unit, size in rows)
