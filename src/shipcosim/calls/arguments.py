@@ -36,6 +36,18 @@ from shipcosim.units import UnitError, seconds
 if TYPE_CHECKING:
     import xarray
 
+Settings = Mapping[str, object] | None
+"""Start values by full name."""
+
+
+Components = Mapping[str, AnyPath] | None
+"""FMUs that components run in place of their own."""
+
+
+AnyTime = float | str | None
+"""A time as users give it: in s, or such as ``"10 min"``."""
+
+
 AnyScenario = AnyPath | Scenario
 
 SYSTEM_OF_LOGS = "gunnerus_open"
@@ -94,7 +106,7 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
     return found
 
 
-def fmus_of(components: Mapping[str, AnyPath] | None) -> dict[str, Path]:
+def fmus_of(components: Components) -> dict[str, Path]:
     """FMUs in place of components' own, by path or name."""
     found = {}
     problems = []
@@ -125,7 +137,7 @@ class Reading:
     """
 
     parameters: Sequence[AnyPath] = ()
-    components: Mapping[str, AnyPath] | None = None
+    components: Components = None
     fmus: Sequence[AnyPath] = ()
     strict: bool = False
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -16,7 +16,7 @@ from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.options import RunOptions
+from shipcosim.options import CountProgress, RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
@@ -40,7 +40,7 @@ def replay(
     step_size: float | None = None,
     output_interval: float | None = None,
     signals: Sequence[str] | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> xarray.Dataset:
     """Run a system over segments of a record.
 

@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario.amounts import unit_complaints, units_of
-from shipcosim.scenario.locations import problem_at
+from shipcosim.scenario.locations import Keys, problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
 from shipcosim.units import UnitError, amount, number_in, whole_steps
@@ -109,7 +109,7 @@ def check_times(scenario: Scenario, start_time: float = 0.0) -> Iterator[Problem
 
 def time_complaints(
     scenario: Scenario, start_time: float = 0.0
-) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
+) -> Iterator[tuple[Keys, str, str, str]]:
     """Problems with the times of a scenario whose run starts at a time [s]: (keys, found, remedy, severity)."""
     step = scenario.step_size
     stop = scenario.stop_time
@@ -126,7 +126,7 @@ def time_complaints(
         )
         return
     # Every time in the file must fall on a step.
-    times: list[tuple[tuple[str | int, ...], float]] = [
+    times: list[tuple[Keys, float]] = [
         (("stop_time",), stop),
         (("output_interval",), scenario.output_interval or step),
         *((("events", number, "time"), event.time) for number, event in enumerate(scenario.events)),

@@ -9,6 +9,7 @@ import lxml.etree as etree
 
 from shipcosim.errors import Problem
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
@@ -37,7 +38,7 @@ def assemble_fmu(
     parameters: ParameterSets,
     fmus: Iterable[AnyPath],
     findings: Findings,
-    swapped: Mapping[str, Path] | None = None,
+    swapped: Swapped = None,
 ) -> System | None:
     """System of one FMU, or None.
 

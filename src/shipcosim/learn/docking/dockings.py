@@ -5,7 +5,7 @@ numbers (within tolerances), in form, and by a load that is new each time. The p
 none of this.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -15,6 +15,7 @@ import numpy as np
 from shipcosim.cosim import simulate
 from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
 from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
+from shipcosim.learn.training import Progress
 from shipcosim.learn.true_ships import (
     DAMPING,
     MEMORY,
@@ -176,7 +177,7 @@ def sail_all(
     dockings: Iterable[Docking],
     *,
     processes: int = 2,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[Record]:
     """Co-simulate several dockings, in their order; those that `sail` refuses are left out.
 

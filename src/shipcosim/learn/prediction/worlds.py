@@ -6,7 +6,7 @@ manoeuvres, loses all thrust at a drawn time and drifts for 160 s.
 """
 
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim import simulate, system_of
+from shipcosim.learn.training import Progress
 from shipcosim.learn.true_ships import (
     DAMPING,
     MEMORY,
@@ -233,7 +234,7 @@ def sail_all(
     worlds: Iterable[World],
     *,
     processes: int = 2,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[Record]:
     """Co-simulate several worlds, in their order.
 

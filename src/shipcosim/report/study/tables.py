@@ -202,6 +202,9 @@ class Column:
         return f"{self.name} {number}" if with_name else number
 
 
+Columns = Mapping[str, Column]
+
+
 def signed(value: float, digits: int = 4) -> str:
     """A number as a table cell shows it.
 

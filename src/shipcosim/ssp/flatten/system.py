@@ -9,7 +9,7 @@ from shipcosim.errors import Problem, ShipcosimError, it_has, suggestion
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.read.package import Package
-from shipcosim.ssp.read.structure import Experiment
+from shipcosim.ssp.read.structure import End, Experiment
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import Unit, find_unit
 
@@ -128,7 +128,7 @@ class System:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
         return f"<System {self.name!r}: {counts}>"
 
-    def split(self, signal: str, where: str = "") -> tuple[str | None, str]:
+    def split(self, signal: str, where: str = "") -> End:
         """Component and variable that a signal's name means.
 
         Parameters
