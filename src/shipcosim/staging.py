@@ -83,8 +83,12 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
             try:
                 yield stage
             except ShipcosimError as error:
+                # Each problem gets the name that the file would have had.
                 raise ShipcosimError(
-                    [_at_home(problem, stage, folder) for problem in error.problems]
+                    [
+                        replace(problem, where=problem.where.replace(str(stage), str(folder)))
+                        for problem in error.problems
+                    ]
                 ) from error
             written = [file.name for file in stage.iterdir()]
             set_aside(folder, {*written, *replaced}, force=force)
@@ -155,8 +159,3 @@ def _say(aside: Path) -> None:
     print(
         f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr
     )
-
-
-def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:
-    """The problem with the name that the file would have had."""
-    return replace(problem, where=problem.where.replace(str(stage), str(folder)))

@@ -128,7 +128,13 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
         for name, unit in units.items()
     ]
     # The second method needs the simulator's own models and limits.
-    simulated = _simulated(body, units)
+    limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
+    simulated = Simulated(
+        _filled(HullParameters, body),
+        _filled(WindParameters, body),
+        _filled(DriftParameters, body),
+        limits,
+    )
     buses = _buses(system, list(units))
     return Vessel(
         ship.name, ship.description, system.name, hull, tuple(made), simulated, said, buses
@@ -251,16 +257,6 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
         ahead=ahead,
         astern=astern,
         angle=angles[kind] if kind in angles else _real(unit, "azimuth_in"),
-    )
-
-
-def _simulated(body: Component, units: Mapping[str, Component]) -> Simulated:
-    limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
-    return Simulated(
-        _filled(HullParameters, body),
-        _filled(WindParameters, body),
-        _filled(DriftParameters, body),
-        limits,
     )
 
 

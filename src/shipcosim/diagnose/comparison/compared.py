@@ -165,7 +165,12 @@ def compared(log: CheckedLog) -> ComparedLog:
     comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
-        found = _relabelled(found, labels)
+        # The log with sides and signs of the thrusters put right.
+        sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
+        faults = [finding_of(_label(change, found.log), sure) for change in labels.best.changes]
+        faults = (*found.faults, *faults)
+        right = in_stretches(repaired(found.log, faults), found.ship.parts["hull"].length)
+        found = replace(found, faults=faults, repaired=right)
     return _started_with_crude_model(found) if gross else found
 
 
@@ -241,15 +246,6 @@ def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, 
 
 def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:
     return ComparedLog(log.log, log.ship, log.causes, log.faults, log.repaired, comparison)
-
-
-def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
-    """The log with sides and signs of the thrusters put right."""
-    sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
-    faults = [finding_of(_label(change, log.log), sure) for change in labels.best.changes]
-    faults = (*log.faults, *faults)
-    right = in_stretches(repaired(log.log, faults), log.ship.parts["hull"].length)
-    return replace(log, faults=faults, repaired=right)
 
 
 def _label(change: LabelError, log: xarray.Dataset):

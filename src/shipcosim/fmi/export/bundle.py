@@ -260,16 +260,12 @@ def _renamed(module: Module, package: str, modules: Mapping[str, Module]) -> byt
         ].decode()
         # The number of lines must not change: tracebacks then show the right line.
         new = (
-            _renamed_from(old, package)
+            re.sub(r"^(from[\s\\]+)", rf"\g<1>{package}.", old)
             if isinstance(node, ast.ImportFrom)
             else _renamed_import(node, package, modules)
         )
         lines[first : last + 1] = [before + new.encode() + after]
     return b"".join(lines)
-
-
-def _renamed_from(old: str, package: str) -> str:
-    return re.sub(r"^(from[\s\\]+)", rf"\g<1>{package}.", old)
 
 
 def _renamed_import(node: ast.Import, package: str, modules: Mapping[str, Module]) -> str:

@@ -230,7 +230,11 @@ class Draft:
                 for path in sorted(folder.rglob("*"))
                 if path.is_file()
             }
-            files = {name.as_posix(): path for name, path in found.items() if not _is_hidden(name)}
+            files = {
+                name.as_posix(): path
+                for name, path in found.items()
+                if not any(part.startswith(".") for part in name.parts)
+            }
         # FMUs that were found elsewhere, then every changed file.
         files |= self.package.located
         for path, held in self.package.held.items():
@@ -246,10 +250,6 @@ class Draft:
 
 
 PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
-
-
-def _is_hidden(name: Path) -> bool:
-    return any(part.startswith(".") for part in name.parts)
 
 
 def _is_elsewhere(file: Path | bytes, folder: Path) -> bool:

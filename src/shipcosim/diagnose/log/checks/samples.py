@@ -303,7 +303,9 @@ def wraps(log: dict) -> list[Finding]:
     heading = log["heading"]
     bad = np.zeros(len(heading), bool)
     fine = quantum(heading)
-    faster = _no_turn(heading)
+    # Change from row to row that is no turn of this craft, however agile she is. [deg]
+    change = np.abs(wrap_series(np.diff(heading[np.isfinite(heading)])))
+    faster = max(NO_TURN, FASTER * float(np.quantile(change, 0.75))) if len(change) else NO_TURN
     full = np.where(
         np.abs(heading) <= fine, heading + 360.0, heading
     )  # 359.98 rounded is written as 0.0
@@ -323,12 +325,6 @@ def wraps(log: dict) -> list[Finding]:
         if segments
         else []
     )
-
-
-def _no_turn(heading):
-    """Change from row to row that is no turn of this craft, however agile she is. [deg]"""
-    change = np.abs(wrap_series(np.diff(heading[np.isfinite(heading)])))
-    return max(NO_TURN, FASTER * float(np.quantile(change, 0.75))) if len(change) else NO_TURN
 
 
 def _long_way(time, heading, a, b, tolerance, faster):
