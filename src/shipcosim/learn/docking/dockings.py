@@ -111,15 +111,13 @@ def draw(seed: int, distance: float = 1.0) -> Docking:
     return Docking(seed, port.number, values | true_ship(distance))
 
 
-def scenario(docking: Docking, *, step_size: float = STEP) -> Scenario:
+def scenario(docking: Docking) -> Scenario:
     """The scenario of a docking, for `shipcosim.cosim.simulate`.
 
     Parameters
     ----------
     docking : Docking
         As drawn.
-    step_size : float
-        Of the co-simulation. [s]
 
     Returns
     -------
@@ -132,21 +130,19 @@ def scenario(docking: Docking, *, step_size: float = STEP) -> Scenario:
         parameters=[PARAMETERS],
         components=TRUE,
         stop_time=STOP,
-        step_size=step_size,
+        step_size=STEP,
         output_interval=1.0,
         set=docking.set,
     )
 
 
-def sail(docking: Docking, *, step_size: float = STEP) -> Record:
+def sail(docking: Docking) -> Record:
     """Co-simulate a docking.
 
     Parameters
     ----------
     docking : Docking
         As drawn.
-    step_size : float
-        Of the co-simulation. [s]
 
     Returns
     -------
@@ -159,7 +155,7 @@ def sail(docking: Docking, *, step_size: float = STEP) -> Record:
         She is not there after `STOP`, or too early.
     """
     # The predictor acts on nothing, so the run leaves it out.
-    table = simulate(_without_predictor(), scenario(docking, step_size=step_size))
+    table = simulate(_without_predictor(), scenario(docking))
     # Stage 3 of the helmsman: she lies at the berth.
     moored = np.flatnonzero(np.asarray(table["helmsman.stage"]) == 3)
     if not len(moored) or moored[0] < SAMPLES:
