@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypedDict
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 if TYPE_CHECKING:
     import xarray
@@ -80,7 +80,7 @@ class RunOptions:
     def __post_init__(self):
         if self.isolate and not 0.0 < self.timeout < float("inf"):
             found = f"{self.timeout:g} s is no time limit."
-            raise ShipcosimError(Problem("timeout", found, "Give a positive number."))
+            raise error_at("timeout", found, "Give a positive number.")
 
     def changed(self, names: tuple[str, ...]) -> list[str]:
         """Names among these whose value is not the default."""

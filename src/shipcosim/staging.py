@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.temporary import temporary_folder
 
 
@@ -102,12 +102,10 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
                 folder.rmdir()
         if not isinstance(error, OSError):
             raise
-        raise ShipcosimError(
-            Problem(
-                str(folder),
-                f"Results cannot be written here: {error.strerror}.",
-                "Choose another folder (--out).",
-            )
+        raise error_at(
+            str(folder),
+            f"Results cannot be written here: {error.strerror}.",
+            "Choose another folder (--out).",
         ) from error
 
 

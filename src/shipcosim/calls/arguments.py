@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from shipcosim import cosim, library
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
 from shipcosim.scenario import Scenario, check_files, check_times
@@ -314,9 +314,7 @@ def scenario_of(
             is_time = argument in ("stop_time", "step_size", "output_interval")
             problems.append(replace(problem, where=named(argument)) if is_time else problem)
         raise ShipcosimError(problems) from None
-    found = check_times(scenario, start_time)
-    if problems := [problem for problem in found if problem.severity == "error"]:
-        raise ShipcosimError(problems)
+    raise_errors(check_times(scenario, start_time))
     return (
         scenario
         if given is None

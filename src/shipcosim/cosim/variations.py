@@ -23,7 +23,7 @@ from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import Slave
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
-from shipcosim.errors import ShipcosimError
+from shipcosim.errors import ShipcosimError, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.series import make_table
@@ -170,8 +170,7 @@ class _Runs:
         for name in variation.values:
             self._system.split(name, "variation")
         found = check_scenario(variation.scenario, self._system, self._options.start_time)
-        if errors := [problem for problem in found if problem.severity == "error"]:
-            raise ShipcosimError(errors)
+        raise_errors(found)
         time_grid_of(variation.scenario, self._options.start_time)
 
     def run(self, variation: Variation, slaves: _Source) -> Done:

@@ -28,7 +28,7 @@ from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
@@ -294,7 +294,7 @@ def _opened(engine, open_session, job):
     try:
         return open_session(job)
     except EngineError as error:
-        raise ShipcosimError(Problem(engine, f"refuses the system. {error}")) from error
+        raise error_at(engine, f"refuses the system. {error}") from error
 
 
 def _advance(session, job, check_interrupt):
