@@ -25,6 +25,11 @@ CountProgress = Callable[[int, int], None]
 """Is called with how many are done, and of how many."""
 
 
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RunOptions:
     """How a run is carried out.
