@@ -142,7 +142,7 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
             continue
         together.append({})
         for component in system.components.values():
-            kinds = component.fmu.variables
+            kinds = component.variables
             given = {
                 name: value
                 for name, value in component.start.items()

@@ -175,7 +175,7 @@ def _bad_times(starts, duration, step_size, output_interval):
 def _per_segment(name, given, system, n):
     """Start value of a signal for each segment, in the unit of the variable."""
     component, variable = system.split(name, "replay: states")
-    owners = system.inputs if component is None else system.components[component].fmu.variables
+    owners = system.inputs if component is None else system.components[component].variables
     # A value with a unit is converted; a plain number is in the variable's unit.
     try:
         factor, offset = conversion(getattr(given, "attrs", {}).get("units"), owners[variable].unit)

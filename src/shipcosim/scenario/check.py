@@ -166,7 +166,7 @@ def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
         if missing := [
             name for name in component.left_out if f"{component.name}.{name}" not in given
         ]:
-            units = {name: component.fmu.variables[name].unit for name in missing}
+            units = {name: component.variables[name].unit for name in missing}
             names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
             found = f"parameters left out, which have no value of their own: {names}."
             yield Problem(
@@ -255,7 +255,7 @@ def _event_complaint(
         kind = system.inputs[name].type or ""
         items = system.inputs[name].items
     else:
-        variable = system.components[component].fmu.variables[name]
+        variable = system.components[component].variables[name]
         kind = variable.kind
         items = variable.items
         may_change = variable.causality in ("input", "output") or (
@@ -319,7 +319,7 @@ def _expect_complaint(
     # Inputs of the system and changed signals are always recorded.
     if component is None or signal in changed:
         return None
-    variable = system.components[component].fmu.variables[name]
+    variable = system.components[component].variables[name]
     # A connected input repeats its source and is not recorded.
     feeding = next((c.source for c in system.connections if c.target == (component, name)), None)
     if variable.causality == "input" and feeding is not None:

@@ -83,7 +83,7 @@ def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, 
     # Inputs belong to the system, all other variables to the component.
     for signal, value in settings.items():
         variable = signal.removeprefix(f"{name}.")
-        known = variable in component.fmu.variables
+        known = variable in component.variables
         named[variable if variable in system.inputs or not known else f"{name}.{variable}"] = value
     return named
 

@@ -220,7 +220,7 @@ def _fits(text: str, system: "System") -> bool:
 
 def _outputs(system: "System") -> Iterator[str]:
     for component in system.components.values():
-        names = (v.name for v in component.fmu.variables.values() if v.causality == "output")
+        names = (v.name for v in component.variables.values() if v.causality == "output")
         yield from (f"{component.name}.{name}" for name in names)
 
 

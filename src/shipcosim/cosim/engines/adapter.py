@@ -338,12 +338,12 @@ def unsupported(
         if interface_type_of(component) == "ModelExchange":
             found = f"runs as model exchange, which {engine} does not do."
             problems.append(Problem(component.name, found, "The engine fmpy does."))
-        if wide := [v.name for v in component.fmu.variables.values() if v.type in WIDE]:
+        if wide := [v.name for v in component.variables.values() if v.type in WIDE]:
             found = (
                 f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
             )
             problems.append(Problem(component.name, found))
-        if items := [v.name for v in component.fmu.variables.values() if v.kind == "Enumeration"]:
+        if items := [v.name for v in component.variables.values() if v.kind == "Enumeration"]:
             problems.append(
                 Problem(
                     component.name,

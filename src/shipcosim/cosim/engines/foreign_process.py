@@ -70,7 +70,7 @@ def _run(host, path, scenario, set_name, system):
     outputs = {
         f"{name}.{v.name}": (name, v.name, v.value_reference, v.kind, v.unit or "")
         for name, component in system.components.items()
-        for v in component.fmu.variables.values()
+        for v in component.variables.values()
         if v.causality == "output" and v.kind in KINDS
     }
     job = {

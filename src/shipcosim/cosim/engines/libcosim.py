@@ -154,7 +154,7 @@ class LibcosimSession:
         self._observe()
 
     def _start(self, name):
-        variables = self._job.system.components[name].fmu.variables
+        variables = self._job.system.components[name].variables
         slave = self._indices[name]
         for variable, value in self._job.starts(name).items():
             kind = variables[variable].kind

@@ -226,7 +226,7 @@ def _hidden(system, exposed):
     for component in system.components.values():
         for name, value in component.start.items():
             if (component.name, name) not in shown:
-                variable = component.fmu.variables[name]
+                variable = component.variables[name]
                 yield ContainerVariable(
                     "", "local", variable, ((component.name, name),), start=value
                 )
@@ -239,7 +239,7 @@ def _variable(one, system, numbers):
         "mappings": [
             {
                 "component": numbers[name],
-                "valueReference": system.components[name].fmu.variables[own].value_reference,
+                "valueReference": system.components[name].variables[own].value_reference,
             }
             for name, own in one.ends
         ],

@@ -99,7 +99,7 @@ def _as_typed(value, kind):
 
 
 def _initial_values(job, name):
-    variables = job.system.components[name].fmu.variables
+    variables = job.system.components[name].variables
     starts = {
         variable: (variables[variable].kind, value) for variable, value in job.starts(name).items()
     }
@@ -112,7 +112,7 @@ def _initial_values(job, name):
 def _values_problems(job):
     for name, component in job.system.components.items():
         for variable in component.start:
-            kind = component.fmu.variables[variable].kind
+            kind = component.variables[variable].kind
             if kind not in TYPES:
                 yield Problem(
                     f"{name}.{variable}",
