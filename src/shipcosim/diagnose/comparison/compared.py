@@ -134,7 +134,7 @@ def compared(log: CheckedLog) -> ComparedLog:
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on.
     """
-    length = log.ship.parts["hull"].length
+    length = log.ship.length
     log = replace(log, repaired=in_stretches(log.repaired, length))
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
@@ -143,7 +143,7 @@ def compared(log: CheckedLog) -> ComparedLog:
     errors = errors_of(record, felt, ship)
     # What to say where rows are too far apart for the ship's answers.
     step = float(np.diff(log.repaired["time"].values[:2])[0])
-    most = RESOLVED * froude_time(ship.parts["hull"].length)
+    most = RESOLVED * froude_time(ship.length)
     said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
     too_slow = (said,) if step > most else ()
     unknown = _unknown_thrusters(log.repaired, ship)
@@ -169,7 +169,7 @@ def compared(log: CheckedLog) -> ComparedLog:
         sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
         faults = [finding_of(_label(change, found.log), sure) for change in labels.best.changes]
         faults = (*found.faults, *faults)
-        right = in_stretches(repaired(found.log, faults), found.ship.parts["hull"].length)
+        right = in_stretches(repaired(found.log, faults), found.ship.length)
         found = replace(found, faults=faults, repaired=right)
     return _started_with_crude_model(found) if gross else found
 
@@ -188,7 +188,7 @@ def with_crude(
     comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel, causes: dict[str, Cause]
 ) -> LogComparison:
     """The comparison with the crude model where it predicts better; else with the ratio alone, where that is plain."""
-    length = ship.parts["hull"].length
+    length = ship.length
     logged = as_logged(ship, repaired)
     record = record_of(repaired, logged)
     felt = felt_by(record, length)

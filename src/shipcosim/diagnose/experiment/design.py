@@ -274,7 +274,7 @@ def keeps_track(
     motion: Motion, track: Motion, manoeuvres: Sequence[Manoeuvre], dp: DpController
 ) -> np.ndarray:
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
-    length = dp.model.parts["hull"].length
+    length = dp.model.length
     found = []
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
