@@ -3,6 +3,7 @@
 Run `python docs/generators/write_dp_loop.py` after observer, control law or their parameters have changed.
 """
 
+import sys
 from pathlib import Path
 
 import matplotlib
@@ -12,19 +13,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from shipcosim.models.control.margins import (
-    AXES,
-    Delays,
-    linear_loop,
-    margins,
-    open_loop,
-    wave_suppression,
-)
+from shipcosim.models.control.margins import AXES, Delays, linear_loop, margins, open_loop
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.ships import read_ship
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests")]
+
+from wave_suppression import wave_suppression  # noqa: E402
+
 PAGE, PICTURE = ROOT / "docs" / "dp-loop.md", ROOT / "docs" / "images" / "dp-loop.png"
 BEGIN, END = "<!-- table of the margins -->\n", "<!-- end of the table -->"
 COLUMNS = (

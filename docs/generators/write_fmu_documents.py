@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim import simulate
-from shipcosim.fmi.export.description import table_of_variables
+from shipcosim.fmi.export.description import full_text, text_of
 from shipcosim.library import build_stale
 from shipcosim.models.allocation.pseudo_inverse import AllocationParameters
 from shipcosim.models.control.pid import ControlParameters
@@ -168,6 +168,7 @@ PARAMETERS = {
     },
 }
 """FMU: its parameters in its reference result that are neither the ship's nor as by default."""
+LONGEST_SHOWN = 24  # characters of a start value in a table for readers
 
 
 def fmu_class(name):
@@ -207,6 +208,41 @@ def parameters_of(name):
             key: quantity.value for key, quantity in quantities[component].items() if key in known
         }
     return found | PARAMETERS.get(name, {})
+
+
+def table_of_variables(cls):
+    """The variables of an FMU class as a Markdown table.
+
+    Parameters
+    ----------
+    cls : type
+        Subclass of `Fmu`.
+
+    Returns
+    -------
+    str
+        Table with a head, one row a variable, ending in a line break.
+    """
+    rows = ["| variable | kind | type | unit | start | meaning |", "|---|---|---|---|---|---|"]
+    for v in cls.variables:
+        kind = f"tunable {v.causality}" if v.tunable else v.causality
+        start = (
+            "required"
+            if v.required
+            else ""
+            if v.causality == "output" or v.start == ""
+            else _shown(v.start)
+        )
+        rows.append(
+            f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {full_text(v).replace('|', '&#124;')} |"
+        )
+    return "\n".join(rows) + "\n"
+
+
+def _shown(start):
+    """A start value, cut where it is long."""
+    text = text_of(start)
+    return f"`{text}`" if len(text) <= LONGEST_SHOWN else f"`{text[:LONGEST_SHOWN]}` ..."
 
 
 def readme(name):

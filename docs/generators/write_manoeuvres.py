@@ -4,19 +4,23 @@ Run `python docs/generators/write_manoeuvres.py` after a manoeuvre, a cause or a
 takes seconds.
 """
 
+import sys
 from pathlib import Path
 
 import numpy as np
 
-from shipcosim.diagnose.experiment.design import testability
-from shipcosim.diagnose.experiment.manoeuvres import library
-from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue
-from shipcosim.diagnose.inference.innovations import Noise
-from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.library import build_stale
-from shipcosim.ssp import read_system
-
 ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "bench")]
+
+from manoeuvres.testability import testability  # noqa: E402
+
+from shipcosim.diagnose.experiment.manoeuvres import library  # noqa: E402
+from shipcosim.diagnose.hypotheses.catalogue import hypotheses_of, read_catalogue  # noqa: E402
+from shipcosim.diagnose.inference.innovations import Noise  # noqa: E402
+from shipcosim.diagnose.ship.ship_of_system import ship_model_of  # noqa: E402
+from shipcosim.library import build_stale  # noqa: E402
+from shipcosim.ssp import read_system  # noqa: E402
+
 PAGE = ROOT / "docs" / "generated" / "manoeuvres.md"
 HEAD = """# The manoeuvres of the library, and what each shows
 

@@ -7,10 +7,13 @@ ten minutes. Those of the kinetic predictor are printed, for ssp/ships/gunnerus-
 import sys
 from pathlib import Path
 
-from shipcosim.learn.prediction.regions import calibrated, scores
-from shipcosim.learn.prediction.worlds import draw, sail_all
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tests" / "bench")]
 
-FILE = Path(__file__).resolve().parents[2] / "fmus" / "drift_predictor" / "weights" / "regions.toml"
+from prediction.regions import calibrated, scores  # noqa: E402
+from shipcosim.learn.prediction.worlds import draw, sail_all  # noqa: E402
+
+FILE = ROOT / "fmus" / "drift_predictor" / "weights" / "regions.toml"
 SEEDS = range(200, 240)
 HEAD = "# Regions with 90 % of the truths, by variant; written by docs/generators/write_regions.py, worlds 200-239.\n"
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 
 LATE = 1e9  # s; beyond what any run has
 SMALLEST_STEP = 1e-6
@@ -48,9 +48,7 @@ def check_any(file: str, channels: Path | None = None, hosts: Iterable[str] = ()
     """
     path = Path(file.partition("#")[0])
     if not path.exists():
-        raise ShipcosimError(
-            Problem(file, "There is no such file or folder.", "Give the path of one.")
-        )
+        raise error_at(file, "There is no such file or folder.", "Give the path of one.")
     try:
         if hosts and (problems := _host_problems(file, path, hosts)) is not None:
             return [*check_any(file, channels), *problems]

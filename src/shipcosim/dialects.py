@@ -7,7 +7,7 @@ import json
 import re
 from collections import Counter
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 NOTHING = frozenset(
     (
@@ -184,13 +184,13 @@ def decimal_of(source: str, cells: list[str]) -> str | None:
     )
     if decimal and grouping:
         found = f"a comma is a decimal sign in '{decimal}' and groups thousands in '{grouping}'."
-        raise ShipcosimError(Problem(source, found, "Write all numbers alike."))
+        raise error_at(source, found, "Write all numbers alike.")
     if decimal or grouping:
         return "," if decimal else "."
     cell = cells[0]
     found = f"'{cell}' can be {cell.replace(',', '.')} (decimal comma) or {cell.replace(',', '')} (thousands)."
     remedy = 'Say which in a channel file: file = {decimal = ","} or file = {decimal = "."}.'
-    raise ShipcosimError(Problem(source, found, remedy))
+    raise error_at(source, found, remedy)
 
 
 def _is_decimal(cell, sign, other):

@@ -142,6 +142,17 @@ def error_at(where: str, found: str, remedy: str = "") -> ShipcosimError:
     return ShipcosimError(Problem(where, found, remedy))
 
 
+def raise_errors(problems: Iterable[Problem]) -> None:
+    """Raise ShipcosimError with the errors among problems, if there are any; remarks pass.
+
+    Examples
+    --------
+    >>> raise_errors([Problem("dp.ssd", "has no step size.", severity="remark")])
+    """
+    if errors := [problem for problem in problems if problem.severity == "error"]:
+        raise ShipcosimError(errors)
+
+
 def held_strictly(problems: Iterable[Problem]) -> list[Problem]:
     """The problems, with flaws that have only one meaning as errors.
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypedDict
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 if TYPE_CHECKING:
     import xarray
@@ -23,6 +23,11 @@ TIMEOUT = 60.0
 
 CountProgress = Callable[[int, int], None]
 """Is called with how many are done, and of how many."""
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,7 +85,7 @@ class RunOptions:
     def __post_init__(self):
         if self.isolate and not 0.0 < self.timeout < float("inf"):
             found = f"{self.timeout:g} s is no time limit."
-            raise ShipcosimError(Problem("timeout", found, "Give a positive number."))
+            raise error_at("timeout", found, "Give a positive number.")
 
     def changed(self, names: tuple[str, ...]) -> list[str]:
         """Names among these whose value is not the default."""

@@ -30,7 +30,7 @@ from shipcosim.dialects import (
     name_in,
     separator_of,
 )
-from shipcosim.errors import Problem, ShipcosimError, reading
+from shipcosim.errors import Problem, ShipcosimError, error_at, reading
 from shipcosim.units import UnitError, spelled_conversion
 
 if TYPE_CHECKING:
@@ -113,8 +113,8 @@ def write_table(table: xarray.Dataset, path: str | os.PathLike) -> None:
     writers = {".nc": _netcdf, ".csv": _csv}
     path = Path(path)
     if path.suffix not in writers:
-        raise ShipcosimError(
-            Problem(str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv.")
+        raise error_at(
+            str(path), f"a table cannot be written as '{path.suffix}'.", "Use .nc or .csv."
         )
     write_file(path, writers[path.suffix](table))
 
@@ -188,15 +188,13 @@ def _suffix(path: str | os.PathLike, known: Iterable[str]) -> str:
     path = Path(path)
     suffix = next((s for s in known if path.name.endswith(s)), None)
     if path.is_dir():
-        raise ShipcosimError(
-            Problem(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
-        )
+        raise error_at(str(path), "is a folder, no table.", f"Tables are {', '.join(known)}.")
     if suffix is None:
-        raise ShipcosimError(
-            Problem(str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}.")
+        raise error_at(
+            str(path), f"'{path.suffix}' is no table.", f"Tables are {', '.join(known)}."
         )
     if not path.is_file():
-        raise ShipcosimError(Problem(str(path), "there is no such file."))
+        raise error_at(str(path), "there is no such file.")
     return suffix
 
 
@@ -224,10 +222,8 @@ def write_file(path: str | os.PathLike, content: bytes) -> None:
     except OSError as error:
         part.unlink(missing_ok=True)
         size = f"{len(content) / 1e6:.1f} MB"
-        raise ShipcosimError(
-            Problem(
-                str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed."
-            )
+        raise error_at(
+            str(path), f"cannot be written: {error.strerror or error}.", f"{size} are needed."
         ) from error
     except BaseException:
         part.unlink(missing_ok=True)
@@ -272,7 +268,7 @@ def conversion(unit_from: str | None, unit_to: str | None) -> tuple[float, float
     try:
         return spelled_conversion(unit_from, unit_to)
     except UnitError as error:
-        raise ShipcosimError(Problem("", error.found, error.remedy)) from error
+        raise error_at("", error.found, error.remedy) from error
 
 
 def _netcdf(table: xarray.Dataset) -> bytes:
@@ -328,7 +324,7 @@ def _open_netcdf(path: Path) -> xarray.Dataset:
     ) as error:  # of a damaged file xarray, h5netcdf and h5py raise anything, MemoryError too
         said = "".join(c if c.isprintable() else " " for c in str(error))[:200].rstrip(".")
         found = f"is no NetCDF 4 file that can be read: {said or type(error).__name__}."
-        raise ShipcosimError(Problem(str(path), found, "Write or copy it again.")) from error
+        raise error_at(str(path), found, "Write or copy it again.") from error
 
 
 def _within_valid_range(table: xarray.Dataset) -> xarray.Dataset:
@@ -404,8 +400,8 @@ def _read_columns(path: Path) -> list[tuple[str, str, np.ndarray]]:
     """Name, unit and values of each column of a CSV or Parquet file."""
     headers, columns = _read_parquet(path) if path.name.endswith(".parquet") else _read_csv(path)
     if not len(columns) or not len(columns[0]):
-        raise ShipcosimError(
-            Problem(str(path), "has no row below its header.", "Each row is a time and its values.")
+        raise error_at(
+            str(path), "has no row below its header.", "Each row is a time and its values."
         )
     found = []
     for (name, unit), values in zip(map(_name_and_unit, headers), columns, strict=True):
@@ -422,9 +418,7 @@ def _read_csv(path: Path) -> tuple[list[str], list[tuple[str, ...]]]:
     except (OSError, EOFError, csv.Error, UnicodeDecodeError, zlib.error) as error:
         raise ShipcosimError(_unreadable(path, error)) from error
     except MemoryError as error:
-        raise ShipcosimError(
-            Problem(str(path), "is larger than the memory.", "Read a part of it.")
-        ) from error
+        raise error_at(str(path), "is larger than the memory.", "Read a part of it.") from error
     if not rows:
         raise ShipcosimError(_unreadable(path, ValueError("Empty CSV file")))
     if decimal == ",":
@@ -454,7 +448,7 @@ def unpacked_bytes(path: Path) -> bytes:
         text = packed.read(most + 1)
     if len(text) > most:
         found = f"unpacks to more than {MOST_PACKED} times its size."
-        raise ShipcosimError(Problem(str(path), found, "Unpack it, and look at what it holds."))
+        raise error_at(str(path), found, "Unpack it, and look at what it holds.")
     return text
 
 
@@ -481,9 +475,7 @@ def _read_parquet(path: Path) -> tuple[list[str], list[np.ndarray]]:
         from pyarrow.parquet import ParquetFile
     except ImportError as error:
         remedy = 'Install it: pip install "shipcosim[parquet]". Or save the table as CSV.'
-        raise ShipcosimError(
-            Problem(str(path), "pyarrow, which reads Parquet, is not here.", remedy)
-        ) from error
+        raise error_at(str(path), "pyarrow, which reads Parquet, is not here.", remedy) from error
     try:
         file = ParquetFile(path)
         about = file.metadata
@@ -556,8 +548,8 @@ def _seconds_in(unit: str, path: Path) -> float:
     try:
         return conversion(unit, "s")[0]
     except ShipcosimError as error:
-        raise ShipcosimError(
-            Problem(f"{path}, column 'time'", error.problems[0].found, "It should be in s.")
+        raise error_at(
+            f"{path}, column 'time'", error.problems[0].found, "It should be in s."
         ) from error
 
 

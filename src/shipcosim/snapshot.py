@@ -11,7 +11,7 @@ from math import inf, isfinite
 from pathlib import Path
 from typing import Any
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.scenario import step_times
 from shipcosim.series import write_file
 
@@ -106,14 +106,10 @@ def read_snapshot(path: str | os.PathLike) -> Snapshot:
             raise ValueError("its components are others than those whose FMUs it names")
         return Snapshot(**_typed(facts), states=states)
     except OSError as error:
-        raise ShipcosimError(
-            Problem(str(path), f"cannot be read: {error.strerror or error}.")
-        ) from error
+        raise error_at(str(path), f"cannot be read: {error.strerror or error}.") from error
     except Exception as error:  # of a damaged archive the decompressors raise anything
         remedy = "Snapshots come from --store or simulate(..., store=...)."
-        raise ShipcosimError(
-            Problem(str(path), f"is no snapshot of a run: {error}.", remedy)
-        ) from error
+        raise error_at(str(path), f"is no snapshot of a run: {error}.", remedy) from error
 
 
 def opened(snapshot: Snapshot | str | os.PathLike[str] | None) -> Snapshot | None:
@@ -143,7 +139,7 @@ def writer(
         return store
     if not Path(store).absolute().parent.is_dir():
         found = "There is no such folder to store the state in."
-        raise ShipcosimError(Problem(str(store), found, "Make it first."))
+        raise error_at(str(store), found, "Make it first.")
     return partial(write_snapshot, path=store)
 
 

@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.temporary import temporary_folder
 
 
@@ -83,8 +83,12 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
             try:
                 yield stage
             except ShipcosimError as error:
+                # Each problem gets the name that the file would have had.
                 raise ShipcosimError(
-                    [_at_home(problem, stage, folder) for problem in error.problems]
+                    [
+                        replace(problem, where=problem.where.replace(str(stage), str(folder)))
+                        for problem in error.problems
+                    ]
                 ) from error
             written = [file.name for file in stage.iterdir()]
             set_aside(folder, {*written, *replaced}, force=force)
@@ -98,12 +102,10 @@ def staged(folder: Path, replaced: Iterable[str] = (), *, force: bool = False) -
                 folder.rmdir()
         if not isinstance(error, OSError):
             raise
-        raise ShipcosimError(
-            Problem(
-                str(folder),
-                f"Results cannot be written here: {error.strerror}.",
-                "Choose another folder (--out).",
-            )
+        raise error_at(
+            str(folder),
+            f"Results cannot be written here: {error.strerror}.",
+            "Choose another folder (--out).",
         ) from error
 
 
@@ -155,8 +157,3 @@ def _say(aside: Path) -> None:
     print(
         f"Earlier results are kept in {shown} (--force, force=True replaces them).", file=sys.stderr
     )
-
-
-def _at_home(problem: Problem, stage: Path, folder: Path) -> Problem:
-    """The problem with the name that the file would have had."""
-    return replace(problem, where=problem.where.replace(str(stage), str(folder)))

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from shipcosim import cosim, library
-from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.results.log import Log
 from shipcosim.results.run import Run
 from shipcosim.scenario import Scenario, check_files, check_times
@@ -35,6 +35,18 @@ from shipcosim.units import UnitError, seconds
 
 if TYPE_CHECKING:
     import xarray
+
+Settings = Mapping[str, object] | None
+"""Start values by full name."""
+
+
+Components = Mapping[str, AnyPath] | None
+"""FMUs that components run in place of their own."""
+
+
+AnyTime = float | str | None
+"""A time as users give it: in s, or such as ``"10 min"``."""
+
 
 AnyScenario = AnyPath | Scenario
 
@@ -94,7 +106,7 @@ def in_seconds(arguments: Mapping[str, Any], names: Iterable[str]) -> dict[str, 
     return found
 
 
-def fmus_of(components: Mapping[str, AnyPath] | None) -> dict[str, Path]:
+def fmus_of(components: Components) -> dict[str, Path]:
     """FMUs in place of components' own, by path or name."""
     found = {}
     problems = []
@@ -125,7 +137,7 @@ class Reading:
     """
 
     parameters: Sequence[AnyPath] = ()
-    components: Mapping[str, AnyPath] | None = None
+    components: Components = None
     fmus: Sequence[AnyPath] = ()
     strict: bool = False
 
@@ -302,9 +314,7 @@ def scenario_of(
             is_time = argument in ("stop_time", "step_size", "output_interval")
             problems.append(replace(problem, where=named(argument)) if is_time else problem)
         raise ShipcosimError(problems) from None
-    found = check_times(scenario, start_time)
-    if problems := [problem for problem in found if problem.severity == "error"]:
-        raise ShipcosimError(problems)
+    raise_errors(check_times(scenario, start_time))
     return (
         scenario
         if given is None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
@@ -14,7 +14,10 @@ from shipcosim.calls.arguments import (
     AnyPath,
     AnyScenario,
     AnySystem,
+    AnyTime,
+    Components,
     Reading,
+    Settings,
     find,
     in_seconds,
     listed,
@@ -128,11 +131,11 @@ def check(
 def compare(
     what: AnyScenario | AnySystem,
     *,
-    stop_time: float | str | None = None,
-    step_size: float | str | None = None,
-    set: Mapping[str, object] | None = None,
+    stop_time: AnyTime = None,
+    step_size: AnyTime = None,
+    set: Settings = None,
     parameters: Sequence[AnyPath] = (),
-    components: Mapping[str, AnyPath] | None = None,
+    components: Components = None,
     fmus: Sequence[AnyPath] = (),
     events: AnyPath | None = None,
     tolerance: float = 1e-9,

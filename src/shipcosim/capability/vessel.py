@@ -128,7 +128,13 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
         for name, unit in units.items()
     ]
     # The second method needs the simulator's own models and limits.
-    simulated = _simulated(body, units)
+    limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
+    simulated = Simulated(
+        _filled(HullParameters, body),
+        _filled(WindParameters, body),
+        _filled(DriftParameters, body),
+        limits,
+    )
     buses = _buses(system, list(units))
     return Vessel(
         ship.name, ship.description, system.name, hull, tuple(made), simulated, said, buses
@@ -145,7 +151,7 @@ def _vessel_of(system: System) -> Component:
     # drift.
     driven = {target for _, target in _forces(system)}
     found = [
-        c for n, c in system.components.items() if n in driven and c.fmu.variables.keys() >= _VESSEL
+        c for n, c in system.components.items() if n in driven and c.variables.keys() >= _VESSEL
     ]
     if len(found) != 1:
         what = (
@@ -163,7 +169,7 @@ def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
     parts = {
         source: system.components[source] for source, target in _forces(system) if target == vessel
     }
-    found = {name: part for name, part in parts.items() if part.fmu.variables.keys() >= _THRUSTER}
+    found = {name: part for name, part in parts.items() if part.variables.keys() >= _THRUSTER}
     if not found:
         remedy = "It needs components with the parameters of fmus/azimuth_thruster or fmus/tunnel_thruster."
         raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)
@@ -185,7 +191,7 @@ def _buses(system: System, thrusters: list[str]) -> dict[str, tuple[str, ...]]:
     # The allocator with a bus for every thruster is the one that knows the switchboard.
     for part in system.components.values():
         names = {thruster: f"{thruster.rpartition('.')[2]}_bus" for thruster in thrusters}
-        if part.fmu.variables.keys() >= set(names.values()):
+        if part.variables.keys() >= set(names.values()):
             number = {thruster: int(_real(part, name)) for thruster, name in names.items()}
             known = sorted(set(number.values()))
             return {chr(ord("A") + k): tuple(t for t in thrusters if number[t] == k) for k in known}
@@ -206,7 +212,7 @@ def _problems(
             yield Problem(
                 f"{where}: {key}", f"found {values[key]!r}.", suggestion(str(values[key]), allowed)
             )
-    if not values["diameter"] and "diameter" not in unit.fmu.variables:
+    if not values["diameter"] and "diameter" not in unit.variables:
         yield Problem(where, "nothing says diameter [m].", f"The parameter set has none of {name}.")
 
 
@@ -214,7 +220,7 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
     """A thruster with its nominal thrust."""
     # The kind follows from the FMU: no azimuth is a tunnel, a rate of azimuth turns, else it is
     # fixed.
-    has = unit.fmu.variables
+    has = unit.variables
     kind = (
         "tunnel"
         if "azimuth" not in has
@@ -254,17 +260,7 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
     )
 
 
-def _simulated(body: Component, units: Mapping[str, Component]) -> Simulated:
-    limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
-    return Simulated(
-        _filled(HullParameters, body),
-        _filled(WindParameters, body),
-        _filled(DriftParameters, body),
-        limits,
-    )
-
-
 def _filled(kind: type[Kind], part: Component) -> Kind:
     """Parameters of a component as the record that the models take."""
-    names = [f.name for f in fields(kind) if f.init and f.name in part.fmu.variables]  # type: ignore[arg-type]
+    names = [f.name for f in fields(kind) if f.init and f.name in part.variables]  # type: ignore[arg-type]
     return kind(**{name: part.start_value(name) for name in names})

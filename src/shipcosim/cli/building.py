@@ -43,7 +43,9 @@ def build_named(
         With all problems; what has none is built nevertheless.
     """
     sources = library.fmu_sources(project)
-    systems = _systems(project)
+    systems = {
+        f.parent.name: f.parent for f in sorted((project / "ssp").glob("*/SystemStructure.ssd"))
+    }
     known = [*sources, *systems]
     problems = [
         Problem(n, "There is no such FMU or system.", suggestion(n, known))
@@ -140,7 +142,7 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
             continue
         together.append({})
         for component in system.components.values():
-            kinds = component.fmu.variables
+            kinds = component.variables
             given = {
                 name: value
                 for name, value in component.start.items()
@@ -149,12 +151,6 @@ def _parameters_in_systems(project: Path) -> dict[str, list[dict[str, Any]]]:
             found.setdefault(component.fmu.path.stem, []).append(given)
             together[-1] = given | together[-1]
     return {name: found.get(name, together) for name in library.fmu_sources(project)}
-
-
-def _systems(project: Path) -> dict[str, Path]:
-    return {
-        f.parent.name: f.parent for f in sorted((project / "ssp").glob("*/SystemStructure.ssd"))
-    }
 
 
 def _build(folder: Path, out: Path) -> Path:

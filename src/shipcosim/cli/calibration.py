@@ -15,7 +15,7 @@ def print_calibration(ship: CalibratedShip, folder: Path, as_json: bool) -> None
     """What was found, on stdout."""
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path
+    from shipcosim.cli.console import say_page
     from shipcosim.report.calibration.words import error_rows, moved_rows, sentence
 
     if as_json:
@@ -42,4 +42,4 @@ def print_calibration(ship: CalibratedShip, folder: Path, as_json: bool) -> None
             console.print(Text(heading, style="bold"))
             console.print(Text("\n".join(lines)))
     console.print()
-    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+    say_page(console, folder / "report.html")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from shipcosim.capability import Capability, as_json, notation
 from shipcosim.capability.result import SIMULATOR
-from shipcosim.cli.console import shown_path
+from shipcosim.cli.console import say_page
 from shipcosim.cli.terminal import make_console, say_json
 
 
@@ -26,4 +26,4 @@ def print_capability(capability: Capability, folder: Path, as_json_: bool) -> No
         console.print(f"Where only one thruster is lost, C and D are {c} and {d}")
     simulated = ", ".join(map(str, capability.elements(SIMULATOR)))
     console.print(f"The same four by the simulator's own models: {simulated}")
-    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+    say_page(console, folder / "report.html")

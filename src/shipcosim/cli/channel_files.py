@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.calls.arguments import SYSTEM_OF_LOGS, Reading, check_inputs
 from shipcosim.cli.terminal import make_console, say
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.log.names.proposal import Proposal
@@ -129,8 +129,6 @@ def write_channels(proposed: ProposedFile, out: Path, force: bool = False) -> No
     from shipcosim.series import write_file
 
     if out.exists() and not force:
-        raise ShipcosimError(
-            Problem(str(out), "There is such a file already.", "--force writes over it.")
-        )
+        raise error_at(str(out), "There is such a file already.", "--force writes over it.")
     write_file(out, proposed.text.encode())
     say(f"Channel file: {shown_path(out)}")

@@ -15,6 +15,8 @@ from shipcosim.cli.terminal import make_console, say_json
 from shipcosim.errors import Problem, worth_showing
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from shipcosim.report.theme.views import Outcome
     from shipcosim.results.check import CheckedFiles
     from shipcosim.results.run import Run
@@ -109,10 +111,7 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     for remark in remarks:
         if remark not in before:
             console.print(Text(remark, style="yellow"))
-    console.print(
-        Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence)
-    )
-    console.print(f"Page: {shown_path(page)}", markup=False)
+    _say_outcome(console, outcome, page)
 
 
 def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: Path) -> None:
@@ -126,9 +125,17 @@ def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: 
             Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, Text(one.sentence)
         )
     console.print(listed)
-    console.print(
-        Text(outcome.word, style=VERDICTS.get(outcome.kind, "bold")), Text(outcome.sentence)
-    )
+    _say_outcome(console, outcome, page)
+
+
+def _say_outcome(console, outcome, page):
+    style = VERDICTS.get(outcome.kind, "bold")
+    console.print(Text(outcome.word, style=style), Text(outcome.sentence))
+    say_page(console, page)
+
+
+def say_page(console: Console, page: Path) -> None:
+    """Where the page is."""
     console.print(f"Page: {shown_path(page)}", markup=False)
 
 

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from shipcosim.cli.terminal import make_console, say_json
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from shipcosim.diagnose.finding import Finding
     from shipcosim.diagnose.result import Diagnosis
 
@@ -17,7 +19,7 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path, style_of
+    from shipcosim.cli.console import style_of
     from shipcosim.report.diagnosis.words import outcome
 
     if as_json:
@@ -26,13 +28,22 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
     console = make_console(soft_wrap=True)
     verdict = outcome(diagnosis, diagnosis.causes)
     console.print(Text(verdict.word, style=style_of(diagnosis.verdict)), Text(verdict.sentence))
-    for heading, content in _sections(diagnosis):
+    say_sections(console, _sections(diagnosis), folder)
+
+
+def say_sections(console: Console, sections: Iterable[tuple[str, Any]], folder: Path) -> None:
+    """Sections that have content, below their headings, and where the page is."""
+    from rich.text import Text
+
+    from shipcosim.cli.console import say_page
+
+    for heading, content in sections:
         if content is not None:
             console.print()
             console.print(Text(heading, style="bold"))
             console.print(content)
     console.print()
-    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+    say_page(console, folder / "report.html")
 
 
 def _sections(diagnosis):

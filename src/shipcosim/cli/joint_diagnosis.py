@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import table
+from shipcosim.cli.diagnosis import say_sections, table
 from shipcosim.cli.terminal import make_console, say_json
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path, style_of
+    from shipcosim.cli.console import style_of
     from shipcosim.report.joint.words import outcome
 
     if as_json:
@@ -25,13 +25,7 @@ def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
     console = make_console(soft_wrap=True)
     verdict = outcome(found)
     console.print(Text(verdict.word, style=style_of(found.verdict)), Text(verdict.sentence))
-    for heading, content in _sections(found):
-        if content is not None:
-            console.print()
-            console.print(Text(heading, style="bold"))
-            console.print(content)
-    console.print()
-    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+    say_sections(console, _sections(found), folder)
 
 
 def _sections(found):

@@ -14,7 +14,7 @@ import typer
 from shipcosim import library
 from shipcosim.cli.console import print_problems, shown_path
 from shipcosim.cli.terminal import say
-from shipcosim.errors import Problem, ShipcosimError, reading
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, reading
 from shipcosim.ships.writing import LAYOUTS, Answers, ship_text, thruster_from, usual
 from shipcosim.temporary import temporary_folder
 
@@ -130,9 +130,7 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
     from shipcosim.ships.described import file_from, file_of, read_file
 
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", name):
-        raise ShipcosimError(
-            Problem("NAME", f"found {name!r}.", "A letter, then letters, digits, - and _.")
-        )
+        raise error_at("NAME", f"found {name!r}.", "A letter, then letters, digits, - and _.")
     project = library.project_of() or Path.cwd()
     target = project / "ships" / name / "ship.toml"
     source = file_of(library.find("ship", origin)) if origin else target
@@ -141,8 +139,7 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
     text = text if answers is None else ship_text(answers)
     ship = describe(source, read_file(source) if answers is None else file_from(text, target))
     found = check_described(ship)
-    if errors := [problem for problem in found if problem.severity == "error"]:
-        raise ShipcosimError(errors)
+    raise_errors(found)
     named = _renamed(ship, name, target)
     with temporary_folder() as folder:
         stage = Path(folder)
@@ -199,7 +196,7 @@ def _put(project: Path, files: Mapping[str, Path], over: bool) -> list[Path]:
                 shutil.copyfile(made, path)
         except OSError as error:
             found = f"cannot be written: {error.strerror or error}."
-            raise ShipcosimError(Problem(str(path), found)) from None
+            raise error_at(str(path), found) from None
         written.append(path)
     return written
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.console import shown_path
+from shipcosim.cli.console import say_page
 from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
@@ -27,4 +27,4 @@ def print_replay(replay: LogReplay, folder: Path) -> None:
         table.add_row(*row)
     console.print(replay_outcome(replay).sentence)
     console.print(table)
-    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+    say_page(console, folder / "report.html")

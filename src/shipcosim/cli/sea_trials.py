@@ -15,7 +15,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
-    from shipcosim.cli.console import shown_path, style_of
+    from shipcosim.cli.console import say_page, shown_path, style_of
     from shipcosim.report.sea_trials.words import outcome, told
 
     if as_json:
@@ -40,7 +40,7 @@ def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
             console.print(
                 f"  {name:<28} {one.before[name]:6.1f} {one.after[name]:6.1f} {unit}", markup=False
             )
-    console.print(f"Page: {shown_path(folder / 'report.html')}", markup=False)
+    say_page(console, folder / "report.html")
     console.print(f"Numbers: {shown_path(folder / 'sea_trials.json')}", markup=False)
 
 

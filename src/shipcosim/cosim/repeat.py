@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from shipcosim.cosim.master.inputs import digest
 from shipcosim.cosim.master.result import fingerprint, hashes
 from shipcosim.cosim.master.run import run
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import read_table
@@ -49,9 +49,7 @@ def repeat(
     """
     facts = read_table(table).attrs if isinstance(table, str | os.PathLike) else table.attrs
     if "system_sha256" not in facts:
-        raise ShipcosimError(
-            Problem("repeat", "The table does not say how it came about.", "Give a result.nc.")
-        )
+        raise error_at("repeat", "The table does not say how it came about.", "Give a result.nc.")
     # Read the system again, with the FMUs that were swapped in the run.
     if not isinstance(system, System):
         folders = [Path(folder) for folder in fmus or [Path("build") / "fmus"]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -15,8 +15,8 @@ from shipcosim.cosim.master.run import RunError, Simulation
 from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
-from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.options import RunOptions
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
+from shipcosim.options import CountProgress, RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import conversion
 from shipcosim.ssp import System, with_values
@@ -40,7 +40,7 @@ def replay(
     step_size: float | None = None,
     output_interval: float | None = None,
     signals: Sequence[str] | None = None,
-    progress: Callable[[int, int], None] | None = None,
+    progress: CountProgress | None = None,
 ) -> xarray.Dataset:
     """Run a system over segments of a record.
 
@@ -88,10 +88,8 @@ def replay(
     """
     times = np.asarray(starts, dtype=float)
     if times.ndim != 1 or len(times) == 0 or not np.isfinite(times).all():
-        raise ShipcosimError(
-            Problem(
-                "replay", "starts is no list of times.", "Give the time of each segment's start."
-            )
+        raise error_at(
+            "replay", "starts is no list of times.", "Give the time of each segment's start."
         )
     # All FMUs run in this process.
     if problems := module_clashes(system, late_alone=True):
@@ -177,17 +175,17 @@ def _bad_times(starts, duration, step_size, output_interval):
 def _per_segment(name, given, system, n):
     """Start value of a signal for each segment, in the unit of the variable."""
     component, variable = system.split(name, "replay: states")
-    owners = system.inputs if component is None else system.components[component].fmu.variables
+    owners = system.inputs if component is None else system.components[component].variables
     # A value with a unit is converted; a plain number is in the variable's unit.
     try:
         factor, offset = conversion(getattr(given, "attrs", {}).get("units"), owners[variable].unit)
     except ShipcosimError as error:
-        raise ShipcosimError(Problem(f"replay: states: {name}", error.problems[0].found)) from None
+        raise error_at(f"replay: states: {name}", error.problems[0].found) from None
     values = np.asarray(given)
     # One value for all segments, or one per segment.
     if values.shape not in ((), (n,)):
         found = f"{values.shape} values for {n} segments."
-        raise ShipcosimError(Problem(f"replay: states: {name}", found, f"Give one, or {n}."))
+        raise error_at(f"replay: states: {name}", found, f"Give one, or {n}.")
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset
     return np.broadcast_to(values, (n,)).tolist()
 
@@ -232,7 +230,7 @@ class _SegmentRows:
         columns = {name: (values, (unit, text)) for name, values, unit, text in columns}
         if unknown := [name for name in self.signals or () if name not in columns]:
             found = f"there is no signal '{unknown[0]}'."
-            raise ShipcosimError(Problem("replay: signals", found, suggestion(unknown[0], columns)))
+            raise error_at("replay: signals", found, suggestion(unknown[0], columns))
         # Time counts from the start of each segment, so it is the same for all.
         self.time = simulation.row_times - self.starts[0]
         shape = len(self.starts), len(self.time)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from shipcosim.cosim.engines.registry import ENGINES, OWN, OWN_OPTIONS
 from shipcosim.cosim.systems import system_of
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario, odd_values, units_of, with_numbers
 from shipcosim.snapshot import opened
@@ -70,18 +70,14 @@ def simulate(
     if not isinstance(system, System):
         system = system_of(scenario, system=Path(system))
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    found = check_scenario(scenario, system, clock_start(options))
-    if errors := [problem for problem in found if problem.severity == "error"]:
-        raise ShipcosimError(errors)
+    raise_errors(check_scenario(scenario, system, clock_start(options)))
     # Unusual values do not stop the run, but the table notes them.
     odd = [str(remark) for remark in odd_values(scenario, system)]
     scenario = with_numbers(scenario, units_of(system))
     # Other engines would ignore these options, so refuse them.
     if options.engine not in OWN and (unknown := options.changed(OWN_OPTIONS)):
         found = f"It does not know {', '.join(unknown)}."
-        raise ShipcosimError(
-            Problem(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do.")
-        )
+        raise error_at(f"engine '{options.engine}'", found, "The engines 'fmpy' and 'native' do.")
     table = ENGINES[options.engine](system, scenario, options)
     return table.assign_attrs(
         remarks=json.dumps([*odd, *json.loads(table.attrs.get("remarks", "[]"))])

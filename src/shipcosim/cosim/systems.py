@@ -1,6 +1,6 @@
 """The system of a scenario, with its parameter sets and swapped FMUs."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
 from shipcosim import library
@@ -8,6 +8,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.scenario import Scenario
 from shipcosim.scenario.locations import problem_at
 from shipcosim.ssp import System, read_system
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.swapped import WHERE
 
 
@@ -16,7 +17,7 @@ def system_of(
     *,
     system: Path | None = None,
     parameters: Iterable[Path] = (),
-    components: Mapping[str, Path] | None = None,
+    components: Swapped = None,
     strict: bool = False,
     build: bool = True,
     fmus: Iterable[Path] = (),

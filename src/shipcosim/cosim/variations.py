@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -23,8 +22,8 @@ from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import Slave
 from shipcosim.cosim.slaves.unpacked import UnpackedFmus
-from shipcosim.errors import ShipcosimError
-from shipcosim.options import RunOptions
+from shipcosim.errors import ShipcosimError, raise_errors
+from shipcosim.options import RunOptions, cores
 from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.series import make_table
 from shipcosim.ssp import Component, System, with_values
@@ -117,14 +116,11 @@ def simulate_many(
     runs = _Runs(system, options, choose, reduce)
     for variation in {_kind(variation): variation for variation in variations}.values():
         runs.check(variation)
-    cores = (
-        len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    )
     # Results come in any order; each goes to its own place.
     done: list[Done] = [Done() for _ in variations]
     with (
         delayed_interrupt() as runs.check_interrupt,
-        _sources(min(workers or cores, len(variations))) as sources,
+        _sources(min(workers or cores(), len(variations))) as sources,
     ):
         for n, (number, result) in enumerate(_in_threads(runs.run, variations, sources), start=1):
             done[number] = result
@@ -170,8 +166,7 @@ class _Runs:
         for name in variation.values:
             self._system.split(name, "variation")
         found = check_scenario(variation.scenario, self._system, self._options.start_time)
-        if errors := [problem for problem in found if problem.severity == "error"]:
-            raise ShipcosimError(errors)
+        raise_errors(found)
         time_grid_of(variation.scenario, self._options.start_time)
 
     def run(self, variation: Variation, slaves: _Source) -> Done:

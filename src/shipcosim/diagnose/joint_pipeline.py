@@ -58,7 +58,7 @@ from shipcosim.diagnose.reference.held_out import (
     weather_of,
 )
 from shipcosim.diagnose.reference.joint_fit import JointFit
-from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis
+from shipcosim.diagnose.reference.joint_result import JointBasis, JointDiagnosis, SizesOfLogs
 from shipcosim.diagnose.reference.joint_verdict import joint_excitation, judged_jointly
 from shipcosim.diagnose.reference.reference import Reference
 from shipcosim.diagnose.reference.several_logs import SeveralLogs, is_in_one_log
@@ -353,9 +353,7 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     )
 
 
-def _sizes(
-    basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding]
-) -> dict[str, dict[str, dict[str, ParameterEstimate]]]:
+def _sizes(basis: JointBasis, crude: Sequence[Finding], causes: Sequence[Finding]) -> SizesOfLogs:
     """How large each log by itself would have what is common."""
     each = basis.ratios.each
     sizes = {

@@ -76,7 +76,7 @@ def _signals(system: System) -> dict[str, str] | None:
     """By role, what the instruments show that a diagnosis inserted; None of a system without them."""
     needed = set(Instruments().errors)
     own = next(
-        (name for name, part in system.components.items() if needed <= set(part.fmu.variables)),
+        (name for name, part in system.components.items() if needed <= set(part.variables)),
         None,
     )
     return None if own is None else {role: f"{own}.{name}_meas" for role, name in _SHOWN.items()}

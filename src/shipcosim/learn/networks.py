@@ -3,6 +3,8 @@
 import numpy as np
 import torch
 
+Arrays = dict[str, np.ndarray]
+
 
 class Recurrent(torch.nn.Module):
     """LSTM layers of one width, and a dense layer without activation.
@@ -37,7 +39,7 @@ class Recurrent(torch.nn.Module):
         return self.dense(self.dropout(self.lstm(x)[0]))
 
 
-def arrays_of(network: Recurrent, name: str) -> dict[str, np.ndarray]:
+def arrays_of(network: Recurrent, name: str) -> Arrays:
     """Weights of a network.
 
     Parameters
@@ -54,7 +56,7 @@ def arrays_of(network: Recurrent, name: str) -> dict[str, np.ndarray]:
         gates in the order input, forget, cell, output; the same of the other layers; ``NAME.dense.weights`` and
         ``NAME.dense.bias``. [1]
     """
-    found: dict[str, np.ndarray] = {}
+    found: Arrays = {}
     for layer in range(network.lstm.num_layers):
         # PyTorch keeps separate weights and biases for input and memory; join them for evaluation.
         of = {key: getattr(network.lstm, f"{key}_l{layer}").detach().numpy() for key in KEYS}

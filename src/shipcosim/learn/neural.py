@@ -12,7 +12,7 @@ import torch
 
 from shipcosim.learn.requests import recorded_requests
 from shipcosim.learn.results import Trained, settings_of
-from shipcosim.learn.training import BestWeights, Descent, Progress, repeatable
+from shipcosim.learn.training import BestWeights, Descent, Epochs, Progress, repeatable
 from shipcosim.models.allocation import neural, neural_allocator
 from shipcosim.models.allocation.neural import Commands, Units
 
@@ -343,9 +343,7 @@ def missing(state: Commands, request: torch.Tensor, units: Units) -> torch.Tenso
     return neural._scaled(request, units.lever) - (effect @ state.thrusts[..., None])[..., 0]
 
 
-def fit(
-    recipe: NeuralTraining, progress: Progress
-) -> tuple[list[np.ndarray], list[dict[str, float]]]:
+def fit(recipe: NeuralTraining, progress: Progress) -> tuple[list[np.ndarray], Epochs]:
     """Fit the weights; return those with the least held-out cost, and the costs by iteration."""
     weights = first_weights(recipe)
     units = tensors(recipe.units)

@@ -64,20 +64,17 @@ RECIPES = {
 }
 
 
-def read_exercise(path: Path = RECORD) -> tuple[np.ndarray, np.ndarray]:
+def read_exercise() -> tuple[np.ndarray, np.ndarray]:
     """The recorded exercise.
 
-    Parameters
-    ----------
-    path : Path
-        A table with `tau_X`, `tau_Y`, `tau_N` and `command_1` to `command_6`.
+    It is a table with `tau_X`, `tau_Y`, `tau_N` and `command_1` to `command_6`.
 
     Returns
     -------
     tuple of (n, 3) and (n, 6) array
         Loads and commands. [N, N, N.m; rpm, deg]
     """
-    table = read_table(path)
+    table = read_table(RECORD)
     # Loads are the inputs, commands the targets: the network inverts the exercise.
     loads = np.stack([table[f"tau_{axis}"].values for axis in "XYN"], axis=-1)
     return loads, np.stack(

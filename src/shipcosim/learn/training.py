@@ -8,6 +8,10 @@ from typing import Any
 import numpy as np
 import torch
 
+Epochs = list[dict[str, float]]
+"""Losses of each epoch, by name."""
+
+
 Progress = Callable[[int, int], None]
 """Is told how many steps are done, and of how many at most."""
 
@@ -170,7 +174,7 @@ def fit(
     held_out: Sequence[Any] | torch.Tensor,
     schedule: Schedule,
     progress: Progress,
-) -> list[dict[str, float]]:
+) -> Epochs:
     """Train a network; it is left with the weights of its best epoch.
 
     Parameters
@@ -196,7 +200,7 @@ def fit(
     weights = list(network.parameters())
     descent = Descent(torch.optim.Adam(weights, lr=schedule.learning_rate, fused=True))
     best = BestWeights(weights)
-    epochs: list[dict[str, float]] = []
+    epochs: Epochs = []
     total = schedule.most_epochs * len(batches)
     for number in range(schedule.most_epochs):
         # One epoch: a step for each mini-batch, in random order.

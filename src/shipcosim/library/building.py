@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from shipcosim import __version__
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.library.names import fmu_sources
 from shipcosim.library.places import CACHE, PACKAGE, StrPath, cache, project_of, shipped
 from shipcosim.temporary import temporary_folder
@@ -109,9 +109,7 @@ def _build_into_cache(root: Path, folder: Path) -> None:
         stage = temporary_folder(folder.parent, unfinished=True)
     except OSError as error:
         remedy = f"Set {CACHE} to a folder that can be written to."
-        raise ShipcosimError(
-            Problem(str(folder), f"cannot be written: {error.strerror}.", remedy)
-        ) from None
+        raise error_at(str(folder), f"cannot be written: {error.strerror}.", remedy) from None
     with stage as name:
         made = Path(name, "fmus")
         made.mkdir()

@@ -4,7 +4,7 @@ import os
 from difflib import get_close_matches
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 from shipcosim.library.building import build_if_stale, built_fmu
 from shipcosim.library.names import KINDS, SYSTEM_STRUCTURE, names
 from shipcosim.library.places import StrPath, roots
@@ -65,10 +65,8 @@ def find(
     if text in known:
         return built_fmu(known[text], build) if kind == "fmu" else known[text]
     where = f"{option} {text}" if option else text
-    raise ShipcosimError(
-        Problem(
-            where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), known)
-        )
+    raise error_at(
+        where, f"There is no such {WHAT[kind]}.", suggestion(text.removesuffix(".toml"), known)
     )
 
 
@@ -91,7 +89,7 @@ def find_any(given: str) -> str:
         if close
         else "Give the path of one, or a name of `shipcosim list`."
     )
-    raise ShipcosimError(Problem(given, "There is no such file or folder.", remedy))
+    raise error_at(given, "There is no such file or folder.", remedy)
 
 
 def scenarios(given: str) -> list[Path]:
@@ -108,9 +106,7 @@ def scenarios(given: str) -> list[Path]:
         return []
     found = sorted(folder.glob("*.toml"))
     if not found:
-        raise ShipcosimError(
-            Problem(given, "There is no scenario file in this folder.", "Name a .toml file.")
-        )
+        raise error_at(given, "There is no scenario file in this folder.", "Name a .toml file.")
     return found
 
 
@@ -125,7 +121,7 @@ def check_is_system(given: str) -> None:
     suffix = Path(given).suffix.lower()
     if suffix == ".toml":
         remedy = f"If it is a scenario, `shipcosim run {given}` runs it."
-        raise ShipcosimError(Problem(given, "This is no system.", remedy))
+        raise error_at(given, "This is no system.", remedy)
 
 
 def _check_kind(kind: str, text: str) -> None:
@@ -135,10 +131,8 @@ def _check_kind(kind: str, text: str) -> None:
     if kind == "system":
         check_is_system(text)
     if kind == "scenario" and Path(text).suffix.lower() in SYSTEMS:
-        raise ShipcosimError(
-            Problem(
-                text, "This is a system, not a scenario.", f"`shipcosim simulate {text}` runs it."
-            )
+        raise error_at(
+            text, "This is a system, not a scenario.", f"`shipcosim simulate {text}` runs it."
         )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario.amounts import unit_complaints, units_of
-from shipcosim.scenario.locations import problem_at
+from shipcosim.scenario.locations import Keys, problem_at
 from shipcosim.scenario.model import Event, Expectation, Scenario, Value
 from shipcosim.scenario.plausible import odd_values
 from shipcosim.units import UnitError, amount, number_in, whole_steps
@@ -109,7 +109,7 @@ def check_times(scenario: Scenario, start_time: float = 0.0) -> Iterator[Problem
 
 def time_complaints(
     scenario: Scenario, start_time: float = 0.0
-) -> Iterator[tuple[tuple[str | int, ...], str, str, str]]:
+) -> Iterator[tuple[Keys, str, str, str]]:
     """Problems with the times of a scenario whose run starts at a time [s]: (keys, found, remedy, severity)."""
     step = scenario.step_size
     stop = scenario.stop_time
@@ -126,7 +126,7 @@ def time_complaints(
         )
         return
     # Every time in the file must fall on a step.
-    times: list[tuple[tuple[str | int, ...], float]] = [
+    times: list[tuple[Keys, float]] = [
         (("stop_time",), stop),
         (("output_interval",), scenario.output_interval or step),
         *((("events", number, "time"), event.time) for number, event in enumerate(scenario.events)),
@@ -166,7 +166,7 @@ def check_parameters(scenario: Scenario, system: System) -> Iterator[Problem]:
         if missing := [
             name for name in component.left_out if f"{component.name}.{name}" not in given
         ]:
-            units = {name: component.fmu.variables[name].unit for name in missing}
+            units = {name: component.variables[name].unit for name in missing}
             names = ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
             found = f"parameters left out, which have no value of their own: {names}."
             yield Problem(
@@ -255,7 +255,7 @@ def _event_complaint(
         kind = system.inputs[name].type or ""
         items = system.inputs[name].items
     else:
-        variable = system.components[component].fmu.variables[name]
+        variable = system.components[component].variables[name]
         kind = variable.kind
         items = variable.items
         may_change = variable.causality in ("input", "output") or (
@@ -319,7 +319,7 @@ def _expect_complaint(
     # Inputs of the system and changed signals are always recorded.
     if component is None or signal in changed:
         return None
-    variable = system.components[component].fmu.variables[name]
+    variable = system.components[component].variables[name]
     # A connected input repeats its source and is not recorded.
     feeding = next((c.source for c in system.connections if c.target == (component, name)), None)
     if variable.causality == "input" and feeding is not None:

@@ -10,6 +10,13 @@ from pathlib import Path
 from shipcosim.errors import Problem
 from shipcosim.scenario.model import Scenario
 
+AnyKeys = Sequence[str | int]
+
+
+Keys = tuple[str | int, ...]
+"""Keys and positions in lists, from the outside in."""
+
+
 _HEADER = re.compile(r"""\s*(\[\[?)\s*((?:[\w.\s-]|"[^"]*"|'[^']*')+?)\s*\]\]?\s*(?:#.*)?$""")
 _KEY = re.compile(r"""\s*((?:[\w.-]|"[^"]*"|'[^']*')+)\s*=""")
 _NAME = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
@@ -17,7 +24,7 @@ _NAME = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
 
 def problem_at(
     scenario: Scenario,
-    keys: Sequence[str | int],
+    keys: AnyKeys,
     found: str,
     remedy: str = "",
     severity: str = "error",
@@ -38,13 +45,13 @@ def problem_at(
     return Problem(location_of(path or "scenario", text, keys), found, remedy, severity)
 
 
-def location_of(path: str | Path, text: str, keys: Sequence[str | int]) -> str:
+def location_of(path: str | Path, text: str, keys: AnyKeys) -> str:
     """File and line of a key for messages; the file alone if the key is not in its text."""
     line = line_of(text, keys)
     return f"{path}, line {line}" if line else str(path)
 
 
-def line_of(text: str, keys: Sequence[str | int]) -> int:
+def line_of(text: str, keys: AnyKeys) -> int:
     """Line of a key, or of the innermost table around it, in a TOML text; 0 if there is none.
 
     Examples
@@ -59,11 +66,11 @@ def line_of(text: str, keys: Sequence[str | int]) -> int:
 
 
 @lru_cache(maxsize=4)
-def _lines_of_keys(text: str) -> dict[tuple[str | int, ...], int]:
+def _lines_of_keys(text: str) -> dict[Keys, int]:
     """First line of each table and key of a TOML text, found once for all problems of a file."""
-    section: tuple[str | int, ...] = ()
+    section: Keys = ()
     counts: dict[tuple, int] = {}
-    found: dict[tuple[str | int, ...], int] = {}
+    found: dict[Keys, int] = {}
     for number, line in enumerate(text.splitlines(), 1):
         # A header opens a table; a key belongs to the table that is open.
         if header := _HEADER.match(line):
@@ -84,11 +91,9 @@ def _names(dotted: str) -> list[str]:
     return [name.strip("\"'") for name in _NAME.findall(dotted)]
 
 
-def _section(
-    names: Sequence[str], repeated: bool, counts: dict[tuple, int]
-) -> tuple[str | int, ...]:
+def _section(names: Sequence[str], repeated: bool, counts: dict[tuple, int]) -> Keys:
     """Keys of a table by its header; `counts` numbers the tables in lists."""
-    path: tuple[str | int, ...] = ()
+    path: Keys = ()
     for number, name in enumerate(names, 1):
         path = (*path, name)
         # A header in double brackets begins the next table of its list.

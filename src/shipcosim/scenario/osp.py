@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.scenario.model import Event, Value
 from shipcosim.series import write_file
 
@@ -72,7 +72,7 @@ def read_osp_scenario(
     content = _content(path)
     if not isinstance(content, dict):
         remedy = "Right would be an object with a list 'events'."
-        raise ShipcosimError(Problem(str(path), "It holds no object at its top.", remedy))
+        raise error_at(str(path), "It holds no object at its top.", remedy)
     # All problems of the file together.
     due, remarks, problems = _changes(path, content, step_size)
     end = None
@@ -103,7 +103,7 @@ def _changes(
     defaults = content.get("defaults") or {}
     listed = content.get("events") or []
     if not isinstance(defaults, dict) or not isinstance(listed, list):
-        raise ShipcosimError(Problem(str(path), "'defaults' has to be an object, 'events' a list."))
+        raise error_at(str(path), "'defaults' has to be an object, 'events' a list.")
     defaults = {name: value for name, value in defaults.items() if name in DEFAULTS}
     due = []
     # Each event alone: one faulty event does not hide the others.
@@ -158,15 +158,13 @@ def _content(path: Path) -> Any:
         data = path.read_bytes()
         text = data.decode("utf-8-sig")
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"Cannot be read: {error.strerror}.")) from None
+        raise error_at(str(path), f"Cannot be read: {error.strerror}.") from None
     except UnicodeDecodeError:
-        raise ShipcosimError(
-            Problem(str(path), "It is not UTF-8 text.", "Save the file in UTF-8.")
-        ) from None
+        raise error_at(str(path), "It is not UTF-8 text.", "Save the file in UTF-8.") from None
     largest = LARGEST if path.suffix.lower() == ".json" else LARGEST_YAML
     if len(data) > largest:
-        raise ShipcosimError(
-            Problem(str(path), "The file is too large.", f"At most {largest >> 20} MiB are read.")
+        raise error_at(
+            str(path), "The file is too large.", f"At most {largest >> 20} MiB are read."
         )
     # JSON as it is; YAML without deep nesting and aliases, which can grow without limit.
     try:
@@ -180,7 +178,7 @@ def _content(path: Path) -> Any:
     except (ValueError, RecursionError, yaml.YAMLError) as error:
         kind = "JSON" if path.suffix.lower() == ".json" else "YAML"
         found = f"It cannot be read as {kind}: {' '.join(str(error).split())}."
-        raise ShipcosimError(Problem(str(path), found, "Correct it there.")) from None
+        raise error_at(str(path), found, "Correct it there.") from None
 
 
 def _once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:

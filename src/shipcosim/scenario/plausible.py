@@ -118,7 +118,7 @@ def _odd(
             f'If degrees are meant, write "{value:g} deg".',
         )
     # Some ranges hold for ships only.
-    variables = system.components[component].fmu.variables if component is not None else {}
+    variables = system.components[component].variables if component is not None else {}
     is_ship = all(one in variables for one in SHIP)
     # Compare in the unit of the range.
     for known in RANGES:

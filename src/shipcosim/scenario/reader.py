@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors, suggestion
 from shipcosim.scenario.check import check_times
 from shipcosim.scenario.locations import line_of, location_of
 from shipcosim.scenario.model import Scenario
@@ -52,8 +52,7 @@ def read_scenario(path: str | os.PathLike) -> Scenario:
         raise ShipcosimError(_problems_of(path, text, error)) from None
     # Times are checked once the file is known, so that they too have lines.
     scenario._path = path
-    if problems := [p for p in check_times(scenario) if p.severity == "error"]:
-        raise ShipcosimError(problems)
+    raise_errors(check_times(scenario))
     return scenario
 
 
@@ -117,18 +116,14 @@ def _text(path: Path) -> str:
     try:
         return path.read_bytes().decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as error:
-        raise ShipcosimError(
-            Problem(str(path), f"cannot be read: {error.strerror or error}.")
-        ) from error
+        raise error_at(str(path), f"cannot be read: {error.strerror or error}.") from error
     except UnicodeDecodeError as error:
         # Line of the first byte that is no UTF-8.
         line = error.object[: error.start].count(b"\n") + 1
         found = (
             f"is not UTF-8 text: byte 0x{error.object[error.start]:02x} is none of its characters."
         )
-        raise ShipcosimError(
-            Problem(f"{path}, line {line}", found, "Save the file in UTF-8.")
-        ) from error
+        raise error_at(f"{path}, line {line}", found, "Save the file in UTF-8.") from error
 
 
 def _no_toml(path: Path, message: str, kind: str) -> Problem:

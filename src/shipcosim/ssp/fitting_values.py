@@ -72,8 +72,8 @@ def _signal(name: str, system: System) -> str:
     owners = [
         component
         for component, part in system.components.items()
-        if name in part.fmu.variables
-        and part.fmu.variables[name].causality == "input"
+        if name in part.variables
+        and part.variables[name].causality == "input"
         and (component, name) not in fed
     ]
     return f"{owners[0]}.{name}" if len(owners) == 1 else name
@@ -85,7 +85,7 @@ def _converted(one: ParameterValue, signal: str, system: System) -> Value:
         return one.value
     component, _, variable = signal.rpartition(".")
     part = system.components.get(component)
-    known = system.inputs.get(signal) if part is None else part.fmu.variables.get(variable)
+    known = system.inputs.get(signal) if part is None else part.variables.get(variable)
     unit = known.unit if known is not None else None
     factor, offset = conversion(one.unit, spelled_unit(unit) if unit else None)
     return factor * one.value + offset

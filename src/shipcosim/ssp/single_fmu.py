@@ -9,6 +9,7 @@ import lxml.etree as etree
 
 from shipcosim.errors import Problem
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
@@ -37,7 +38,7 @@ def assemble_fmu(
     parameters: ParameterSets,
     fmus: Iterable[AnyPath],
     findings: Findings,
-    swapped: Mapping[str, Path] | None = None,
+    swapped: Swapped = None,
 ) -> System | None:
     """System of one FMU, or None.
 
@@ -82,7 +83,7 @@ def settings_of_one(system: System, settings: Mapping[str, Value]) -> dict[str, 
     # Inputs belong to the system, all other variables to the component.
     for signal, value in settings.items():
         variable = signal.removeprefix(f"{name}.")
-        known = variable in component.fmu.variables
+        known = variable in component.variables
         named[variable if variable in system.inputs or not known else f"{name}.{variable}"] = value
     return named
 

@@ -1,10 +1,11 @@
 """Read a system from any file: an SSP in its three forms, an OspSystemStructure.xml, or an FMU."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
 from shipcosim.errors import ShipcosimError, held_strictly
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.read.package import open_package, remark_others
@@ -18,7 +19,7 @@ def read_system(
     parameters: ParameterSets = (),
     *,
     fmus: Iterable[AnyPath] = (),
-    components: Mapping[str, Path] | None = None,
+    components: Swapped = None,
     strict: bool = False,
 ) -> System:
     """Read a system structure and everything it refers to, with all checks.
@@ -59,7 +60,7 @@ def assemble(
     path: AnyPath,
     parameters: ParameterSets = (),
     fmus: Iterable[AnyPath] = (),
-    components: Mapping[str, Path] | None = None,
+    components: Swapped = None,
 ) -> tuple[System | None, Findings]:
     """Like `read_system`, but collects the problems.
 

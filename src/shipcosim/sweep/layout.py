@@ -17,6 +17,7 @@ from shipcosim.scenario import (
     read_scenario,
     time_complaints,
 )
+from shipcosim.scenario.locations import Keys
 from shipcosim.ssp import System, with_values
 from shipcosim.ssp.flatten.swapped import WHERE
 from shipcosim.sweep.levels import Level, Levels
@@ -125,7 +126,7 @@ def _system(
     study: Study,
     scenario: Scenario,
     components: Mapping[str, str],
-    keys: Mapping[str, tuple[str | int, ...]],
+    keys: Mapping[str, Keys],
     build: bool,
 ) -> System:
     """A scenario's system with swapped FMUs; `keys` are the places that name them in the study."""

@@ -14,6 +14,7 @@ import numpy as np
 from shipcosim.errors import Problem, ShipcosimError, suggestion
 from shipcosim.scenario import Event, units_of
 from shipcosim.scenario.check import event_complaints
+from shipcosim.scenario.locations import AnyKeys, Keys
 from shipcosim.scenario.model import Value
 from shipcosim.ssp import fitting_values, with_values
 from shipcosim.sweep.reader import problem_of
@@ -72,7 +73,7 @@ class Levels:
         self._system = system
         self.problems: list[Problem] = []
 
-    def complain(self, keys: Sequence[str | int], found: str, remedy: str = "") -> None:
+    def complain(self, keys: AnyKeys, found: str, remedy: str = "") -> None:
         """Add a problem of what stands in the study under some keys."""
         self.problems.append(problem_of(self._study, keys, found, remedy))
 
@@ -103,7 +104,7 @@ class Levels:
         )
         return [Level(next(iter(one.values())), one) for one in found if one]
 
-    def checked(self, values: Mapping[str, Value], keys: Sequence[str | int]) -> dict[str, Value]:
+    def checked(self, values: Mapping[str, Value], keys: AnyKeys) -> dict[str, Value]:
         """Start values in the units of their variables; empty, with a problem, if one does not fit.
 
         Parameters
@@ -123,7 +124,7 @@ class Levels:
             return {}
         return {signal: start_value(system, signal) for signal in expanded}
 
-    def _check_value(self, name: str, value: Value, keys: Sequence[str | int]) -> None:
+    def _check_value(self, name: str, value: Value, keys: AnyKeys) -> None:
         where = problem_of(self._study, (*keys, name), "").where
         for signal in self.signals_of(name):
             try:
@@ -145,7 +146,7 @@ class Levels:
                     remedy = suggestion(one, components)
                     self.complain(("names", name), found, remedy)
 
-    def at_fork(self, signals: Sequence[str], value: Value, keys: Sequence[str | int]) -> Level:
+    def at_fork(self, signals: Sequence[str], value: Value, keys: AnyKeys) -> Level:
         """Level of a value that acts as an event at the fork."""
         event = Event(time=self._study.fork_at or 0.0, override=dict.fromkeys(signals, value))
         for _, _, found, remedy in event_complaints(event, self._system):
@@ -165,7 +166,7 @@ class Levels:
                 return [component + name[len(group) :] for component in components]
         return [name]
 
-    def existing(self, names: Iterable[str], keys: Sequence[str | int]) -> list[str]:
+    def existing(self, names: Iterable[str], keys: AnyKeys) -> list[str]:
         """Signals of names; empty, with a problem, if one does not exist."""
         signals = [signal for name in names for signal in self.signals_of(name)]
         before = len(self.problems)
@@ -176,7 +177,7 @@ class Levels:
                 self.complain(keys, error.problems[0].found, error.problems[0].remedy)
         return [] if len(self.problems) > before else signals
 
-    def _of_case(self, case: Case, keys: tuple[str | int, ...]) -> Level:
+    def _of_case(self, case: Case, keys: Keys) -> Level:
         # Order of precedence within a case: parameter sets first, then single values.
         values: dict[str, Value] = {}
         for name in case.parameters:
@@ -198,7 +199,7 @@ class Levels:
             }
         )
 
-    def fitting(self, name: str, keys: Sequence[str | int]) -> dict[str, Value]:
+    def fitting(self, name: str, keys: AnyKeys) -> dict[str, Value]:
         """Start values of a parameter set that fit the system."""
         # A set of the system by name, or a file beside the study.
         paths = [
@@ -218,16 +219,14 @@ class Levels:
             self.problems += error.problems
             return {}
 
-    def check_events(self, events: Iterable[Event], keys: tuple[str | int, ...]) -> None:
+    def check_events(self, events: Iterable[Event], keys: Keys) -> None:
         """Check the signals, values and times of events, which keys of the study name."""
         for number, event in enumerate(events):
             for verb, signal, found, remedy in event_complaints(event, self._system):
                 self.complain((*keys, number, verb, signal), found, remedy)
             self._check_time(event.time, (*keys, number, "time"), may_be_zero=True)
 
-    def _check_time(
-        self, time: float | None, keys: Sequence[str | int], may_be_zero: bool = False
-    ) -> None:
+    def _check_time(self, time: float | None, keys: AnyKeys, may_be_zero: bool = False) -> None:
         step = self._scenario.step_size
         if time is None:
             return
@@ -260,7 +259,7 @@ class Levels:
         # A small tolerance, so that rounding does not lose the last value.
         return [first + i * step for i in range(floor((last - first) / step + 1e-9) + 1)]
 
-    def _of_seeds(self, factor: Factor, keys: Sequence[str | int]) -> list[Level]:
+    def _of_seeds(self, factor: Factor, keys: AnyKeys) -> list[Level]:
         """Levels of seeds: each signal gets its own number from study seed, level and name."""
         # Without named signals every parameter called seed is drawn anew.
         signals = (
@@ -296,7 +295,7 @@ def start_value(system: System, signal: str) -> Value:
 def seeds_of(system: System) -> Iterator[str]:
     """Parameters that are seeds, by their name."""
     for component in system.components.values():
-        for variable in component.fmu.variables.values():
+        for variable in component.variables.values():
             is_seed = variable.name == "seed" or variable.name.endswith("_seed")
             if is_seed and variable.causality == "parameter" and variable.kind == "Integer":
                 yield f"{component.name}.{variable.name}"

@@ -73,9 +73,7 @@ def complaint_of_margin(study: Study, number: int, system: System) -> Problem | 
     name = study.quantity[number].component
     # A controller is recognised by its parameters, not by its name.
     having = [
-        c.name
-        for c in system.components.values()
-        if all(one in c.fmu.variables for one in _names())
+        c.name for c in system.components.values() if all(one in c.variables for one in _names())
     ]
     if name in having:
         return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, error_at
-from shipcosim.scenario.locations import line_of, location_of
+from shipcosim.scenario.locations import AnyKeys, line_of, location_of
 from shipcosim.scenario.reader import complaint_of, read_toml
 from shipcosim.ssp import AnyPath
 from shipcosim.sweep.study_model import Study
@@ -38,7 +38,7 @@ class Source:
     files: list[tuple[Path, str]]
     origins: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
 
-    def location(self, keys: Sequence[str | int]) -> str:
+    def location(self, keys: AnyKeys) -> str:
         """File and line of a key."""
         # An item of a list may come from an extended study; its origin is known.
         first = str(keys[0]) if keys else ""
@@ -102,7 +102,7 @@ def study_of(source: Source) -> Study:
     return study
 
 
-def problem_of(study: Study, keys: Sequence[str | int], found: str, remedy: str = "") -> Problem:
+def problem_of(study: Study, keys: AnyKeys, found: str, remedy: str = "") -> Problem:
     """Problem at a key of a study, with its line where it was read from a file."""
     return Problem(study._source.location(keys) if study._source else study.name, found, remedy)
 

@@ -175,9 +175,7 @@ def _quantiles(
             levels.complain(keys, problem.found, problem.remedy)
     else:
         kind = (
-            "Real"
-            if component is None
-            else system.components[component].fmu.variables[variable].kind
+            "Real" if component is None else system.components[component].variables[variable].kind
         )
         is_whole = kind == "Integer"
         column = SampledColumn(

@@ -99,7 +99,11 @@ def run_study(
         plan,
         _parts(plan, store, search),
         store,
-        lambda: _workers(plan, engine, scheduler, workers),
+        lambda: (
+            Processes(plan, engine, workers)
+            if scheduler is None
+            else Cluster(plan, engine, scheduler)
+        ),
         at_most,
         progress,
     )
@@ -184,7 +188,3 @@ def _run(
         if workers is not None:
             workers.close()
         store.flush()
-
-
-def _workers(plan: Plan, engine: str, scheduler: str | None, n: int | None) -> Workers:
-    return Processes(plan, engine, n) if scheduler is None else Cluster(plan, engine, scheduler)

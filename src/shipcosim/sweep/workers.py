@@ -19,6 +19,7 @@ from typing import Any
 
 from shipcosim.cosim.processes.child import end_with_parent
 from shipcosim.errors import error_at, imported
+from shipcosim.options import cores
 from shipcosim.sweep.plan import Plan, PlannedRun
 from shipcosim.sweep.work import Chunk, PackedJob, pack, run_chunk
 from shipcosim.temporary import temporary_folder
@@ -168,11 +169,6 @@ class Cluster(Workers):
         from distributed.comm.core import CommClosedError
 
         return isinstance(error, (KilledWorker, CommClosedError, CancelledError))
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _begin(parent: int, folder: str) -> None:

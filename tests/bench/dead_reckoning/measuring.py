@@ -7,6 +7,7 @@ import numpy as np
 
 from dead_reckoning import rivals
 from dead_reckoning.loop import Loop
+from dead_reckoning.paper_ii_worlds import worlds_of_test
 from shipcosim.learn.dead_reckoning import motion_filter as training
 from shipcosim.learn.dead_reckoning import worlds
 from shipcosim.models.core.networks import read_arrays
@@ -43,7 +44,7 @@ def measured(seeds, tell=print):
     tell : callable
         Is told what is done.
     """
-    given, every = worlds.worlds_of_test(seeds), laws()
+    given, every = worlds_of_test(seeds), laws()
     loop = Loop(given, every, OURS)
     before = loop.run(0, LOST)
     tell("until the loss: done")

@@ -9,6 +9,7 @@ from fmpy import extract, read_model_description
 from fmpy.fmi2 import FMU2Slave
 from fmpy.validation import validate_fmu
 
+from shipcosim.fmi import Fmu, Input, Output, Parameter
 from shipcosim.library import build_stale
 from shipcosim.series import read_table
 
@@ -51,6 +52,19 @@ def test_readme_lists_the_variables_of_the_fmu(name, documents):
     assert (ROOT / "fmus" / name / "README.md").read_text(encoding="utf-8") == documents.readme(
         name
     )
+
+
+def test_the_table_for_readmes_has_a_row_per_variable(documents):
+    class Two(Fmu):
+        a = Input("N", "force | push")
+        b = Output("m/s", "speed")
+        c = Parameter(2.0, "s", "time constant", tunable=True)
+
+    assert documents.table_of_variables(Two).splitlines()[2:] == [
+        "| `a` | input | Real | N | `0.0` | force &#124; push |",
+        "| `b` | output | Real | m/s |  | speed |",
+        "| `c` | tunable parameter | Real | s | `2.0` | time constant |",
+    ]
 
 
 @pytest.mark.parametrize("name", FMUS)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from dp_runs import MODERATE, SEA, WIND_8, simulate
 from ships import parameters
+from wave_suppression import wave_suppression
 
-from shipcosim.models.control.margins import Delays, linear_loop, wave_suppression
+from shipcosim.models.control.margins import Delays, linear_loop
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.ship.sensors import SensorParameters

@@ -7,7 +7,7 @@ import typer
 
 from shipcosim.cli.options import Debug
 from shipcosim.cli.terminal import say
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 
 def build(
@@ -47,10 +47,10 @@ def build(
         remedy = (
             "A project has a folder fmus/ or ssp/: go there, or make one with `shipcosim init DIR`."
         )
-        raise ShipcosimError(Problem(str(Path.cwd()), "There is no project here.", remedy))
+        raise error_at(str(Path.cwd()), "There is no project here.", remedy)
     if targets and not native:
-        raise ShipcosimError(
-            Problem("--targets", "FMUs in Python run on Linux and Windows.", "Give --native too.")
+        raise error_at(
+            "--targets", "FMUs in Python run on Linux and Windows.", "Give --native too."
         )
     left = []
     with progress_of("Building") as progress:

@@ -43,16 +43,14 @@ def report(
 
 def _table(given: Path) -> Path:
     """The table of a run: a file, or the one in a folder of results."""
-    from shipcosim.errors import Problem, ShipcosimError
+    from shipcosim.errors import error_at
 
     if not given.is_dir():
         return given
     for name in ("result.nc", "result.csv", "result-partial.nc", "result-partial.csv"):
         if (given / name).is_file():
             return given / name
-    raise ShipcosimError(
-        Problem(str(given), "There is no result.nc in this folder.", "Give the --out of a run.")
-    )
+    raise error_at(str(given), "There is no result.nc in this folder.", "Give the --out of a run.")
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:

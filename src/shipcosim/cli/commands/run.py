@@ -24,7 +24,7 @@ from shipcosim.cli.options import (
     Until,
 )
 from shipcosim.cli.start.completion import names_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 if TYPE_CHECKING:
     from shipcosim.calls.runs import PreparedRun
@@ -87,9 +87,7 @@ def run(
             found = (
                 "This is a folder of scenarios: there is no one state to store or to go on from."
             )
-            raise ShipcosimError(
-                Problem(scenario, found, "Name one scenario, or leave out --store and --from.")
-            )
+            raise error_at(scenario, found, "Name one scenario, or leave out --store and --from.")
         name = files[0].resolve().parent.name
         prepared = [prepare_run(file, **asked) for file in files]
         _run_all(prepared, out or Path("results") / name, name, force)

@@ -10,10 +10,13 @@ import typer
 
 from shipcosim.cli.options import Debug, Force
 from shipcosim.cli.terminal import make_console, say
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 
 EVERY = 30.0  # s between lines that say how far it is, where there is no terminal
 DEFAULT_KIND = "paper-v"
+Kind = Annotated[
+    str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
+]
 Out = Annotated[
     Path | None,
     typer.Option(
@@ -23,9 +26,7 @@ Out = Annotated[
 
 
 def allocator(
-    kind: Annotated[
-        str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
-    ] = DEFAULT_KIND,
+    kind: Kind = DEFAULT_KIND,
     out: Out = None,
     force: Force = False,
     debug: Debug = False,
@@ -57,9 +58,7 @@ def drift(
 
 
 def dead_reckoning(
-    kind: Annotated[
-        str, typer.Option("--kind", metavar="NAME", help="Which; an unknown name lists them all.")
-    ] = "motion-filter",
+    kind: Kind = "motion-filter",
     out: Out = None,
     force: Force = False,
     debug: Debug = False,
@@ -103,12 +102,10 @@ def _train(component: str, kind: str, out: Path | None, force: bool) -> None:
         if error.name != "torch":
             raise
         remedy = 'Install the extra `learn`: pip install "shipcosim[learn]".'
-        raise ShipcosimError(
-            Problem("train", "Training needs torch, which is not installed.", remedy)
-        ) from None
+        raise error_at("train", "Training needs torch, which is not installed.", remedy) from None
     kinds = list(learn.COMPONENTS[component])
     if kind not in kinds:
-        raise ShipcosimError(Problem("--kind", f"There is no '{kind}'.", suggestion(kind, kinds)))
+        raise error_at("--kind", f"There is no '{kind}'.", suggestion(kind, kinds))
     folder = out or Path("results") / f"train-{kind}"
     check_targets(folder)
     with staged(folder, force=force) as stage, _progress(kind) as progress:

@@ -10,7 +10,7 @@ from string import Template
 from typing import TYPE_CHECKING
 
 from shipcosim import library
-from shipcosim.errors import Problem, ShipcosimError, reading
+from shipcosim.errors import Problem, ShipcosimError, error_at, reading
 
 if TYPE_CHECKING:
     from shipcosim.ssp import System
@@ -60,7 +60,7 @@ def write_new(folder: Path, new: Mapping[str, str | bytes]) -> list[Path]:
             with suppress(OSError):  # what cannot be written cannot be removed either
                 path.unlink(missing_ok=True)
         where = str(written[-1] if written else folder)
-        raise ShipcosimError(Problem(where, f"cannot be written: {error.strerror}.")) from None
+        raise error_at(where, f"cannot be written: {error.strerror}.") from None
     return written
 
 
@@ -89,7 +89,7 @@ def fmu_files(name: str) -> Files:
     """An FMU that can be built as it is."""
     if not (name.isidentifier() and name.isascii()):
         remedy = "Its name is one of Python: letters, digits and '_', no digit at the start."
-        raise ShipcosimError(Problem(name, "This cannot name an FMU.", remedy))
+        raise error_at(name, "This cannot name an FMU.", remedy)
     class_name = "".join(part[:1].upper() + part[1:] for part in name.split("_")) or name
     values = {"name": name, "class_name": class_name}
     return {
@@ -117,8 +117,8 @@ def system_files(name: str, origin: str) -> Files:
     folder = library.find("system", origin, "--from")
     if not (folder / STRUCTURE).is_file():
         remedy = f"Unpack it into ssp/{name}; an .ssp is a ZIP archive."
-        raise ShipcosimError(
-            Problem(origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy)
+        raise error_at(
+            origin, f"This is no folder with a {STRUCTURE}, so it is not copied.", remedy
         )
     with reading(folder / STRUCTURE):
         text = (folder / STRUCTURE).read_text(encoding="utf-8")
@@ -220,7 +220,7 @@ def _fits(text: str, system: "System") -> bool:
 
 def _outputs(system: "System") -> Iterator[str]:
     for component in system.components.values():
-        names = (v.name for v in component.fmu.variables.values() if v.causality == "output")
+        names = (v.name for v in component.variables.values() if v.causality == "output")
         yield from (f"{component.name}.{name}" for name in names)
 
 
@@ -238,7 +238,7 @@ def _own_system() -> str | None:
 def _check_name(name: str, kind: str) -> None:
     if not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", name):
         found = f"This cannot name a {kind}: '{name}'."
-        raise ShipcosimError(Problem("NAME", found, "Use letters, digits, '_', '-' and '.'."))
+        raise error_at("NAME", found, "Use letters, digits, '_', '-' and '.'.")
 
 
 def _filled(template: str, **values: object) -> str:

@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from shipcosim.cli.console import shown_path
+from shipcosim.cli.console import say_page, shown_path
 from shipcosim.cli.exits import INTERRUPTED
 from shipcosim.cli.terminal import make_console, say
 from shipcosim.sweep import Plan, Swept
@@ -135,7 +135,7 @@ def _say(swept: Swept) -> None:
     console.print(
         f"{counts['done']:,} of {counts['planned']:,} runs are done{open_}.", markup=False
     )
-    console.print(f"Page: {shown_path(swept.folder / 'report.html')}", markup=False)
+    say_page(console, swept.folder / "report.html")
 
 
 def _number(value: float) -> str:

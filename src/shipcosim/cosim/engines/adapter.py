@@ -28,7 +28,7 @@ from shipcosim.cosim.master.time_grid import time_grid_of
 from shipcosim.cosim.slaves.interface_type import interface_type_of
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import BUFFER_TYPES
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
@@ -294,7 +294,7 @@ def _opened(engine, open_session, job):
     try:
         return open_session(job)
     except EngineError as error:
-        raise ShipcosimError(Problem(engine, f"refuses the system. {error}")) from error
+        raise error_at(engine, f"refuses the system. {error}") from error
 
 
 def _advance(session, job, check_interrupt):
@@ -338,12 +338,12 @@ def unsupported(
         if interface_type_of(component) == "ModelExchange":
             found = f"runs as model exchange, which {engine} does not do."
             problems.append(Problem(component.name, found, "The engine fmpy does."))
-        if wide := [v.name for v in component.fmu.variables.values() if v.type in WIDE]:
+        if wide := [v.name for v in component.variables.values() if v.type in WIDE]:
             found = (
                 f"has Integers of more than 32 bits, which {engine} has not: {', '.join(wide[:5])}."
             )
             problems.append(Problem(component.name, found))
-        if items := [v.name for v in component.fmu.variables.values() if v.kind == "Enumeration"]:
+        if items := [v.name for v in component.variables.values() if v.kind == "Enumeration"]:
             problems.append(
                 Problem(
                     component.name,

@@ -21,7 +21,7 @@ from shipcosim.cosim.engines.adapter import EngineError, Job, is_linear, run_on,
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End, label
 from shipcosim.cosim.master.signals import Modifier
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import Connection, System
@@ -58,7 +58,7 @@ def check_installed() -> None:
         import ecospy  # noqa: F401
     except (ImportError, OSError) as error:
         remedy = "Install it: pip install ecospy, and on Linux its library TBB (Debian: apt install libtbb12)."
-        raise ShipcosimError(Problem("ecos", f"is not installed: {error}.", remedy)) from error
+        raise error_at("ecos", f"is not installed: {error}.", remedy) from error
 
 
 def _problems(job):

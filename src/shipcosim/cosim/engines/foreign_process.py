@@ -18,7 +18,7 @@ import numpy as np
 
 from shipcosim.cosim.engines.adapter import EngineError
 from shipcosim.cosim.master.time_grid import time_grid_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.ssp import System
@@ -58,9 +58,7 @@ def readers(
     # The tool reads the file alone, so nothing of our scenario reaches it.
     if scenario.events or scenario.set or scenario.components:
         found = "A tool that reads the file itself knows no events, start values or swapped FMUs of ours."
-        raise ShipcosimError(
-            Problem(scenario.name or "scenario", found, "Compare the system alone.")
-        )
+        raise error_at(scenario.name or "scenario", found, "Compare the system alone.")
     # ecos reads SSP files only.
     hosts = ["libcosim"] if Path(path).suffix == ".xml" else ["libcosim", "ecos"]
     return {host: partial(_run, host, str(path), scenario, set_name) for host in hosts}
@@ -72,7 +70,7 @@ def _run(host, path, scenario, set_name, system):
     outputs = {
         f"{name}.{v.name}": (name, v.name, v.value_reference, v.kind, v.unit or "")
         for name, component in system.components.items()
-        for v in component.fmu.variables.values()
+        for v in component.variables.values()
         if v.causality == "output" and v.kind in KINDS
     }
     job = {
@@ -97,14 +95,12 @@ def _values(host, job, folder):
     try:
         subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=LIMIT)
     except subprocess.TimeoutExpired:
-        raise ShipcosimError(Problem(host, f"does not end within {LIMIT:g} s.")) from None
+        raise error_at(host, f"does not end within {LIMIT:g} s.") from None
     # A message of the tool is a refusal; no file at all is a crash.
     if (folder / "refused.txt").exists():
-        raise ShipcosimError(
-            Problem(host, f"refuses the file. {(folder / 'refused.txt').read_text()}")
-        )
+        raise error_at(host, f"refuses the file. {(folder / 'refused.txt').read_text()}")
     if not (folder / "values.npy").exists():
-        raise ShipcosimError(Problem(host, "crashes."))
+        raise error_at(host, "crashes.")
     return np.load(folder / "values.npy")
 
 

@@ -28,7 +28,7 @@ from shipcosim.cosim.engines.osp_job import (
 )
 from shipcosim.cosim.engines.python_imports import imports_undone
 from shipcosim.cosim.master.plan import End
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import ShipcosimError, error_at
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.ssp import System
@@ -61,7 +61,7 @@ def check_installed() -> None:
         libcosimc()
     except (ImportError, OSError) as error:
         remedy = "Install it: pip install libcosimpy (Linux and Windows on x86-64)."
-        raise ShipcosimError(Problem("libcosim", f"is not installed: {error}.", remedy)) from error
+        raise error_at("libcosim", f"is not installed: {error}.", remedy) from error
 
 
 class LibcosimSession:
@@ -154,7 +154,7 @@ class LibcosimSession:
         self._observe()
 
     def _start(self, name):
-        variables = self._job.system.components[name].fmu.variables
+        variables = self._job.system.components[name].variables
         slave = self._indices[name]
         for variable, value in self._job.starts(name).items():
             kind = variables[variable].kind

@@ -21,7 +21,7 @@ from shipcosim.cosim.export.container_variables import (
 from shipcosim.cosim.master.order import sources_first
 from shipcosim.cosim.master.plan import label
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, raise_errors
 from shipcosim.ssp import System
 from shipcosim.ssp.xml.archive import write_archive
 from shipcosim.ssp.xml.values import text_of
@@ -61,8 +61,7 @@ def write_container(
     # Find all problems before anything is written.
     problems = [*_problems(system, step_size), *module_clashes(system)]
     exposed = exposed_variables(system, connectors_only, problems)
-    if errors := [problem for problem in problems if problem.severity == "error"]:
-        raise ShipcosimError(errors)
+    raise_errors(problems)
     # Each FMU file goes into the resources once, however many components use it.
     paths = _paths(system)
     files = {f"resources/{paths[fmu]}/{name}": data for fmu in paths for name, data in _files(fmu)}
@@ -227,7 +226,7 @@ def _hidden(system, exposed):
     for component in system.components.values():
         for name, value in component.start.items():
             if (component.name, name) not in shown:
-                variable = component.fmu.variables[name]
+                variable = component.variables[name]
                 yield ContainerVariable(
                     "", "local", variable, ((component.name, name),), start=value
                 )
@@ -240,7 +239,7 @@ def _variable(one, system, numbers):
         "mappings": [
             {
                 "component": numbers[name],
-                "valueReference": system.components[name].fmu.variables[own].value_reference,
+                "valueReference": system.components[name].variables[own].value_reference,
             }
             for name, own in one.ends
         ],

@@ -9,7 +9,7 @@ from shipcosim.cosim.export.container_variables import (
     is_structured,
     library_type,
 )
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.ssp import System
 from shipcosim.ssp.xml.values import text_of
 
@@ -86,9 +86,7 @@ def _add_units(root, system, exposed):
         found = {c.fmu.units[name] for c in system.components.values() if name in c.fmu.units}
         if len({(unit.exponents, unit.factor, unit.offset) for unit in found}) > 1:
             text = f"The unit {name} is defined in two ways by its FMUs."
-            raise ShipcosimError(
-                Problem(system.name, text, "An FMU can have one definition of a unit.")
-            )
+            raise error_at(system.name, text, "An FMU can have one definition of a unit.")
         element = xml.SubElement(definitions, "Unit", name=name)
         for unit in found:
             xml.SubElement(element, "BaseUnit", unit.base_unit_attributes)

@@ -135,7 +135,7 @@ def _common_start(system, signal, ends, problems):
 def _variables(system, fed):
     """Outputs and parameters of the components, and inputs that nothing feeds."""
     for component in system.components.values():
-        for variable in component.fmu.variables.values():
+        for variable in component.variables.values():
             end = component.name, variable.name
             if variable.causality in ("input", "parameter") and end not in fed:
                 start = component.start_value(variable.name)

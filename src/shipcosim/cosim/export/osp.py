@@ -10,7 +10,7 @@ from shipcosim.cosim.engines.adapter import Job
 from shipcosim.cosim.engines.osp_job import event_of, structure_of, unsupported_by_libcosim
 from shipcosim.cosim.master.events import SignalChange
 from shipcosim.cosim.master.plan import KINDS
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at, raise_errors
 from shipcosim.options import RunOptions
 from shipcosim.scenario import Scenario, check_scenario, units_of, with_numbers
 from shipcosim.scenario.osp import scenario_text
@@ -54,9 +54,7 @@ def osp_files(
     """
     # Apply the scenario's values first: the files hold one system with numbers.
     system = with_values(system, scenario.set, str(scenario.path or "scenario"))
-    wrong = [problem for problem in check_scenario(scenario, system) if problem.severity == "error"]
-    if wrong:
-        raise ShipcosimError(wrong)
+    raise_errors(check_scenario(scenario, system))
     scenario = with_numbers(scenario, units_of(system))
     job = Job(system, scenario, RunOptions())
     problems = [*unsupported_by_libcosim(job), *_values_problems(job)]
@@ -101,7 +99,7 @@ def _as_typed(value, kind):
 
 
 def _initial_values(job, name):
-    variables = job.system.components[name].fmu.variables
+    variables = job.system.components[name].variables
     starts = {
         variable: (variables[variable].kind, value) for variable, value in job.starts(name).items()
     }
@@ -114,7 +112,7 @@ def _initial_values(job, name):
 def _values_problems(job):
     for name, component in job.system.components.items():
         for variable in component.start:
-            kind = component.fmu.variables[variable].kind
+            kind = component.variables[variable].kind
             if kind not in TYPES:
                 yield Problem(
                     f"{name}.{variable}",
@@ -183,7 +181,5 @@ def write_osp(
     except OSError as error:
         for path in partial.values():
             path.unlink(missing_ok=True)
-        raise ShipcosimError(
-            Problem(str(folder), f"Cannot be written: {error.strerror}.")
-        ) from None
+        raise error_at(str(folder), f"Cannot be written: {error.strerror}.") from None
     return remarks

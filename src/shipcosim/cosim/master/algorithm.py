@@ -14,6 +14,7 @@ from shipcosim.cosim.master.signals import Exchange
 from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
 from shipcosim.errors import Problem
+from shipcosim.options import CountProgress
 
 MOST_ITERATIONS = 200
 """Iterations over the components, beyond one for each of them, in which the start has to become consistent."""
@@ -162,7 +163,7 @@ class Master:
         actions: Mapping[int, Sequence[Callable[[], None]]],
         external: Sequence[tuple[np.ndarray, np.ndarray]],
         recorders: Recorders,
-        progress: Callable[[int, int], None] | None = None,
+        progress: CountProgress | None = None,
     ) -> None:
         """Step to the end, recording rows.
 

@@ -19,6 +19,7 @@ from shipcosim.cosim.master.time_grid import TimeGrid
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.native import CompiledStep, Untraceable, compiled_steps, is_installed, libraries
 from shipcosim.native.component import CALL
+from shipcosim.options import CountProgress
 
 DONE, FAILED, NOT_FINITE = range(3)
 HOST = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_int, ctypes.c_int64)
@@ -107,7 +108,7 @@ class CompiledMaster(Master):
         actions: Mapping[int, Sequence[Callable[[], None]]],
         external: Sequence[tuple[np.ndarray, np.ndarray]],
         recorders: Recorders,
-        progress: Callable[[int, int], None] | None = None,
+        progress: CountProgress | None = None,
     ) -> None:
         """See `Master.run`."""
         if why := self._not_compiled():

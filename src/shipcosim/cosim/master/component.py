@@ -1,6 +1,6 @@
 """A component in a run: its FMU's instance and the prepared calls that exchange its values."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from shipcosim.cosim.master.plan import Rows
 from shipcosim.cosim.master.signals import Exchange
-from shipcosim.cosim.slaves.slave import BUFFER_TYPES, FAILED, Slave, SlaveError
+from shipcosim.cosim.slaves.slave import BUFFER_TYPES, FAILED, Call, Slave, SlaveError, Step
 from shipcosim.ssp import Variable
 
 
@@ -30,7 +30,7 @@ class DiscreteSetter:
 
     function: str
     exchange: Exchange
-    call: Callable[[], int]
+    call: Call
     version: int = -1
 
 
@@ -62,9 +62,9 @@ class ComponentInstance:
     feeds: bool = True
     input_rows: dict[str, Rows] = field(default_factory=dict)
     output_rows: dict[str, Rows] = field(default_factory=dict)
-    _set_reals: Callable[[], int] | None = None
+    _set_reals: Call | None = None
     _discrete: list[DiscreteSetter] = field(default_factory=list)
-    _gets: list[tuple[str, Callable[[], int]]] = field(default_factory=list)
+    _gets: list[tuple[str, Call]] = field(default_factory=list)
 
     def __post_init__(self):
         self._do_step = do_step = self.slave.stepper()
@@ -73,7 +73,7 @@ class ComponentInstance:
         if (step := self.fixed_step) is not None:
             self._do_step = lambda time, _: do_step(time, step)
 
-    def steps_by(self, do_step: Callable[[float, float], int]) -> None:
+    def steps_by(self, do_step: Step) -> None:
         """Use another call to step: that of a group with one solver."""
         self._do_step = do_step
 

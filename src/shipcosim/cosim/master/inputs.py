@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.series import conversion
 
 if TYPE_CHECKING:
@@ -181,7 +181,7 @@ def _rows(clock, times):
     if clock[0] > start + CLOSE or clock[-1] < end - CLOSE:
         found = f"The table goes from {clock[0]:.9g} s to {clock[-1]:.9g} s, the run from {start:.9g} s to {end:.9g} s."
         remedy = "Start later or stop earlier: the table has to cover the run from the first step to the last."
-        raise ShipcosimError(Problem("inputs", found, remedy))
+        raise error_at("inputs", found, remedy)
     first = max(0, np.searchsorted(clock, start + CLOSE, side="right") - 1)
     last = int(np.searchsorted(clock, end - CLOSE)) + 1
     # A jump at the end has its second row there too.
@@ -213,19 +213,15 @@ def _column(column, signal, clock, times):
     values = column.values
     if how not in INTERPOLATIONS or (how == "linear" and signal.type != "Real"):
         remedy = "It can be 'held', or 'linear' for a Real."
-        raise ShipcosimError(Problem("", f"interpolation = {how!r} of a {signal.type}.", remedy))
+        raise error_at("", f"interpolation = {how!r} of a {signal.type}.", remedy)
     if len(bad := np.flatnonzero(~np.isfinite(values))):
         more = f" So are {len(bad) - 1} more of the rows that are needed." if len(bad) > 1 else ""
         remedy = "Fill or drop such rows; a dropped row is held or interpolated over."
-        raise ShipcosimError(
-            Problem("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
-        )
+        raise error_at("", f"is {values[bad[0]]} at {clock[bad[0]]:.9g} s.{more}", remedy)
     # Flags and integers must be whole: a rounded value would hide an error of the log.
     if signal.type != "Real" and np.any(off := values != np.round(values)):
         found = f"is {values[off][0]} at {clock[off][0]:.9g} s."
-        raise ShipcosimError(
-            Problem("", found, f"It feeds a {signal.type}, which takes whole numbers.")
-        )
+        raise error_at("", found, f"It feeds a {signal.type}, which takes whole numbers.")
     # Convert the unit before interpolating, so that a full turn is in the input's unit.
     factor, offset = conversion(column.attrs.get("units"), signal.unit)
     values = values if (factor, offset) == (1.0, 0.0) else factor * values + offset

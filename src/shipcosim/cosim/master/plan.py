@@ -99,7 +99,7 @@ class Plan:
         """The FMU's variable."""
         component, name = end
         assert component is not None  # variables are those of components
-        return self.system.components[component].fmu.variables[name]
+        return self.system.components[component].variables[name]
 
     def kind(self, variable: Variable) -> str | None:
         """Kind of the arrays that hold a variable's values, or None where none does."""
@@ -206,7 +206,7 @@ def _kinds(system):
     types = {
         variable.type
         for component in system.components.values()
-        for variable in component.fmu.variables.values()
+        for variable in component.variables.values()
     }
     return KINDS | ({"Integer": "Long", "Enumeration": "Long"} if types.intersection(WIDE) else {})
 
@@ -223,12 +223,12 @@ def _component_problems(component, base, duration):
         yield Problem(
             component.name, f"its step of {step:g} s does not divide the run's {duration:g} s."
         )
-    arrays = [variable.name for variable in component.fmu.variables.values() if variable.dimensions]
+    arrays = [variable.name for variable in component.variables.values() if variable.dimensions]
     if arrays:
         yield Problem(
             component.name, f"has arrays that are not taken apart: {', '.join(arrays[:5])}."
         )
-    for variable in component.fmu.variables.values():
+    for variable in component.variables.values():
         if (
             variable.type == "UInt64"
             and (start := component.start_value(variable.name) or 0) >= 2**63
@@ -247,7 +247,7 @@ def _connection_problems(system):
         name = connection.target[0]
         if (
             name is not None
-            and system.components[name].fmu.variables[connection.target[1]].kind == "Clock"
+            and system.components[name].variables[connection.target[1]].kind == "Clock"
         ):
             found = "is a Clock. FMUs are stepped without event mode, in which clocks do not tick."
             yield Problem(label(connection.target), found, "Leave the clock unconnected.")
@@ -295,7 +295,7 @@ def _lay_out(plan, by_input):
     # Any variable can be a source, for example a parameter that feeds another component.
     sources = {connection.source for connections in by_input.values() for connection in connections}
     for component in plan.system.components.values():
-        for variable in component.fmu.variables.values():
+        for variable in component.variables.values():
             end = (component.name, variable.name)
             kind = plan.kind(variable)
             if kind is not None and (variable.causality == "output" or end in sources):
@@ -303,7 +303,7 @@ def _lay_out(plan, by_input):
     # Inputs have a row if something feeds or changes them; others keep their start value in the
     # FMU.
     for component in plan.system.components.values():
-        for variable in component.fmu.variables.values():
+        for variable in component.variables.values():
             end = component.name, variable.name
             if end in by_input or (end in plan.modified and variable.causality != "output"):
                 layout = plan.layouts[plan.kind(variable)]

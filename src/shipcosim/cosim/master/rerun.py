@@ -55,7 +55,7 @@ def _changed(before: Component, component: Component) -> Values | None:
         or before.start.keys() - component.start
     ):
         return None
-    variables = component.fmu.variables
+    variables = component.variables
     # Compare by identity: equal objects are the same value, others are set again, which does no
     # harm.
     unknown = object()

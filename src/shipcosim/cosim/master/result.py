@@ -97,7 +97,7 @@ def _passed_on(values, connection):
 def _variables(plan, values, n):
     """Columns of the components' outputs and external values, in the order of system and FMUs."""
     for component in plan.system.components.values():
-        for variable in component.fmu.variables.values():
+        for variable in component.variables.values():
             end = (component.name, variable.name)
             kind = plan.kind(variable)
             column = values.get(end)
@@ -119,7 +119,7 @@ def start_values(system: System) -> dict:
     return {
         label((component.name, variable.name)): component.start_value(variable.name)
         for component in system.components.values()
-        for variable in component.fmu.variables.values()
+        for variable in component.variables.values()
         if variable.causality == "parameter" or variable.name in component.start
     }
 

@@ -41,7 +41,7 @@ from shipcosim.cosim.slaves.instances import Instances
 from shipcosim.cosim.slaves.pythonfmu_code import module_clashes
 from shipcosim.cosim.slaves.slave import SlaveError
 from shipcosim.errors import Problem, ShipcosimError, suggestion
-from shipcosim.options import RunOptions
+from shipcosim.options import CountProgress, RunOptions
 from shipcosim.scenario import Scenario
 from shipcosim.series import make_table
 from shipcosim.snapshot import Snapshot, opened, writer
@@ -176,7 +176,7 @@ class Simulation:
         self,
         slaves: SlaveSource,
         check_interrupt: Callable[[], None],
-        progress: Callable[[int, int], None] | None = None,
+        progress: CountProgress | None = None,
     ) -> None:
         """Go to the end of the time grid.
 

@@ -17,8 +17,8 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from shipcosim.cosim.slaves.instances import Instances
-from shipcosim.cosim.slaves.slave import RunEnded, SlaveError
-from shipcosim.ssp import Component, Variable
+from shipcosim.cosim.slaves.slave import RunEnded, SlaveError, Variables
+from shipcosim.ssp import Component
 
 MARK = b"shipcosim"
 """Begin of each message between a run and the process of a component."""
@@ -149,7 +149,7 @@ class RequestHandler:
         return getattr(self._slave, method)(*arguments)
 
     def prepare(
-        self, method: str, kind: str, variables: Sequence[Variable], buffer: np.ndarray | None
+        self, method: str, kind: str, variables: Variables, buffer: np.ndarray | None
     ) -> int:
         """Prepare a frequent call once; return its number."""
         arguments = () if buffer is None else (kind, variables, buffer)

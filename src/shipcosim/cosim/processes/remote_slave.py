@@ -3,7 +3,7 @@
 The process of a component does what a `Slave` does here, on the same bytes, so results are the same to the last digit.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from threading import Event, Thread
 from time import monotonic
@@ -12,8 +12,8 @@ from typing import Any, Self
 import numpy as np
 
 from shipcosim.cosim.processes.component_process import EXIT_TIMEOUT, ComponentProcess
-from shipcosim.cosim.slaves.slave import OK, Slave, SlaveError
-from shipcosim.ssp import Component, System, Variable
+from shipcosim.cosim.slaves.slave import OK, Call, Slave, SlaveError, Step, Variables
+from shipcosim.ssp import Component, System
 from shipcosim.temporary import temporary_folder
 
 
@@ -47,9 +47,7 @@ class RemoteSlave(Slave):
         """Logged messages: (status, text)."""
         return self._process.messages
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind; the next call reports errors."""
         what = f"Set{kind}"
         number = self._prepared("setter", kind, variables, buffer)
@@ -62,9 +60,7 @@ class RemoteSlave(Slave):
 
         return set_all
 
-    def getter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         what = f"Get{kind}"
         number = self._prepared("getter", kind, variables, buffer)
@@ -80,7 +76,7 @@ class RemoteSlave(Slave):
 
         return get_all
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances by a step; the next call reports errors.
 
         The answer also brings the values of the getters.
@@ -106,11 +102,11 @@ class RemoteSlave(Slave):
         """Raise SlaveError if the status or an earlier unanswered request failed."""
         self._call("check", function, status)
 
-    def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
+    def get_strings(self, variables: Variables) -> list[str] | list[bytes]:
         """Values of String variables."""
         return self._call("get_strings", tuple(variables))
 
-    def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
+    def set_strings(self, variables: Variables, values: Sequence) -> None:
         """Set String variables."""
         self._call("set_strings", tuple(variables), tuple(values))
 

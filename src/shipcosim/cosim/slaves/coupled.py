@@ -9,7 +9,7 @@ indicators and step with the base step. An FMU's time and step events are made w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from ctypes import POINTER, c_double
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -23,7 +23,7 @@ from shipcosim.cosim.slaves.model_exchange import (
     TOLERANCE,
     ModelExchange,
 )
-from shipcosim.cosim.slaves.slave import OK, SlaveError
+from shipcosim.cosim.slaves.slave import OK, SlaveError, Step
 from shipcosim.ssp import Variable
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ class CoupledModels:
         )
         return slave, sources, (getter, got), targets, (setter, given)
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances the whole group from a time by a step size."""
         from shipcosim.cosim.slaves.cvode import SolverError
 

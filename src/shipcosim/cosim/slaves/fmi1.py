@@ -6,7 +6,6 @@ feeds them right after that.
 Reference: FMI 1.0.1 for co-simulation, section 3; FMI 1.0.1 for model exchange, section 2.
 """
 
-from collections.abc import Callable, Sequence
 from ctypes import byref, c_char, c_double, c_int, c_size_t
 from functools import partial
 from math import inf
@@ -17,8 +16,16 @@ import numpy as np
 from shipcosim.cosim.slaves.library_slave import LibrarySlave, references
 from shipcosim.cosim.slaves.messages import receive_messages
 from shipcosim.cosim.slaves.model_exchange import CONTINUOUS, EVENT, EventUpdate, ModelExchange
-from shipcosim.cosim.slaves.slave import FAILED, FATAL, OK, RunEnded, SlaveError
-from shipcosim.ssp import Variable
+from shipcosim.cosim.slaves.slave import (
+    FAILED,
+    FATAL,
+    OK,
+    Call,
+    RunEnded,
+    SlaveError,
+    Step,
+    Variables,
+)
 
 TRUE = b"\x01"
 FALSE = b"\x00"
@@ -30,9 +37,7 @@ class Slave1(LibrarySlave):
     _prefix = "fmi1"
     _terminate = "TerminateSlave"
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
@@ -46,9 +51,7 @@ class Slave1(LibrarySlave):
 
         return set_all
 
-    def getter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         if kind == "Long":
             return self._long_getter(variables, buffer)
@@ -62,7 +65,7 @@ class Slave1(LibrarySlave):
 
         return get_all
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances from a time by a step size and returns the status."""
         do_step = self._function("DoStep")
         component = self.component

@@ -3,7 +3,6 @@
 Reference: FMI 2.0.4, section 4.
 """
 
-from collections.abc import Callable, Sequence
 from contextlib import suppress
 from ctypes import byref, c_double, c_int, c_size_t
 from functools import partial
@@ -13,8 +12,7 @@ import numpy as np
 
 from shipcosim.cosim.slaves.library_slave import LibrarySlave, references
 from shipcosim.cosim.slaves.messages import receive_messages
-from shipcosim.cosim.slaves.slave import DISCARD, OK, RunEnded, SlaveError
-from shipcosim.ssp import Variable
+from shipcosim.cosim.slaves.slave import DISCARD, OK, Call, RunEnded, SlaveError, Step, Variables
 
 TERMINATED = 3
 """The kind of status that tells whether the FMU has ended the run: fmi2Terminated."""
@@ -33,9 +31,7 @@ class Slave2(LibrarySlave):
         "deserialise": "DeSerializeFMUstate",
     }
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         if kind == "Long":
             return self._long_setter(variables, buffer)
@@ -43,9 +39,7 @@ class Slave2(LibrarySlave):
             return self._direct.setter(kind, variables, buffer)
         return self._exchange("Set", kind, variables, buffer)
 
-    def getter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         if kind == "Long":
             return self._long_getter(variables, buffer)
@@ -53,7 +47,7 @@ class Slave2(LibrarySlave):
             return self._direct.getter(kind, variables, buffer)
         return self._exchange("Get", kind, variables, buffer)
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances from a time by a step size and returns the status."""
         if self._direct is not None:
             return self._direct.stepper()

@@ -6,7 +6,7 @@ as the FMU starts it. Event mode and early return are not used, so that clocks d
 Reference: FMI 3.0.1, sections 2.2 and 4.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from ctypes import byref, c_bool, c_char_p, c_double, c_size_t, c_ubyte, c_uint, c_void_p, cast
 from functools import partial
 from math import prod
@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.slaves.library_slave import LibrarySlave
-from shipcosim.cosim.slaves.slave import DISCARD, FAILED, OK, RunEnded
-from shipcosim.ssp import Variable
+from shipcosim.cosim.slaves.slave import DISCARD, FAILED, OK, Call, RunEnded, Step, Variables
 
 TYPES = {
     "Float64": np.float64,
@@ -44,9 +43,7 @@ class Slave3(LibrarySlave):
         "deserialise": "DeserializeFMUState",
     }
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         # FMI 3.0 has a call for each type, so group the variables by type once.
         groups = list(self._type_groups("Set", variables, buffer.dtype))
@@ -76,9 +73,7 @@ class Slave3(LibrarySlave):
 
         return set_all
 
-    def getter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         groups = list(self._type_groups("Get", variables, buffer.dtype))
 
@@ -99,7 +94,7 @@ class Slave3(LibrarySlave):
 
         return get_all
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances from a time by a step size and returns the status."""
         do_step = self._function("DoStep")
         event = c_bool()
@@ -117,7 +112,7 @@ class Slave3(LibrarySlave):
 
         return step
 
-    def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
+    def get_strings(self, variables: Variables) -> list[str] | list[bytes]:
         """Values of String variables, or of Binary ones."""
         layout = ArrayLayout(variables)
         texts = (c_char_p * layout.n)()
@@ -134,7 +129,7 @@ class Slave3(LibrarySlave):
         self.call("GetString", layout.references, len(layout.references), texts, layout.n)
         return [(texts[position] or b"").decode() for position in layout.positions]
 
-    def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
+    def set_strings(self, variables: Variables, values: Sequence) -> None:
         """Set String variables, or Binary ones."""
         layout = ArrayLayout(variables)
         is_binary = variables[0].kind == "Binary"
@@ -231,7 +226,7 @@ class ArrayLayout:
         Of the scalars and whole arrays.
     """
 
-    def __init__(self, variables: Sequence[Variable]):
+    def __init__(self, variables: Variables):
         # An element stands for its whole array, once for all its elements.
         wholes: dict[int, Any] = {
             variable.value_reference: variable.whole or variable for variable in variables
@@ -282,7 +277,7 @@ class TypeGroup:
         self,
         component: Any,
         function: Any,
-        variables: Sequence[Variable],
+        variables: Variables,
         rows: np.ndarray,
         dtype: Any,
     ):

@@ -7,15 +7,14 @@ the start to storing a state, goes through the binary.
 
 import struct
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from shipcosim.cosim.slaves.slave import ERROR, OK
-from shipcosim.ssp import Variable
+from shipcosim.cosim.slaves.slave import ERROR, OK, Call, Step, Variables
 
 
 def python_object_of(folder: Path, name: str) -> Any:
@@ -51,9 +50,7 @@ class DirectCalls:
         self.target = target
         self._log = log
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """See `Slave.setter`."""
         if kind == "Real":
             return self._reals_setter(_references(variables), buffer)
@@ -73,9 +70,7 @@ class DirectCalls:
 
         return set_all
 
-    def getter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """See `Slave.getter`."""
         # The shell binds names to references once; each call then only reads attributes.
         get_values = self.target.prepared_getter(kind, _references(variables))
@@ -103,7 +98,7 @@ class DirectCalls:
 
         return set_all
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """See `Slave.stepper`."""
         target = self.target
         advance = self.target.advance

@@ -11,8 +11,16 @@ from typing import Any
 import numpy as np
 
 from shipcosim.cosim.slaves.in_process import DirectCalls, python_object_of
-from shipcosim.cosim.slaves.slave import ERROR, FAILED, FATAL, OK, STATUS, Slave, SlaveError
-from shipcosim.ssp import Variable
+from shipcosim.cosim.slaves.slave import (
+    ERROR,
+    FAILED,
+    FATAL,
+    OK,
+    STATUS,
+    Slave,
+    SlaveError,
+    Variables,
+)
 
 MOST_MESSAGES = 1000
 """That an instance logs and are kept."""
@@ -171,13 +179,13 @@ class LibrarySlave(Slave):
         """End the simulation. A failure here no longer matters."""
         self._is_lost = self._function("Terminate")(self.component) == FATAL
 
-    def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
+    def get_strings(self, variables: Variables) -> list[str] | list[bytes]:
         """Values of String variables."""
         texts = (c_char_p * len(variables))()
         self.call("GetString", references(variables), len(variables), texts)
         return [(text or b"").decode() for text in texts]
 
-    def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
+    def set_strings(self, variables: Variables, values: Sequence) -> None:
         """Set String variables."""
         texts = (c_char_p * len(variables))(*(value.encode() for value in values))
         self.call("SetString", references(variables), len(variables), texts)
@@ -210,7 +218,7 @@ class LibrarySlave(Slave):
         return get_widened
 
     def status_of_range(
-        self, values: np.ndarray, kind: np.dtype, variables: Sequence[Variable]
+        self, values: np.ndarray, kind: np.dtype, variables: Variables
     ) -> int | None:
         """Status, logged with its reason, if a type cannot hold a value; None if it holds all."""
         limits = np.finfo(kind) if kind.kind == "f" else np.iinfo(kind)
@@ -265,7 +273,7 @@ class LibrarySlave(Slave):
         raise NotImplementedError
 
 
-def references(variables: Sequence[Variable]) -> Array:
+def references(variables: Variables) -> Array:
     """Value references of variables as FMI 1.0 and 2.0 take them."""
     return (c_uint * len(variables))(*(variable.value_reference for variable in variables))
 

@@ -10,7 +10,7 @@ Reference: FMI 2.0.4 and FMI 3.0.1, section 3 of each.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from ctypes import POINTER, byref, c_bool, c_double, c_int, c_size_t
 from math import inf
 from pathlib import Path
@@ -22,8 +22,8 @@ from shipcosim.cosim.slaves.event_indicators import EventIndicators
 from shipcosim.cosim.slaves.fmi2 import Slave2
 from shipcosim.cosim.slaves.fmi3 import Slave3
 from shipcosim.cosim.slaves.library_slave import LibrarySlave
-from shipcosim.cosim.slaves.slave import DISCARD, OK, RunEnded, SlaveError
-from shipcosim.ssp import FmuDescription, Variable
+from shipcosim.cosim.slaves.slave import DISCARD, OK, Call, RunEnded, SlaveError, Step, Variables
+from shipcosim.ssp import FmuDescription
 from shipcosim.ssp.xml.document import is_true
 
 if TYPE_CHECKING:
@@ -99,9 +99,7 @@ class ModelExchange(LibrarySlave):
         self.close_group: Callable[[], None] | None = None
         super().__init__(name, folder, fmu.identifier("ModelExchange"), fmu.token)
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind where they changed; returns the status."""
         set_all = super().setter(kind, variables, buffer)
         last = None
@@ -126,7 +124,7 @@ class ModelExchange(LibrarySlave):
 
         return set_changed
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances from a time by a step size; what fails raises SlaveError."""
         from shipcosim.cosim.slaves.cvode import SolverError
 
@@ -196,9 +194,7 @@ class ModelExchange(LibrarySlave):
         """Time of its next event; infinite where it knows none. [s]"""
         return self._next_event
 
-    def plain_setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def plain_setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind without an event."""
         return super().setter(kind, variables, buffer)
 

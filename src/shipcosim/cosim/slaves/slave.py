@@ -13,6 +13,17 @@ import numpy as np
 
 from shipcosim.ssp import Variable
 
+Variables = Sequence[Variable]
+
+
+Step = Callable[[float, float], int]
+"""Goes on from a time by a step size, and returns the status."""
+
+
+Call = Callable[[], int]
+"""A prepared call of an FMU, which returns its status."""
+
+
 BUFFER_TYPES = {"Integer": np.int32, "Boolean": np.int32, "Long": np.int64, "Real": np.float64}
 """Kinds of exchanged values, in an order in which each may follow those before it."""
 
@@ -59,19 +70,15 @@ class Slave:
         own = (f"{self.name} ", f"{self.name}:", f"{self.name},")
         return [text if text.startswith(own) else f"{self.name}: {text}" for text in texts]
 
-    def setter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def setter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that sets variables of one kind from a buffer and returns the status."""
         raise NotImplementedError
 
-    def getter(
-        self, kind: str, variables: Sequence[Variable], buffer: np.ndarray
-    ) -> Callable[[], int]:
+    def getter(self, kind: str, variables: Variables, buffer: np.ndarray) -> Call:
         """Prepared call that gets variables of one kind into a buffer and returns the status."""
         raise NotImplementedError
 
-    def stepper(self) -> Callable[[float, float], int]:
+    def stepper(self) -> Step:
         """Prepared call that advances from a time by a step size, both in s, and returns the status."""
         raise NotImplementedError
 
@@ -83,11 +90,11 @@ class Slave:
         """Raise SlaveError if the status says that the function failed."""
         raise NotImplementedError
 
-    def get_strings(self, variables: Sequence[Variable]) -> list[str] | list[bytes]:
+    def get_strings(self, variables: Variables) -> list[str] | list[bytes]:
         """Values of String variables, or in FMI 3.0 of Binary ones."""
         raise NotImplementedError
 
-    def set_strings(self, variables: Sequence[Variable], values: Sequence) -> None:
+    def set_strings(self, variables: Variables, values: Sequence) -> None:
         """Set String variables, or in FMI 3.0 Binary ones."""
         raise NotImplementedError
 

@@ -134,7 +134,7 @@ def compared(log: CheckedLog) -> ComparedLog:
     Sides and signs of thrusters that the motion contradicts are faults of the log; a common ratio of thrust to inertia
     that is far off is in the ship from here on.
     """
-    length = log.ship.parts["hull"].length
+    length = log.ship.length
     log = replace(log, repaired=in_stretches(log.repaired, length))
     ship = as_logged(log.ship, log.repaired)
     record = record_of(log.repaired, ship)
@@ -143,7 +143,7 @@ def compared(log: CheckedLog) -> ComparedLog:
     errors = errors_of(record, felt, ship)
     # What to say where rows are too far apart for the ship's answers.
     step = float(np.diff(log.repaired["time"].values[:2])[0])
-    most = RESOLVED * froude_time(ship.parts["hull"].length)
+    most = RESOLVED * froude_time(ship.length)
     said = f"Rows {step:.3g} s apart do not show this ship's answers: no cause is named. {most:.2g} s would."
     too_slow = (said,) if step > most else ()
     unknown = _unknown_thrusters(log.repaired, ship)
@@ -165,7 +165,12 @@ def compared(log: CheckedLog) -> ComparedLog:
     comparison = LogComparison(errors, told, tuple(gains), labels, ratio, missing=tuple(missing))
     found = _stage(log, comparison)
     if labels.is_sure and labels.best.changes:
-        found = _relabelled(found, labels)
+        # The log with sides and signs of the thrusters put right.
+        sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
+        faults = [finding_of(_label(change, found.log), sure) for change in labels.best.changes]
+        faults = (*found.faults, *faults)
+        right = in_stretches(repaired(found.log, faults), found.ship.length)
+        found = replace(found, faults=faults, repaired=right)
     return _started_with_crude_model(found) if gross else found
 
 
@@ -183,7 +188,7 @@ def with_crude(
     comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel, causes: dict[str, Cause]
 ) -> LogComparison:
     """The comparison with the crude model where it predicts better; else with the ratio alone, where that is plain."""
-    length = ship.parts["hull"].length
+    length = ship.length
     logged = as_logged(ship, repaired)
     record = record_of(repaired, logged)
     felt = felt_by(record, length)
@@ -241,15 +246,6 @@ def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, 
 
 def _stage(log: CheckedLog, comparison: LogComparison) -> ComparedLog:
     return ComparedLog(log.log, log.ship, log.causes, log.faults, log.repaired, comparison)
-
-
-def _relabelled(log: ComparedLog, labels: Labels) -> ComparedLog:
-    """The log with sides and signs of the thrusters put right."""
-    sure = float(1.0 - np.exp(-min(labels.margin, 4.6)))
-    faults = [finding_of(_label(change, log.log), sure) for change in labels.best.changes]
-    faults = (*log.faults, *faults)
-    right = in_stretches(repaired(log.log, faults), log.ship.parts["hull"].length)
-    return replace(log, faults=faults, repaired=right)
 
 
 def _label(change: LabelError, log: xarray.Dataset):

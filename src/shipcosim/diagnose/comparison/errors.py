@@ -39,7 +39,7 @@ def horizons_of(model: ShipModel, motion: Motion, span: float, step: float) -> t
     tuple of float
         Rounded, increasing. [s]
     """
-    unit = froude_time(model.parts["hull"].length)
+    unit = froude_time(model.length)
     answer = np.clip(
         ANSWER * response_times(model, motion).middle, SHORTEST_ANSWER * unit, LONGEST_ANSWER * unit
     )

@@ -152,7 +152,7 @@ def reading(
     commanded = commanded_by(*driven(units, record, felt, model))
     ahead = ahead_of(units)
     tries = []
-    scale = froude_time(model.parts["hull"].length)
+    scale = froude_time(model.length)
     for lag in (0.0, *(k * scale for k in LAGS)):
         moved = late(commanded, lag / record.step)
         support = support_of(moved, ahead, axes)

@@ -157,7 +157,7 @@ def _weighed(
     found: Sequence[LabelHypothesis], record: Record, felt: Felt, model: ShipModel
 ) -> list[_Weighed]:
     """Readings with what the three measures say, the logged one first."""
-    unit = froude_time(model.parts["hull"].length)
+    unit = froude_time(model.length)
     smooth = smoothed(felt)
     log = blocks_of(felt, commanded_by(*driven(found[0].units, record, smooth, model)), model)
     foresight = causal_support(felt, [one.commanded for one in found], unit)

@@ -103,7 +103,7 @@ def blocks_of(felt: Felt, commanded: Commanded, model: ShipModel) -> Blocks:
     -------
     Blocks
     """
-    length = model.parts["hull"].length
+    length = model.length
     motion = smoothed(felt).motion
     count = max(1, round(CAUSAL_STEP * froude_time(length) / felt.kernel.step))
     speeds = blocks(np.stack([felt.motion.u, felt.motion.v, felt.motion.r]), count)

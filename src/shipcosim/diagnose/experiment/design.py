@@ -18,13 +18,11 @@ from shipcosim.diagnose.experiment.manoeuvres import (
     step_for,
     true_wind,
 )
-from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, paths_of
-from shipcosim.diagnose.inference.evidence import evidence
+from shipcosim.diagnose.hypotheses.catalogue import paths_of
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
-from shipcosim.diagnose.inference.innovations import Noise, innovations
+from shipcosim.diagnose.inference.innovations import innovations
 from shipcosim.diagnose.inference.linearisation import linearise, rows_first
 from shipcosim.diagnose.inference.parts import beside
-from shipcosim.diagnose.inference.regressors import screening_regressors
 from shipcosim.diagnose.ship.dynamics import with_steady_current
 from shipcosim.diagnose.ship.inputs import part_of
 from shipcosim.diagnose.ship.measured_motion import readings
@@ -150,7 +148,8 @@ def separations(
     ends = [rows_of(one, records[0].step) for one in manoeuvres]
     found = {pair: np.full(len(manoeuvres), np.inf) for pair in combinations(range(len(fits)), 2)}
     for a, (motion, record) in enumerate(zip(motions, records, strict=True)):
-        record = replace(record, measured=_readings(motion, models[a]))
+        measured = np.moveaxis(rows_first(readings(motion, models[a])), 0, -2)
+        record = replace(record, measured=measured)
         right = linearise(motion, record, models[a], [])
         tolerated = linearise(motion, record, _in_true_wind(problem.model), known)
         for b in range(len(fits)):
@@ -161,10 +160,6 @@ def separations(
                 gains = [_missed(white[:end, i], fits[b].covariance) for i, end in enumerate(ends)]
                 found[pair] = np.minimum(found[pair], np.where(through[a], gains, np.nan))
     return found
-
-
-def _readings(motion, model):
-    return np.moveaxis(rows_first(readings(motion, model)), 0, -2)
 
 
 def _in_true_wind(model: ShipModel) -> ShipModel:
@@ -215,16 +210,12 @@ def _beside(fit, model, motion, record, right, tolerated, known):
 
 def _missed(white, covariance):
     """Log-evidence that a fit loses on expected innovations, after its columns have explained what they can. [nats]"""
-    products = _products(white)
+    rows = white.reshape(-1, white.shape[-1])
+    products = rows.T @ rows
     L = np.linalg.cholesky(covariance + 1e-12 * np.eye(len(covariance)))
     G = L.T @ products[1:, 1:] @ L
     g = L.T @ products[1:, 0]
     return 0.5 * float(products[0, 0] - g @ np.linalg.solve(np.eye(len(G)) + G, g))
-
-
-def _products(white):
-    rows = white.reshape(-1, white.shape[-1])
-    return rows.T @ rows
 
 
 def _simulated(problem, models, manoeuvres):
@@ -262,7 +253,7 @@ def _simulated(problem, models, manoeuvres):
         motions.append(Motion(*(value[part] for value in motion)))
         here = part_of(units, part)
         records.append(replace(record, units=here))
-        through.append(_keeps_track(motions[-1], track, manoeuvres, dp))
+        through.append(keeps_track(motions[-1], track, manoeuvres, dp))
     return motions, records, through
 
 
@@ -279,9 +270,11 @@ def _side_by_side(models, time, many):
     return models[0].with_values(values)
 
 
-def _keeps_track(motion, track, manoeuvres, dp):
+def keeps_track(
+    motion: Motion, track: Motion, manoeuvres: Sequence[Manoeuvre], dp: DpController
+) -> np.ndarray:
     """Whether the ship keeps near her track, and in the area where she drifts or is pushed. (c,)"""
-    length = dp.model.parts["hull"].length
+    length = dp.model.length
     found = []
     off = np.hypot(motion.x - track.x, motion.y - track.y) / length
     far = np.hypot(motion.x - track.x[:, :1], motion.y - track.y[:, :1]) / length
@@ -290,70 +283,3 @@ def _keeps_track(motion, track, manoeuvres, dp):
         near = _ROOM if one.free or one.pushes else _ASTRAY
         found.append((off[i, rows] < near).all() and (far[i, rows] < _ROOM).all())
     return np.array(found)
-
-
-def testability(
-    model: ShipModel,
-    hypotheses: Sequence[Hypothesis],
-    noise: Noise,
-    manoeuvres: Sequence[Manoeuvre],
-    wind: tuple[float, float] | None = None,
-) -> dict[str, np.ndarray]:
-    """What each cause of typical size would gain in manoeuvres of a healthy ship.
-
-    Parameters
-    ----------
-    model : ShipModel
-    hypotheses : sequence of Hypothesis
-    noise : Noise
-        Of a log with a row a second.
-    manoeuvres : sequence of Manoeuvre
-    wind : tuple of two floats, optional
-        Speed, and direction over ground that it comes from. [m/s, rad]
-
-    Returns
-    -------
-    dict of str to (c,) array
-        By the hypothesis's label, in the direction that shows least; NaN where the ship does not get through. [nats]
-    """
-    longest = 60.0 * max(one.minutes for one in manoeuvres)
-    model, noise = replace(_in_true_wind(model), span=(0.0, longest)), sized(noise, step_for(model))
-    dp = DpController(model, step_for(model))
-    track, record, held = planned(manoeuvres, dp, (0.0, 0.0, 0.0, 0.0), wind)
-    motion, units = kept_on_track(model, len(manoeuvres), track, record, dp, held=held)
-    record = replace(record, units=units, measured=_readings(motion, model))
-    known = IdentificationProblem(record, model, tuple(hypotheses), noise, motion).known(())
-    groups = [
-        (hypothesis, group)
-        for hypothesis in hypotheses
-        for group in screening_regressors(hypothesis)
-    ]
-    columns = known + [column for _, group in groups for column in group]
-    with threadpool_limits(1):
-        white = innovations(linearise(motion, record, model, columns), noise, record).white
-    found = {hypothesis.label: np.full(len(manoeuvres), np.inf) for hypothesis in hypotheses}
-    through = _keeps_track(motion, track, manoeuvres, dp)
-    for i, one in enumerate(manoeuvres):
-        products = _products(white[: rows_of(one, record.step), i])
-        place = len(known)
-        for hypothesis, group in groups:
-            seen = _shows(products, columns, range(place, place + len(group)), len(known))
-            found[hypothesis.label][i] = np.minimum(
-                found[hypothesis.label][i], seen if through[i] else np.nan
-            )
-            place += len(group)
-    return found
-
-
-def _shows(products, columns, places, known):
-    """Gain of one cause of typical size, known numbers within their tolerance; of its least visible parameter."""
-    places = list(places)
-    taken = {path for place in places for path in columns[place].changes}
-    prior = np.zeros(len(columns))
-    prior[:known] = [0.0 if column.gives_way(taken) else column.prior for column in columns[:known]]
-    prior[places] = 1.0
-    blank = products.copy()
-    blank[0, :] = blank[:, 0] = 0.0
-    spread = np.diag(evidence(blank, prior)[2])[places]
-    gain = float(np.min(1.0 / spread - 1.0))
-    return 0.5 * (gain - np.log1p(gain))

@@ -90,7 +90,7 @@ def library(model: ShipModel, fixed: Collection[str] = ()) -> list[Manoeuvre]:
     -------
     list of Manoeuvre
     """
-    share = model.parts["hull"].length / _LENGTH
+    share = model.length / _LENGTH
     T = 60.0 * np.sqrt(share)
     side = 30.0 * share
     mass = model.parts["hull"].mass
@@ -200,7 +200,7 @@ def _is_at(unit, x, y):
 
 def step_for(model: ShipModel) -> float:
     """Time from row to row of a manoeuvre. [s]"""
-    return _STEP * float(np.sqrt(model.parts["hull"].length / _LENGTH))
+    return _STEP * float(np.sqrt(model.length / _LENGTH))
 
 
 def planned(

@@ -80,9 +80,7 @@ def _rejoin(
 def _unit(system: System, end: tuple[str | None, str]) -> str | None:
     owner, name = end
     return (
-        system.inputs[name].unit
-        if owner is None
-        else system.components[owner].fmu.variables[name].unit
+        system.inputs[name].unit if owner is None else system.components[owner].variables[name].unit
     )
 
 

@@ -85,7 +85,7 @@ class ExtensionDraft:
         ]
         names = dict.fromkeys(source.rpartition(".")[0] for source in sources)
         parts = self.structure.components
-        return [name for name in names if name in parts and variable in parts[name].fmu.variables]
+        return [name for name in names if name in parts and variable in parts[name].variables]
 
     def put(
         self, finding: Finding, signal: str, given: Estimated, unit: str | None, *, note: str = ""
@@ -111,7 +111,7 @@ class ExtensionDraft:
     ) -> None:
         """Give a parameter of a component its estimate, in the FMU's unit; a remark where there is none such."""
         parts = self.structure.components
-        variable = parts[place].fmu.variables.get(name) if place in parts else None
+        variable = parts[place].variables.get(name) if place in parts else None
         if variable is None:
             what = (
                 f"'{place}' has no parameter '{name}'"
@@ -149,7 +149,7 @@ class ExtensionDraft:
         used = {target for _, target in self.structure.connections} | {
             source for source, _ in self.structure.connections
         }
-        variables = self.structure.components[self.ship].fmu.variables
+        variables = self.structure.components[self.ship].variables
         for number in range(1, 100):
             inputs = [f"tau_{axis}_{number}" for axis in AXES]
             if not all(name in variables for name in inputs):

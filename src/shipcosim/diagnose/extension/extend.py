@@ -114,7 +114,7 @@ def _ship(structure: SystemStructure) -> str:
     ships = [
         name
         for name, part in structure.checked().components.items()
-        if needed <= set(part.fmu.variables)
+        if needed <= set(part.variables)
     ]
     if len(ships) != 1:
         found = f"{len(ships)} components that loads can act on" + (
@@ -185,7 +185,7 @@ def _multiplied(
     for path in paths:
         place = _place(path)
         name = path.rpartition(".")[2]
-        variable = parts[place].fmu.variables.get(name) if place in parts else None
+        variable = parts[place].variables.get(name) if place in parts else None
         value = parts[place].start_value(name) if variable is not None else None
         if variable is not None and isinstance(value, int | float) and value != 0.0:
             size = factor.estimate * value, factor.std * abs(value)
@@ -248,7 +248,7 @@ def _put_parameter(
     name = number.rpartition(".")[2]
     parts = draft.structure.checked().components
     rule = _on_connections(cause).get(name)
-    if rule is not None and place in parts and name not in parts[place].fmu.variables:
+    if rule is not None and place in parts and name not in parts[place].variables:
         put_on_connections(draft, finding, place, estimate, rule)
     else:
         draft.put_parameter(finding, place, name, estimate)

@@ -123,7 +123,7 @@ def _change(name, value, given, extended):
         given.components[component].start_value(variable) if component in given.components else None
     )
     known = (
-        extended.components[component].fmu.variables
+        extended.components[component].variables
         if component in extended.components
         else extended.inputs
     )

@@ -64,7 +64,7 @@ def add_force(
 
 
 def _unit(draft: ExtensionDraft, component: str, parameter: str) -> str:
-    return draft.structure.components[component].fmu.variables[parameter].unit or "1"
+    return draft.structure.components[component].variables[parameter].unit or "1"
 
 
 def add_instruments(
@@ -164,7 +164,7 @@ def _water(draft: ExtensionDraft) -> str | None:
         connection.target: connection.source for connection in draft.structure.checked().connections
     }
     source, _ = feeding.get((draft.ship, "current_north"), (None, ""))
-    variables = draft.structure.components[source].fmu.variables if source else {}
+    variables = draft.structure.components[source].variables if source else {}
     return source if {"current_speed", "current_to"} <= set(variables) else None
 
 

@@ -60,7 +60,7 @@ def identification_problem(
         }
         ship = replace(ship, tolerances=ship.tolerances | unknown_wind)
     wanted = tuple(hypothesis for hypothesis in everyone if hypothesis not in hidden)
-    start = first_noise(record, ship.parts["hull"].length) if noise is None else noise
+    start = first_noise(record, ship.length) if noise is None else noise
     problem = prepared(IdentificationProblem(record, ship, wanted, start, motion))
     return problem if noise is not None else prepared(replace(problem, noise=tuned_noise(problem)))
 
@@ -106,9 +106,7 @@ def unidentifiable(
 def tuned_noise(problem: IdentificationProblem, fit: Fit | None = None) -> Noise:
     """Noise of maximum likelihood beside a fit, or beside the cause that explains most at first sight."""
     fit = fit or beside_likeliest(problem)
-    most = MOST_WALK * np.array(
-        [1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.parts["hull"].length]
-    )
+    most = MOST_WALK * np.array([1.0, 1.0, LENGTHS_PER_GYRADIUS / problem.model.length])
     most *= 1.0 if problem.record.wind is not None else GUST_FACTOR
     white = np.maximum(most_white(problem.record), problem.noise.white)
     return tuned(

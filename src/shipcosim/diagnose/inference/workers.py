@@ -4,11 +4,12 @@ They are threads: the compiled filter and NumPy's loops let others run meanwhile
 process. Each computation is the same as alone, so results are equal to the last digit however many run.
 """
 
-import os
 import threading
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
+
+from shipcosim.options import cores
 
 MOST = 4
 """More would hold each other up: Python itself runs in one thread at a time."""
@@ -21,7 +22,7 @@ def each(function: Callable[..., Any], *arguments: Iterable) -> list[Any]:
     A function that is called so and does the same inside gets no further threads.
     """
     calls = list(zip(*arguments, strict=True))
-    workers = min(_cores(), len(calls), MOST)
+    workers = min(cores(), len(calls), MOST)
     if workers < 2 or getattr(_inside, "one", False):
         return [function(*call) for call in calls]
     with ThreadPoolExecutor(workers, initializer=_mark) as pool:
@@ -30,8 +31,3 @@ def each(function: Callable[..., Any], *arguments: Iterable) -> list[Any]:
 
 def _mark():
     _inside.one = True
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

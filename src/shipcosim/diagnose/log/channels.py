@@ -13,7 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import ROLES, role_of
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.scenario import toml_of
 
 
@@ -102,7 +102,7 @@ def read_channels(path: str | os.PathLike) -> ChannelFile:
     try:
         content = toml_of(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
+        raise error_at(str(path), f"cannot be read: {error}.") from error
     channels = {}
     problems = []
     form = FileLayout()

@@ -10,6 +10,7 @@ from shipcosim.diagnose.finding import Finding, Segment
 from shipcosim.diagnose.log.checks.samples import noise_of, quantum
 from shipcosim.diagnose.log.degree_size import metres_per_degree
 from shipcosim.diagnose.log.rows import inside
+from shipcosim.diagnose.numerics import finite
 
 THRUSTER_LABELS = ("channel_swap", "sign")
 """What can be wrong of the labels of what drives thrusters."""
@@ -288,6 +289,6 @@ def undone(
 
 def _is_rounded_away(values):
     """Whether a channel's noise is less than half its resolution, so that errors of rounding do not average out."""
-    values = values[np.isfinite(values)]
+    values = finite(values)
     noise = noise_of(values) if len(values) > 2 else 0.0
     return bool(noise <= 0.5 * quantum(values))

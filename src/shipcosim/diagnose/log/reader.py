@@ -23,7 +23,8 @@ from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.roles import NAVIGATION, OVER_EARTH, role_of
 from shipcosim.diagnose.log.thresholds import LATEST, SHORTEST_STEP
 from shipcosim.diagnose.log.values import LARGEST, WrongUnit, values_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.diagnose.numerics import finite
+from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.series import make_table
 
 if TYPE_CHECKING:
@@ -231,24 +232,22 @@ def _check_time(source, time):
         row = int(np.flatnonzero(beyond)[0])
         found = f"is {time[row]:g} s in row {row + 2}."
         remedy = f"Times are at most {LATEST:g} s, say since 1970."
-        raise ShipcosimError(Problem(f"{source}, time", found, remedy))
-    known = time[np.isfinite(time)]
+        raise error_at(f"{source}, time", found, remedy)
+    known = finite(time)
     if (epoch := epoch_unit(known)) not in (None, "s"):
         found = f"begins at {known[0]:.4g} s: are these {epoch} since 1970?"
         remedy = f'Say the unit in a channel file: time = {{column = "...", unit = "{epoch}"}}.'
-        raise ShipcosimError(Problem(f"{source}, time", found, remedy))
+        raise error_at(f"{source}, time", found, remedy)
     # What follows takes as many rows as an even series of this step has, so a wrong unit would fill the memory.
     steps = np.diff(known)
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else np.inf
     if step < SHORTEST_STEP:
         found = f"its rows are {step:.2g} s apart: is the unit right?"
         remedy = 'Say it in a channel file: time = {column = "...", unit = "s"}.'
-        raise ShipcosimError(Problem(f"{source}, time", found, remedy))
+        raise error_at(f"{source}, time", found, remedy)
     if len(np.unique(known)) < 2:
-        raise ShipcosimError(
-            Problem(
-                f"{source}, time", "has fewer than two different times.", "A log has many rows."
-            )
+        raise error_at(
+            f"{source}, time", "has fewer than two different times.", "A log has many rows."
         )
 
 
@@ -294,14 +293,14 @@ def _local_position(source, signals, said):
         known = np.isfinite(values)
         beyond = np.abs(values) > limit
         if not known.any():
-            raise ShipcosimError(
-                Problem(f"{source}, {name}", "has no value in any row.", "Leave the channel out.")
+            raise error_at(
+                f"{source}, {name}", "has no value in any row.", "Leave the channel out."
             )
         if beyond.sum() > 0.5 * known.sum():
             row = int(np.flatnonzero(beyond)[0])
             found = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
             remedy = 'A unit can be said: unit = "ddmm.mmmm", "rad" or "1e-7 deg".'
-            raise ShipcosimError(Problem(f"{source}, {name}", found, remedy))
+            raise error_at(f"{source}, {name}", found, remedy)
     lost = np.any([np.abs(v) > _FARTHEST[n] for n, v in degrees.items()], axis=0)
     nowhere = (degrees["latitude"] == 0.0) & (degrees["longitude"] == 0.0)
     if nowhere.all():
@@ -315,9 +314,7 @@ def _local_position(source, signals, said):
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
     fixed = np.flatnonzero(np.isfinite(values[0]) & np.isfinite(values[1]))
     if not len(fixed):
-        raise ShipcosimError(
-            Problem(f"{source}, latitude", "has no row with a longitude.", "A fix needs both.")
-        )
+        raise error_at(f"{source}, latitude", "has no row with a longitude.", "A fix needs both.")
     latitude = np.radians(values[0])
     longitude = np.radians(values[1])
     first = fixed[0]

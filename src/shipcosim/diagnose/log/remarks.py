@@ -6,6 +6,7 @@ import xarray
 from shipcosim.diagnose.log.checks.samples import outliers
 from shipcosim.diagnose.log.rows import usable_rows
 from shipcosim.diagnose.log.thresholds import HOLE, UNEVEN
+from shipcosim.diagnose.numerics import finite
 
 
 def remarks(log: xarray.Dataset) -> list[str]:
@@ -17,7 +18,7 @@ def remarks(log: xarray.Dataset) -> list[str]:
         As from `read_log`.
     """
     time = log["time"].values
-    known = time[np.isfinite(time)]
+    known = finite(time)
     said = []
     if len(known) < len(time):
         said.append(f"{_rows(len(time) - len(known))} without a time: left out.")

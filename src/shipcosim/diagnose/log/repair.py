@@ -12,7 +12,7 @@ from shipcosim.diagnose.log.mislabels import mislabel_of, undone
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.rows import inside, usable_rows, usual_distance, usual_step
 from shipcosim.diagnose.log.thresholds import HOLE, LONGEST_SPAN
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.series import make_table
 
 CUT_OUT = ("gap", "heading_wrap")
@@ -76,10 +76,8 @@ def _check_span(time, step):
         found = (
             f"{time[row]:g} s is followed by {time[row + 1]:g} s, with a usual step of {step:g} s."
         )
-        raise ShipcosimError(
-            Problem(
-                "time", found, "Leave out the rows whose times are wrong, or cut the log there."
-            )
+        raise error_at(
+            "time", found, "Leave out the rows whose times are wrong, or cut the log there."
         )
 
 

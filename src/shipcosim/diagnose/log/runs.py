@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from shipcosim.diagnose.log.channels import Channel
-from shipcosim.errors import Problem, ShipcosimError, reading
+from shipcosim.errors import error_at, reading
 from shipcosim.series import make_table, read_columns
 from shipcosim.ssp import AnyPath
 
@@ -87,7 +87,7 @@ def run_as_log(log: LogSource, ship: str, thrusters: Collection[str]) -> LogSour
         there = sorted({name.rpartition(".")[0] for name in signals if "." in name})
         found = f"this is the table of a run, and it has no {', '.join(_SHIP[role][0] for role in missing)} of '{ship}'."
         remedy = f"Its components: {', '.join(there)}. Name the system that made it: --system SSP."
-        raise ShipcosimError(Problem(file.get("source", "log"), found, remedy))
+        raise error_at(file.get("source", "log"), found, remedy)
     for name in thrusters:
         for kind in ("rpm", "azimuth"):
             if f"{name}_{kind}" not in signals and f"{name}.{kind}" in signals:

@@ -18,7 +18,8 @@ from shipcosim.diagnose.log.files.times import EPOCHS, epoch_unit, seconds_of, s
 from shipcosim.diagnose.log.names.units import name_and_unit, unit_for
 from shipcosim.diagnose.log.roles import role_of
 from shipcosim.diagnose.log.thresholds import SHORTEST_STEP
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.diagnose.numerics import finite
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.series import conversion
 
 CLOCK_NUMBER = "hhmmss"
@@ -116,7 +117,7 @@ def _found(log: LogColumns, name: str) -> str:
     plain = name_and_unit(name)[0]
     if plain in log.values:
         return plain
-    raise ShipcosimError(Problem("", f"there is no column '{name}'.", suggestion(name, log.values)))
+    raise error_at("", f"there is no column '{name}'.", suggestion(name, log.values))
 
 
 def _numbers(log: LogColumns, column: str) -> np.ndarray:
@@ -128,7 +129,7 @@ def _numbers(log: LogColumns, column: str) -> np.ndarray:
             (i for i, value in enumerate(values) if value is not None and not _is_number(value)), 0
         )
         found = f"column '{column}' holds '{values[row]}' in row {row + 2}, not only numbers."
-        raise ShipcosimError(Problem("", found, "A missing value is an empty field or nan."))
+        raise error_at("", found, "A missing value is an empty field or nan.")
     return values
 
 
@@ -169,16 +170,14 @@ def _time(channel, column, stated, log, form):
 
 def _check_steps(column, times):
     """Raise ShipcosimError where rows would be so close or far apart that the numbers can hardly be seconds."""
-    steps = np.diff(times[np.isfinite(times)])
+    steps = np.diff(finite(times))
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
     if _STEPS[0] <= step <= _STEPS[1]:
         return
     unit, name, size = ("d", "days", 86400.0) if step < _STEPS[0] else ("ms", "milliseconds", 1e-3)
     found = f"its rows are {step:.2g} s apart: are these {name}? Then they are {size * step:.3g} s apart."
-    raise ShipcosimError(
-        Problem(
-            "", found, f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}, or "s".'
-        )
+    raise error_at(
+        "", found, f'Say the unit: time = {{column = "{column}", unit = "{unit}"}}, or "s".'
     )
 
 
@@ -199,7 +198,7 @@ def _without_summer_time(times):
 
 def _past_the_end(times):
     """Seconds of the day, or of the week of GPS, that go on past its end, and what is to be said."""
-    known = times[np.isfinite(times)]
+    known = finite(times)
     for period, name in _PERIODS.items():
         falls = np.flatnonzero(np.diff(known) < -0.9 * period)
         if not len(falls) or known.min() < 0.0 or known.max() >= period:
@@ -261,7 +260,7 @@ def _position(channel, column, stated, name, log):
         signs = hemisphere_signs(log.values[hemisphere], name)
         if signs is None:
             found = f"column '{hemisphere}' is none of hemispheres."
-            raise ShipcosimError(Problem("", found, "It should hold N and S, or E and W."))
+            raise error_at("", found, "It should hold N and S, or E and W.")
         degrees = np.abs(degrees) * signs
     return channel.sign * degrees + channel.offset, said
 
@@ -273,9 +272,7 @@ def _mapped(values, channel, column):
     if (beyond := known & ((values < given[0]) | (values > given[-1]))).any():
         row = int(np.flatnonzero(beyond)[0])
         found = f"column '{column}' holds {values[row]:g} in row {row + 2}, beyond its map."
-        raise ShipcosimError(
-            Problem("", found, f"The map goes from {given[0]:g} to {given[-1]:g}.")
-        )
+        raise error_at("", found, f"The map goes from {given[0]:g} to {given[-1]:g}.")
     return (
         channel.sign * np.interp(values, given, wanted, left=np.nan, right=np.nan) + channel.offset
     )

@@ -218,7 +218,7 @@ def _repaired(found, faults, noise=None):
 
 def _without(found, faults):
     """The log as read with some faults put right; a long one in stretches."""
-    return in_stretches(repaired(found.log, faults), found.ship.parts["hull"].length)
+    return in_stretches(repaired(found.log, faults), found.ship.length)
 
 
 def _relabelled(found, mislabel, fault):

@@ -78,11 +78,11 @@ def relabelled(
     """
     found = [fault for fault in faults if mislabel_of(fault) in LABELS]
     others = [fault for fault in faults if fault not in found]
-    plain = in_stretches(repaired(log, others), problem.model.parts["hull"].length)
+    plain = in_stretches(repaired(log, others), problem.model.length)
     if len(found) > 1 or (not found and _is_clear(plain)):
         return []
     if found:
-        calm = CALM_JOLT * first_noise(problem.record, problem.model.parts["hull"].length).jolt
+        calm = CALM_JOLT * first_noise(problem.record, problem.model.length).jolt
         problem = replace(
             problem, noise=replace(problem.noise, jolt=np.minimum(problem.noise.jolt, calm))
         )

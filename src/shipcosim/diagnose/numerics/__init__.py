@@ -6,6 +6,7 @@ They are few and small, so that SciPy need not be installed; the tests hold them
 from shipcosim.diagnose.numerics.bands import Bands
 from shipcosim.diagnose.numerics.chi_square import log_survival, survival
 from shipcosim.diagnose.numerics.filters import gaussian_filter, moving_average
+from shipcosim.diagnose.numerics.finite import finite
 from shipcosim.diagnose.numerics.least_squares import least_squares
 from shipcosim.diagnose.numerics.root_mean_square import root_mean_square
 from shipcosim.diagnose.numerics.splines import spline_integral
@@ -13,6 +14,7 @@ from shipcosim.diagnose.numerics.tridiagonal import solve_tridiagonal
 
 __all__ = [
     "Bands",
+    "finite",
     "gaussian_filter",
     "least_squares",
     "log_survival",

@@ -30,6 +30,9 @@ from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import read_system
 from shipcosim.temporary import temporary_folder
 
+SizesOfLogs = dict[str, dict[str, dict[str, ParameterEstimate]]]
+"""Sizes by log, cause and parameter."""
+
 
 @dataclass(frozen=True)
 class LogErrors:
@@ -99,7 +102,7 @@ def sizes_without(
 
 def sizes_by_log(
     logs: SeveralLogs, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
-) -> dict[str, dict[str, dict[str, ParameterEstimate]]]:
+) -> SizesOfLogs:
     """How large each log by itself would have the causes in the ship: by label, log and parameter.
 
     Parameters
@@ -110,7 +113,7 @@ def sizes_by_log(
     values : mapping of str to float
         By all logs, to start from.
     """
-    found: dict[str, dict[str, dict[str, ParameterEstimate]]] = {}
+    found: SizesOfLogs = {}
     for name, problem in logs.problems.items():
         own = [one for _, one in logs.all_within(name, hypotheses)]
         start = {p: v for p, v in values_in(name, values).items() if p in paths_of(own)}

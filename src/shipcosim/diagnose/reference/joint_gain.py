@@ -36,7 +36,7 @@ def _over_logs(values: list[tuple[float, ...]]) -> list[float]:
     return [float(value) for value in np.sqrt(np.nanmean(np.square(values), axis=0))]
 
 
-def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any] | None:
+def joint_gain(errors: Mapping[str, LogErrors]) -> dict[str, Any] | None:
     """Position errors at the longest horizon, before and after: root mean square over the logs, each log alike.
 
     Only logs count whose causes are sized by other logs. The noise floor is that of the ship whose every number is
@@ -46,8 +46,6 @@ def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any]
     ----------
     errors : dict of str to LogErrors
         By log, all over the same times.
-    seed : int
-        Of the draws.
 
     Returns
     -------
@@ -66,7 +64,7 @@ def joint_gain(errors: Mapping[str, LogErrors], seed: int = 1) -> dict[str, Any]
     if not squares:
         return None
     before, after, floor = _roots(np.mean([of.mean(axis=1) for of in squares.values()], axis=0))
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(1)
     drawn = _roots(
         np.mean([resampled_sums(of, rng) / of.shape[1] for of in squares.values()], axis=0)
     )

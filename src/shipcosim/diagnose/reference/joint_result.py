@@ -10,12 +10,11 @@ from shipcosim.diagnose.finding import (
     Candidate,
     Discrepancy,
     Finding,
-    ParameterEstimate,
     VisibleSize,
 )
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.reference.common_findings import RatioOfLogs, Shared
-from shipcosim.diagnose.reference.held_out import LogErrors
+from shipcosim.diagnose.reference.held_out import LogErrors, SizesOfLogs
 from shipcosim.diagnose.reference.joint_gain import joint_baseline, joint_gain
 from shipcosim.diagnose.reference.joint_verdict import JointVerdict
 from shipcosim.diagnose.result import SCHEMA, Diagnosis
@@ -94,7 +93,7 @@ class JointDiagnosis:
     prescription: ExperimentDesign | None = None
     left_out: dict[str, str] = field(default_factory=dict)
     relabelled: dict[str, tuple[Finding, ...]] = field(default_factory=dict)
-    sizes: dict[str, dict[str, dict[str, ParameterEstimate]]] = field(default_factory=dict)
+    sizes: SizesOfLogs = field(default_factory=dict)
     errors: dict[str, LogErrors] = field(default_factory=dict)
     causes: dict[str, Cause] = field(default_factory=dict, repr=False)
     system: System | None = field(default=None, repr=False)

@@ -50,13 +50,13 @@ def _variable(system: System, number: KnownNumber):
     """Variable of the system that holds a number; None where it has none, or it is another number there."""
     component, _, name = number.name.rpartition(".")
     part = system.components.get(component)
-    if part is None or name not in part.fmu.variables:
+    if part is None or name not in part.variables:
         return None
     start = part.start_value(name)
     known = isinstance(start, int | float) and any(
         is_same(start, one) for one in (number.nominal, number.estimate)
     )
-    return part.fmu.variables[name] if known else None
+    return part.variables[name] if known else None
 
 
 def with_calibrated_numbers(

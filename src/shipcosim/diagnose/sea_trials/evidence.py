@@ -133,7 +133,7 @@ def trial_evidence(
         2.0 * _PART
     )
     beside = found[1 + 2 * len(causes) :] - found[0]
-    length = model.parts["hull"].length
+    length = model.length
     noise = blocks([covariance_of(trial, length) for trial in trials])
     measured = np.concatenate([features_of(trial, trial.measured) for trial in trials])
     first = TrialEvidence(
@@ -164,7 +164,7 @@ def known_numbers(model: ShipModel) -> list[tuple[str, float]]:
         ("water.current_north", thresholds.CURRENT),
         ("water.current_east", thresholds.CURRENT),
     ]
-    sizes = thresholds.HEADING_BIAS, thresholds.LEVER * model.parts["hull"].length
+    sizes = thresholds.HEADING_BIAS, thresholds.LEVER * model.length
     return [*found, *zip(MOUNTING, sizes, strict=True)]
 
 

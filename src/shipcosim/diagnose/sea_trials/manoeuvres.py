@@ -180,8 +180,8 @@ def as_trials(
     list of (PlannedTrial, list of SeaTrial)
         Without those that she does not get through: a circle in which she does not turn round.
     """
-    length = model.parts["hull"].length
-    h = thresholds.STEP * np.sqrt(model.parts["hull"].length)
+    length = model.length
+    h = thresholds.STEP * np.sqrt(model.length)
     approaches = sorted({one.approach for one in planned})
     orders = [
         {name: _orders(model, shafts, power, 0.0, 0.0)[name] for name in model.thrusters}

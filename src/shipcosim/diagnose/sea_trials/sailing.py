@@ -91,7 +91,7 @@ def settled(
     list of float
         [m/s]
     """
-    length = model.parts["hull"].length
+    length = model.length
     ships = _side_by_side(model, [changes])
     zero = np.zeros((1, len(orders)))
     speed = thresholds.FROUDE * np.sqrt(9.81 * length)
@@ -176,7 +176,7 @@ def _driven(trial, model):
     if trial.kind != "straight run":
         return trial.time.size, trial.units
     speed = np.median(np.hypot(trial.measured[:, 3], trial.measured[:, 4]))
-    rows = int(thresholds.RUN * model.parts["hull"].length / speed / trial.time[1]) + 2
+    rows = int(thresholds.RUN * model.length / speed / trial.time[1]) + 2
     return rows, {
         name: tuple(np.full(rows, np.mean(s)) for s in pair) for name, pair in trial.units.items()
     }

@@ -119,9 +119,7 @@ def separations(found: TrialEvidence, sets: Sequence[SetOfCauses]) -> list[Separ
     ]
     beside = (predicted(trials, model, moved, orders=True) - there[0][0]) / _PART
     known = replace(found, known=np.vstack((found.known, *(found.slopes[i] for i, _ in untold))))
-    spread = found.scale**2 * blocks(
-        [covariance_of(trial, model.parts["hull"].length) for trial in trials]
-    )
+    spread = found.scale**2 * blocks([covariance_of(trial, model.length) for trial in trials])
     of_day = np.array([ShipModel.is_of_day(path) for one in sizes for path in list(one)[:1]])
     priors = [
         _prediction(known, at_trials, here, beside, of_day, spread)
@@ -167,7 +165,7 @@ def _untold(found, sets):
 
 def _approach(trial, model):
     """Time of the straight run before a manoeuvre. [s]"""
-    return thresholds.SETTLED * model.parts["hull"].length / np.hypot(*trial.measured[0, 3:5])
+    return thresholds.SETTLED * model.length / np.hypot(*trial.measured[0, 3:5])
 
 
 def _shafts(trials: Sequence[SeaTrial], model: ShipModel) -> dict[str, float]:

@@ -79,7 +79,7 @@ def sea_trials_of(
         Each on its own clock, in steps for the simulation.
     """
     measured, whole = _bridged(record.measured)
-    length = model.parts["hull"].length
+    length = model.length
     helm = steering(record, model)
     speed = np.hypot(measured[:, 3], measured[:, 4])
     whole &= record.known | (np.arange(whole.size) == whole.size - 1)

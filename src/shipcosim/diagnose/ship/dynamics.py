@@ -145,7 +145,7 @@ def _kept_at_hull(name: str, load: Load, u_r: Arithmetic, inputs: Inputs, model:
     form = model.parts.get(form_of(name))
     if form is None or not form.acts:
         return load
-    kept = thrust_kept(*inputs.units[name], u_r, model.parts["hull"].length, form)
+    kept = thrust_kept(*inputs.units[name], u_r, model.length, form)
     return tuple(kept * axis for axis in load)
 
 

@@ -103,7 +103,7 @@ class Record:
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
         rows = self.step * max(
-            1.0 / (_ONE_STEP * np.sqrt(model.parts["hull"].length)), self.rate / _RATE_OF_A_STEP
+            1.0 / (_ONE_STEP * np.sqrt(model.length)), self.rate / _RATE_OF_A_STEP
         )
         return 2 ** int(np.ceil(np.log2(min(max(rows, 1.0), _MOST_STEPS)) - 1e-9))
 
@@ -205,7 +205,7 @@ def with_inputs_of(record: Record, log: xarray.Dataset, model: ShipModel) -> Rec
         As `record_of` would give it, in a fraction of its time.
     """
     driven = _driven(log, model, np.zeros((log.sizes["time"], 0)))
-    driven = _thinned(driven, rows_averaged(model.parts["hull"].length, driven.step), model)
+    driven = _thinned(driven, rows_averaged(model.length, driven.step), model)
     return replace(record, units=driven.units, wind=driven.wind, known=driven.known)
 
 
@@ -252,7 +252,7 @@ def _about_stretches(time: np.ndarray) -> list[str]:
 
 def _thinned_for(model: ShipModel, record: Record) -> Record:
     """The record at the rate that a ship's answer needs."""
-    rows = min(rows_averaged(model.parts["hull"].length, record.step), record.time.size // 2)
+    rows = min(rows_averaged(model.length, record.step), record.time.size // 2)
     thinned = _thinned(record, rows, model)
     thinned = replace(thinned, rate=fastest_rate(model, first_motion(thinned, model)))
     if rows == 1:
@@ -265,7 +265,7 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
     """Raise ShipcosimError for a log that is too short for what its ship does, or has too few rows."""
     rows = log.sizes["time"]
     span = float(log["time"][-1] - log["time"][0])
-    least = _SHORTEST * np.sqrt(model.parts["hull"].length)
+    least = _SHORTEST * np.sqrt(model.length)
     if span < least or rows < _FEWEST_ROWS:
         slowest = max(
             (time for time in response_times(model, motion) if np.isfinite(time)), default=np.inf

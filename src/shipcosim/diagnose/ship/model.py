@@ -83,6 +83,11 @@ class ShipModel:
         ]
 
     @property
+    def length(self) -> float:
+        """Between the perpendiculars. [m]"""
+        return self.parts["hull"].length
+
+    @property
     def mass_matrix(self) -> np.ndarray:
         """Mass and moment of inertia with added mass, (3, 3) array. [kg, kg, kg.m2]"""
         i11, i22, i26, i62, i66 = self.parts["hull"].inverse_mass

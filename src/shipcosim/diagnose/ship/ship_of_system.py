@@ -90,7 +90,7 @@ def _loading(system: System, ship: str) -> list[str]:
 
 def _holds(component: Component, kind: type) -> bool:
     """Whether an FMU has the parameters of a kind; one built by an earlier version may lack a few."""
-    there = [item.name in component.fmu.variables for item in fields(kind)]
+    there = [item.name in component.variables for item in fields(kind)]
     return sum(there) >= 0.7 * len(there)
 
 
@@ -106,7 +106,7 @@ def _thruster_kind(component: Component) -> type | None:
 def _missing(component: Component, kind: type) -> list[str]:
     """Names of what describes a ship and an FMU does not know."""
     names = [item.name for item in fields(kind) if item.default is MISSING]
-    return [name for name in names if name not in component.fmu.variables]
+    return [name for name in names if name not in component.variables]
 
 
 def _left_out(system: System, ship: Component) -> Iterator[Problem]:
@@ -131,5 +131,5 @@ def _left_out(system: System, ship: Component) -> Iterator[Problem]:
 
 def _values(component: Component, kind: type) -> Any:
     """Parameters of a component; those that its FMU does not know change nothing."""
-    names = [item.name for item in fields(kind) if item.name in component.fmu.variables]
+    names = [item.name for item in fields(kind) if item.name in component.variables]
     return kind(**{name: component.start_value(name) for name in names})

@@ -230,9 +230,7 @@ def _surrogate(
     most = 1.0
     if "rpm" in about:
         top = next(
-            one.component.fmu.variables[x.variable].maximum
-            for x in one.links
-            if x.quantity == "rpm"
+            one.component.variables[x.variable].maximum for x in one.links if x.quantity == "rpm"
         )
         factor = next(link.factor for link in one.links if link.quantity == "rpm")
         logged = float(max(np.abs(fed["rpm"]).max(), 1.0))

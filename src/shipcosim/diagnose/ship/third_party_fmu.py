@@ -159,7 +159,7 @@ def _unit(system: System, connection: Connection) -> str | None:
     """Unit in which a log would feed it: that of the system's input, else of the variable."""
     (source, given) = connection.source
     (name, variable) = connection.target
-    own = None if name is None else system.components[name].fmu.variables[variable].unit
+    own = None if name is None else system.components[name].variables[variable].unit
     return (system.inputs[given].unit or own) if source is None else own
 
 
@@ -181,7 +181,7 @@ def _parameters(component: Component) -> dict[str, str]:
     """Variables of real parameters with a tolerance, by the names of their numbers."""
     found = {}
     for variable in component.tolerances:
-        known = component.fmu.variables.get(variable)
+        known = component.variables.get(variable)
         scalar = (
             known is not None
             and isinstance(component.start_value(variable), float)
@@ -222,7 +222,7 @@ def part_of(third_party: ThirdPartyFmu) -> ThirdPartyPart:
     component = third_party.component
     numbers = _numbers(third_party.drives)
     for name, variable in third_party.parameters.items():
-        about = component.fmu.variables[variable]
+        about = component.variables[variable]
         tolerance = component.tolerances[variable]
         text = about.description or variable
         value = component.start_value(variable)

@@ -157,12 +157,11 @@ class DpController:
 
     def bounded(self, ship: Motion) -> Motion:
         """The ships no faster than any ship is: one that cannot be steered so gets lost, not infinite."""
-        most = np.sqrt(9.81 * self.model.parts["hull"].length)
+        most = np.sqrt(9.81 * self.model.length)
         u, v, r = (
-            np.clip(value, -most, most)
-            for value in (ship.u, ship.v, ship.r * self.model.parts["hull"].length)
+            np.clip(value, -most, most) for value in (ship.u, ship.v, ship.r * self.model.length)
         )
-        return ship._replace(u=u, v=v, r=r / self.model.parts["hull"].length)
+        return ship._replace(u=u, v=v, r=r / self.model.length)
 
     def load(
         self, ship: Motion, want: Motion, integral: np.ndarray
@@ -210,7 +209,7 @@ class DpController:
                 s = np.sin(angle + 0.5 * np.pi * i)
                 columns.append(np.stack([c, s, unit.x * s - unit.y * c], axis=-1))
                 eases.append(np.where(alone, 0.0, _ACROSS if i else 1.0)[..., None] + np.zeros(3))
-        scale = np.array([1.0, 1.0, 4.0 / self.model.parts["hull"].length])
+        scale = np.array([1.0, 1.0, 4.0 / self.model.length])
         ease = np.stack(np.broadcast_arrays(*eases), axis=-2)
         Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
         return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))

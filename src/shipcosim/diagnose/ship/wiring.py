@@ -139,7 +139,7 @@ def _driven(system: System, name: str, thrusters: Sequence[str]) -> dict[str, tu
             and kind in _DRIVES
             and other in thrusters
         ):
-            unit = system.components[name].fmu.variables[variable].unit
+            unit = system.components[name].variables[variable].unit
             plain, _ = conversion(system.inputs[given].unit, unit)
             found[kind] = other, connection.factor / plain
     return found

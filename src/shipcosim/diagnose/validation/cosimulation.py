@@ -272,7 +272,7 @@ def _weather(system, ship, record):
     if not sources or sources[0][0] is None:
         return _straight(system, ship, record), {}
     air = sources[0][0]
-    known = system.components[air].fmu.variables
+    known = system.components[air].variables
     values = {f"{air}.{name}": value for name, value in _CALM.items() if name in known}
     names = [_input(system, air, name) for name in ("wind_speed", "wind_from")]
     if record.wind is None or None in names:

@@ -86,8 +86,6 @@ def missing_force(
     problem: IdentificationProblem,
     model: ShipModel,
     motion: Motion,
-    *,
-    learning: float = FORCE_TIME,
 ) -> xarray.Dataset:
     """Reconstruct what a ship model lacks: the smoothed acceleration that nothing explains, times mass and added mass.
 
@@ -99,8 +97,6 @@ def missing_force(
         ``problem.model`` for all that the plain model lacks, ``fit.model`` for what a fit leaves.
     motion : Motion
         Near the measured one; ``problem.motion``, ``fit.motion``.
-    learning : float
-        Time within which the force may change. [s]
 
     Returns
     -------
@@ -111,7 +107,7 @@ def missing_force(
         ``speed`` over ground [m/s].
     """
     record = problem.record
-    noise = replace(problem.noise, walk=problem.noise.jolt / learning)
+    noise = replace(problem.noise, walk=problem.noise.jolt / FORCE_TIME)
     motion, slow = smoothed(linearised_by_parts(motion, record, model, []), noise, record, motion)
     force = np.where(record.known[:, None], slow[:, :3] @ model.mass_matrix.T, np.nan)
     return _in_frames(force.T, motion, record, model)

@@ -207,7 +207,7 @@ def _instruments(one: Replayed) -> tuple[dict[str, float], float]:
         return {}, 0.0
     part = one.system.components[one.signals["north"].rpartition(".")[0]]
     names = tuple(Instruments().errors)
-    given = {name: number_of(part, name) for name in (*names, "lag") if name in part.fmu.variables}
+    given = {name: number_of(part, name) for name in (*names, "lag") if name in part.variables}
     return given, given.pop("lag", 0.0)
 
 

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import ModuleType
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import Problem, ShipcosimError, error_at, suggestion
 from shipcosim.fmi.export.bundle import Bundle, bundle, entry_module
 from shipcosim.fmi.export.description import model_description
 from shipcosim.fmi.export.loader import SUFFIXES, loader_for
@@ -141,21 +141,17 @@ def _script(source: Path) -> Path:
     # A folder holds the script of its own name.
     script = source / f"{source.resolve().name}.py" if source.is_dir() else source
     if not script.is_file():
-        raise ShipcosimError(
-            Problem(
-                str(source),
-                f"there is no {script.name}.",
-                "An FMU is a folder NAME with NAME.py in it.",
-            )
+        raise error_at(
+            str(source),
+            f"there is no {script.name}.",
+            "An FMU is a folder NAME with NAME.py in it.",
         )
     # The name becomes a Python module and the name of a binary.
     if not (script.stem.isidentifier() and script.stem.isascii()):
-        raise ShipcosimError(
-            Problem(
-                str(script),
-                "cannot name an FMU.",
-                "Use letters, digits and '_'; no digit at the start.",
-            )
+        raise error_at(
+            str(script),
+            "cannot name an FMU.",
+            "Use letters, digits and '_'; no digit at the start.",
         )
     return script
 
@@ -203,8 +199,8 @@ def _import(bundled: Bundle, folder: str) -> ModuleType:
             if frames
             else bundled.script
         )
-        raise ShipcosimError(
-            Problem(where, f"{type(error).__name__}: {error}".replace(f"{bundled.package}.", ""))
+        raise error_at(
+            where, f"{type(error).__name__}: {error}".replace(f"{bundled.package}.", "")
         ) from error
 
 
@@ -226,9 +222,7 @@ def _fmu_class(module: ModuleType, script: Path) -> type[Fmu]:
             if leaves
             else "has no class that is an Fmu."
         )
-        raise ShipcosimError(
-            Problem(str(script), found, "One file holds one FMU: class Name(Fmu).")
-        )
+        raise error_at(str(script), found, "One file holds one FMU: class Name(Fmu).")
     _check_class(leaves[0], script)
     return leaves[0]
 
@@ -255,7 +249,7 @@ def _check_class(cls: type[Fmu], script: Path) -> None:
                 getattr(instance, group.name)
     except Exception as error:
         found = f"its start values are refused: {type(error).__name__}: {error}"
-        raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", found)) from error
+        raise error_at(f"{script}, class {cls.__name__}", found) from error
 
 
 def _never_read(cls: type[Fmu], script: Path) -> list[str]:
@@ -287,7 +281,7 @@ def _description(cls: type[Fmu], script: Path, files: dict[str, bytes]) -> bytes
             digest.update(f"{path} {len(data)}\n".encode() + data)
         return model_description(cls, script.stem, f"{{{digest.hexdigest()[:32]}}}")
     except ValueError as error:
-        raise ShipcosimError(Problem(f"{script}, class {cls.__name__}", str(error))) from None
+        raise error_at(f"{script}, class {cls.__name__}", str(error)) from None
 
 
 def _binaries(identifier: str) -> dict[str, bytes]:
@@ -335,5 +329,5 @@ def write_archive(path: Path, files: dict[str, bytes]) -> Path:
     try:
         replace_file(path, content.getvalue())
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be written: {error.strerror}.")) from None
+        raise error_at(str(path), f"cannot be written: {error.strerror}.") from None
     return path

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import Problem, ShipcosimError, error_at
 
 Import = ast.Import | ast.ImportFrom
 SHIPCOSIM = Path(__file__).resolve().parents[2]
@@ -182,11 +182,11 @@ def _read(name: str, path: Path) -> Module:
         source = path.read_bytes().removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
         return Module(name, path, source, ast.parse(source, str(path)))
     except OSError as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error.strerror}.")) from None
+        raise error_at(str(path), f"cannot be read: {error.strerror}.") from None
     except (SyntaxError, ValueError) as error:
         line = getattr(error, "lineno", None)
-        raise ShipcosimError(
-            Problem(f"{path}, line {line}" if line else str(path), f"is not Python: {error}.")
+        raise error_at(
+            f"{path}, line {line}" if line else str(path), f"is not Python: {error}."
         ) from None
 
 
@@ -260,16 +260,12 @@ def _renamed(module: Module, package: str, modules: Mapping[str, Module]) -> byt
         ].decode()
         # The number of lines must not change: tracebacks then show the right line.
         new = (
-            _renamed_from(old, package)
+            re.sub(r"^(from[\s\\]+)", rf"\g<1>{package}.", old)
             if isinstance(node, ast.ImportFrom)
             else _renamed_import(node, package, modules)
         )
         lines[first : last + 1] = [before + new.encode() + after]
     return b"".join(lines)
-
-
-def _renamed_from(old: str, package: str) -> str:
-    return re.sub(r"^(from[\s\\]+)", rf"\g<1>{package}.", old)
 
 
 def _renamed_import(node: ast.Import, package: str, modules: Mapping[str, Module]) -> str:

@@ -1,4 +1,4 @@
-"""modelDescription.xml of an FMU class, and its table of variables for a README."""
+"""modelDescription.xml of an FMU class."""
 
 import math
 from xml.etree import ElementTree as xml
@@ -32,7 +32,6 @@ LOG_CATEGORIES = {
 
 
 REQUIRED = " (required: the start value stands for none)"
-LONGEST_SHOWN = 24  # characters of a start value in a table for readers
 
 
 def model_description(cls: type[Fmu], identifier: str, guid: str) -> bytes:
@@ -96,40 +95,6 @@ def summary(cls: type[Fmu]) -> str:
     return " ".join((cls.__doc__ or "").strip().split("\n\n")[0].split())
 
 
-def table_of_variables(cls: type[Fmu]) -> str:
-    """The variables of an FMU class as a Markdown table.
-
-    Parameters
-    ----------
-    cls : type
-        Subclass of `Fmu`.
-
-    Returns
-    -------
-    str
-        Table with a head, one row a variable, ending in a line break.
-    """
-    rows = ["| variable | kind | type | unit | start | meaning |", "|---|---|---|---|---|---|"]
-    for v in cls.variables:
-        kind = f"tunable {v.causality}" if v.tunable else v.causality
-        start = (
-            "required"
-            if v.required
-            else ""
-            if v.causality == "output" or v.start == ""
-            else _shown(v.start)
-        )
-        rows.append(
-            f"| `{v.name}` | {kind} | {v.type} | {v.unit} | {start} | {_full_text(v).replace('|', '&#124;')} |"
-        )
-    return "\n".join(rows) + "\n"
-
-
-def _shown(start: Value) -> str:
-    text = _text(start)
-    return f"`{text}`" if len(text) <= LONGEST_SHOWN else f"`{text[:LONGEST_SHOWN]}` ..."
-
-
 def _co_simulation(root, identifier):
     xml.SubElement(
         root,
@@ -181,7 +146,7 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
         "ScalarVariable",
         name=variable.name,
         valueReference=str(reference),
-        description=_full_text(variable) + (REQUIRED if variable.required else ""),
+        description=full_text(variable) + (REQUIRED if variable.required else ""),
         causality=variable.causality,
         variability=_variability(variable),
     )
@@ -194,11 +159,11 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
     if variable.type in ("Real", "Integer"):
         bounds = {"min": variable.minimum, "max": variable.maximum}
         number = float if variable.type == "Real" else int
-        value |= {key: _text(number(bound)) for key, bound in bounds.items() if bound is not None}
+        value |= {key: text_of(number(bound)) for key, bound in bounds.items() if bound is not None}
     if variable.causality == "output":
         element.set("initial", "calculated")
     else:
-        value["start"] = _text(variable.start)
+        value["start"] = text_of(variable.start)
     if variable.causality == "parameter":
         element.set("initial", "exact")
     xml.SubElement(element, variable.type, value)
@@ -211,7 +176,8 @@ def _scalar_variable(reference: int, variable: Variable) -> xml.Element:
     return element
 
 
-def _full_text(variable: Variable) -> str:
+def full_text(variable: Variable) -> str:
+    """Description of a variable, and where its value comes from."""
     return (
         f"{variable.description} ({variable.origin})" if variable.origin else variable.description
     )
@@ -223,7 +189,8 @@ def _variability(variable: Variable) -> str:
     return "continuous" if variable.type == "Real" else "discrete"
 
 
-def _text(value):
+def text_of(value: Value) -> str:
+    """A value as text of a model description."""
     return (
         str(value).lower()
         if isinstance(value, bool)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from shipcosim.learn.dead_reckoning.worlds import Record
-from shipcosim.learn.training import Progress
+from shipcosim.learn.training import Epochs, Progress
 from shipcosim.models.prediction import motion_filter
 from shipcosim.models.prediction.motion_filter import FilterNumbers
 from shipcosim.models.prediction.outage import Measured
@@ -180,7 +180,7 @@ PRIOR = 0.05
 
 def fitted(
     record: Record, progress: Progress, iterations: int = 20
-) -> tuple[FilterNumbers, list[dict[str, float]]]:
+) -> tuple[FilterNumbers, Epochs]:
     """Numbers of the filter learned from records.
 
     Parameters
@@ -208,7 +208,7 @@ def fitted(
 
 def _descended(
     of: Callable[[np.ndarray], np.ndarray], size: int, progress: Progress, iterations: int
-) -> tuple[FilterNumbers, list[dict[str, float]]]:
+) -> tuple[FilterNumbers, Epochs]:
     """Levenberg-Marquardt with finite differences, all in one call."""
     change = np.zeros(size)
     damping = 1e-2

@@ -12,7 +12,7 @@ import torch
 
 from shipcosim.learn.dead_reckoning.motion_filter import measured_at
 from shipcosim.learn.dead_reckoning.worlds import Record
-from shipcosim.learn.networks import Recurrent, arrays_of
+from shipcosim.learn.networks import Arrays, Recurrent, arrays_of
 from shipcosim.learn.training import Progress, Schedule, fit, repeatable
 from shipcosim.models.prediction import velocity_network as law
 
@@ -105,7 +105,7 @@ def features_of(record: Record) -> np.ndarray:
 
 def trained(
     recipe: PaperIITraining, record: Record, progress: Progress
-) -> tuple[dict[str, np.ndarray], list[dict]]:
+) -> tuple[Arrays, list[dict]]:
     """Networks of both velocities, trained from scratch.
 
     Parameters

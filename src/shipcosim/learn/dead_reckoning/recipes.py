@@ -11,6 +11,7 @@ from shipcosim.learn.dead_reckoning import inputs, motion_filter, paper_ii, worl
 from shipcosim.learn.dead_reckoning.motion_filter import GAINS, KNOWN, reckoned
 from shipcosim.learn.dead_reckoning.regions import TIMES, calibrated
 from shipcosim.learn.dead_reckoning.worlds import CALIBRATION, TRAINING, Record
+from shipcosim.learn.networks import Arrays
 from shipcosim.learn.results import Trained
 from shipcosim.learn.training import Progress, part_of
 from shipcosim.models.prediction import motion_filter as filter_law
@@ -164,7 +165,7 @@ def _recorded(seeds, duration, progress, losses):
     return worlds.recorded([worlds.drawn(seed) for seed in seeds], duration, progress, losses)
 
 
-def _region(record: Record, states: list) -> dict[str, np.ndarray]:
+def _region(record: Record, states: list) -> Arrays:
     """Calibrate the region on all samples without GNSS."""
     # Distance between estimated and true position.
     names = ("x", "y", "lost_for", "sea")
@@ -189,7 +190,7 @@ def _about(size: Size, record: Record, kind: str) -> dict:
     }
 
 
-def _arrays(design: FilterNumbers) -> dict[str, np.ndarray]:
+def _arrays(design: FilterNumbers) -> Arrays:
     return {name: np.array(float(one)) for name, one in design._asdict().items()}
 
 

@@ -146,47 +146,22 @@ def drawn(seed: int) -> World:
     severity, before = rng.uniform(0.0, 3.0, 2)
     # Wave height and wind speed rise together, interpolated in Table IV.
     heights, speeds = zip(*SEA_STATES, strict=True)
-    wind = tuple(float(np.interp(one, range(4), speeds)) for one in (before, severity))
+    first, last = (float(np.interp(one, range(4), speeds)) for one in (before, severity))
     # Any direction before, and any after.
-    towards = rng.uniform(-math.pi, math.pi, 2)
-    return _world(
-        seed, float(np.interp(severity, range(4), heights)), wind, tuple(map(float, towards)), rng
+    start, end = map(float, rng.uniform(-math.pi, math.pi, 2))
+    return world_of(
+        seed, float(np.interp(severity, range(4), heights)), (first, last), (start, end), rng
     )
 
 
-def tested(seed: int, sea_state: int, direction: float) -> World:
-    """A world of paper II's test: one sea state and direction, after the previous one.
-
-    Parameters
-    ----------
-    seed : int
-        Seed of all that is random. [1]
-    sea_state : int
-        Row of `SEA_STATES`. [1]
-    direction : float
-        Where wind and waves come from; the ship heads north. [rad]
-
-    Returns
-    -------
-    World
-    """
-    # The wind before the change is that of the previous sea state in the sequence.
-    first = sea_state == 0
-    wind = (
-        SEA_STATES[sea_state - 1][1],
-        SEA_STATES[sea_state][1],
-    )  # -1: the last of the direction before
-    # The first sea state of a direction comes from 30 deg before it; then the direction holds.
-    towards = direction - math.radians(30.0) if first else direction, direction
-    return _world(seed, SEA_STATES[sea_state][0], wind, towards, np.random.default_rng([26, seed]))
-
-
-def worlds_of_test(seeds: Sequence[int]) -> list[World]:
-    """Worlds of the test, direction by direction, with rising sea states: 48 of 48 seeds."""
-    return [tested(seed, n % 4, math.radians(30.0 * (n // 4 % 12))) for n, seed in enumerate(seeds)]
-
-
-def _world(seed, height, wind, towards, rng):
+def world_of(
+    seed: int,
+    height: float,
+    wind: tuple[float, float],
+    towards: tuple[float, float],
+    rng: np.random.Generator,
+) -> World:
+    """A world of this wave height, wind before and after it changes, and directions; what else there is is drawn."""
     # Current, position bias and compass error: constant in a world, unknown aboard.
     current = rng.uniform([0.0, -math.pi], [0.4, math.pi])
     bias = rng.uniform(-0.2, 0.2, 2)

@@ -9,8 +9,8 @@ from shipcosim.angles import wrap
 from shipcosim.learn.docking import fitting
 from shipcosim.learn.docking.fitting import tensor
 from shipcosim.learn.docking.inputs import Replay
-from shipcosim.learn.networks import arrays_of
-from shipcosim.learn.training import Progress, repeatable
+from shipcosim.learn.networks import Arrays, arrays_of
+from shipcosim.learn.training import Epochs, Progress, repeatable
 from shipcosim.models.core.kinematics import to_body
 from shipcosim.models.prediction import docking
 from shipcosim.models.prediction.docking import CUT
@@ -117,7 +117,7 @@ def fit(
     choice: tuple[np.ndarray, np.ndarray],
     recipe: DockingTraining,
     progress: Progress,
-) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
+) -> tuple[Arrays, Epochs]:
     """Train the ensemble on every docking and on its mirror image.
 
     Parameters

@@ -5,7 +5,7 @@ numbers (within tolerances), in form, and by a load that is new each time. The p
 none of this.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import pi
@@ -15,6 +15,7 @@ import numpy as np
 from shipcosim.cosim import simulate
 from shipcosim.learn.docking.harbours import FAMILIAR, UNSEEN, Harbour, harbour
 from shipcosim.learn.docking.records import KNOWN, TRUTH, Record
+from shipcosim.learn.training import Progress
 from shipcosim.learn.true_ships import (
     DAMPING,
     MEMORY,
@@ -110,15 +111,13 @@ def draw(seed: int, distance: float = 1.0) -> Docking:
     return Docking(seed, port.number, values | true_ship(distance))
 
 
-def scenario(docking: Docking, *, step_size: float = STEP) -> Scenario:
+def scenario(docking: Docking) -> Scenario:
     """The scenario of a docking, for `shipcosim.cosim.simulate`.
 
     Parameters
     ----------
     docking : Docking
         As drawn.
-    step_size : float
-        Of the co-simulation. [s]
 
     Returns
     -------
@@ -131,21 +130,19 @@ def scenario(docking: Docking, *, step_size: float = STEP) -> Scenario:
         parameters=[PARAMETERS],
         components=TRUE,
         stop_time=STOP,
-        step_size=step_size,
+        step_size=STEP,
         output_interval=1.0,
         set=docking.set,
     )
 
 
-def sail(docking: Docking, *, step_size: float = STEP) -> Record:
+def sail(docking: Docking) -> Record:
     """Co-simulate a docking.
 
     Parameters
     ----------
     docking : Docking
         As drawn.
-    step_size : float
-        Of the co-simulation. [s]
 
     Returns
     -------
@@ -158,7 +155,7 @@ def sail(docking: Docking, *, step_size: float = STEP) -> Record:
         She is not there after `STOP`, or too early.
     """
     # The predictor acts on nothing, so the run leaves it out.
-    table = simulate(_without_predictor(), scenario(docking, step_size=step_size))
+    table = simulate(_without_predictor(), scenario(docking))
     # Stage 3 of the helmsman: she lies at the berth.
     moored = np.flatnonzero(np.asarray(table["helmsman.stage"]) == 3)
     if not len(moored) or moored[0] < SAMPLES:
@@ -176,7 +173,7 @@ def sail_all(
     dockings: Iterable[Docking],
     *,
     processes: int = 2,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[Record]:
     """Co-simulate several dockings, in their order; those that `sail` refuses are left out.
 

@@ -7,7 +7,7 @@ import numpy as np
 import torch
 
 from shipcosim.learn.networks import Recurrent
-from shipcosim.learn.training import BestWeights, Descent, Progress
+from shipcosim.learn.training import BestWeights, Descent, Epochs, Progress
 
 Loss = Callable[[torch.Tensor, torch.Tensor], torch.Tensor]
 """From outputs and targets, (m, n, ...), to a mean."""
@@ -20,7 +20,7 @@ def fit(
     outputs: int,
     recipe: Any,
     progress: Progress,
-) -> tuple[list[Recurrent], list[dict[str, float]]]:
+) -> tuple[list[Recurrent], Epochs]:
     """Train an ensemble; call `repeatable` around it.
 
     Parameters

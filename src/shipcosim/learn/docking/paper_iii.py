@@ -14,8 +14,8 @@ import torch
 from shipcosim.learn.docking import fitting
 from shipcosim.learn.docking.fitting import tensor
 from shipcosim.learn.docking.inputs import Replay
-from shipcosim.learn.networks import arrays_of
-from shipcosim.learn.training import Progress, repeatable
+from shipcosim.learn.networks import Arrays, arrays_of
+from shipcosim.learn.training import Epochs, Progress, repeatable
 from shipcosim.models.prediction import paper_iii
 
 RATES = (1e-4, 1e-1)
@@ -106,7 +106,7 @@ def fit(
     choice: tuple[np.ndarray, np.ndarray],
     recipe: PaperIIITraining,
     progress: Progress,
-) -> tuple[dict[str, np.ndarray], list[dict[str, float]], list[tuple[PaperIIITraining, float]]]:
+) -> tuple[Arrays, Epochs, list[tuple[PaperIIITraining, float]]]:
     """Search and train the ensemble.
 
     Parameters

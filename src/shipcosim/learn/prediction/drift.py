@@ -12,7 +12,7 @@ import numpy as np
 import torch
 
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, ahead, errors, followed
-from shipcosim.learn.training import Descent, Progress
+from shipcosim.learn.training import Descent, Epochs, Progress
 from shipcosim.models.core.maths import Arithmetic
 from shipcosim.models.prediction.own_model import COEFFICIENT, COEFFICIENTS, STATES, Learned
 
@@ -150,7 +150,7 @@ def loss(numbers: torch.Tensor, sailed: Sailed, ship: Ship, recipe: DriftTrainin
 
 def fit(
     sailed: Sailed, ship: Ship, recipe: DriftTraining, progress: Progress
-) -> tuple[np.ndarray, list[dict[str, float]]]:
+) -> tuple[np.ndarray, Epochs]:
     """Minimise the loss by Adam.
 
     Parameters

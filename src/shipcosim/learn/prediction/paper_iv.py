@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 
+from shipcosim.learn.networks import Arrays
 from shipcosim.learn.prediction.rollouts import Sailed, Ship, known_of, mapped
-from shipcosim.learn.training import BestWeights, Descent, Progress, repeatable
+from shipcosim.learn.training import BestWeights, Descent, Epochs, Progress, repeatable
 from shipcosim.models.prediction import paper_iv
 
 NOTES = (
@@ -101,7 +102,7 @@ def samples(sailed: Sailed, ship: Ship, first: int = 10) -> tuple[np.ndarray, np
 
 def fit(
     inputs: np.ndarray, targets: np.ndarray, recipe: PaperIVTraining, progress: Progress
-) -> tuple[dict[str, np.ndarray], list[dict[str, float]]]:
+) -> tuple[Arrays, Epochs]:
     """Train the ensemble, all networks at once.
 
     Parameters
@@ -183,7 +184,7 @@ def squares(weights: list[torch.Tensor], x: torch.Tensor, y: torch.Tensor) -> to
     return ((x @ weights[-2] + weights[-1] - y) ** 2).mean()
 
 
-def arrays_of(weights: list[torch.Tensor]) -> dict[str, np.ndarray]:
+def arrays_of(weights: list[torch.Tensor]) -> Arrays:
     """Weights and biases by their names."""
     pairs = zip(weights[::2], weights[1::2], strict=True)
     return {

@@ -6,7 +6,7 @@ manoeuvres, loses all thrust at a drawn time and drifts for 160 s.
 """
 
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from shipcosim.cosim import simulate, system_of
+from shipcosim.learn.training import Progress
 from shipcosim.learn.true_ships import (
     DAMPING,
     MEMORY,
@@ -176,15 +177,13 @@ def draw(seed: int, distance: float = 1.0) -> World:
     return World(seed, distance, lost_at, values, tuple(events))
 
 
-def scenario(world: World, *, step_size: float = STEP, drift: float = DRIFT) -> Scenario:
+def scenario(world: World, *, drift: float = DRIFT) -> Scenario:
     """The scenario of a world, for `shipcosim.cosim.simulate`.
 
     Parameters
     ----------
     world : World
         As drawn.
-    step_size : float
-        Of the co-simulation. [s]
     drift : float
         How long she drifts. [s]
 
@@ -199,22 +198,20 @@ def scenario(world: World, *, step_size: float = STEP, drift: float = DRIFT) -> 
         parameters=[PARAMETERS],
         components={"vessel": "rough_vessel"},
         stop_time=world.lost_at + drift,
-        step_size=step_size,
+        step_size=STEP,
         output_interval=1.0,
         set=world.set,
         events=list(world.events),
     )
 
 
-def sail(world: World, *, step_size: float = STEP) -> Record:
+def sail(world: World) -> Record:
     """Co-simulate a world; some 400 s of simulated time, about 6 s on a quiet core.
 
     Parameters
     ----------
     world : World
         As drawn.
-    step_size : float
-        Of the co-simulation. [s]
 
     Returns
     -------
@@ -222,7 +219,8 @@ def sail(world: World, *, step_size: float = STEP) -> Record:
         At 1 Hz from the start on.
     """
     # Signals that the predictor sees, and apart from these the truth.
-    table = simulate(system_of(scenario(world)), scenario(world, step_size=step_size))
+    what = scenario(world)
+    table = simulate(system_of(what), what)
     known = [np.asarray(table[_source(name)], float) for name in KNOWN]
     truth = [np.asarray(table[f"vessel.{name}"], float) for name in TRUTH]
     time = np.asarray(table["time"], float)
@@ -233,7 +231,7 @@ def sail_all(
     worlds: Iterable[World],
     *,
     processes: int = 2,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[Record]:
     """Co-simulate several worlds, in their order.
 

@@ -194,7 +194,7 @@ def open_loop(loop: OpenLoop, axis: int, frequencies: np.ndarray) -> np.ndarray:
     closed = [a + loop.push[:, others] @ loop.thrust[others] for a in loop.transitions]
     push = loop.push[:, [axis]]
     # L with the sign of negative feedback: the loop is stable far from L = -1.
-    return -_responses(closed, push, loop.thrust[[axis]], frequencies, loop.sample)[:, 0, 0]
+    return -responses(closed, push, loop.thrust[[axis]], frequencies, loop.sample)[:, 0, 0]
 
 
 def margins(loop: OpenLoop, axis: int) -> Margins:
@@ -239,39 +239,6 @@ def margins(loop: OpenLoop, axis: int) -> Margins:
         float(1.0 / np.abs(1.0 + gain).min()),
         float((lag / at).min()),
     )
-
-
-def wave_suppression(
-    loop: OpenLoop, axis: int, frequencies: np.ndarray, law: ControlParameters
-) -> np.ndarray:
-    """Response of the requested load to wave motion, over that of the same law without observer and filters.
-
-    Parameters
-    ----------
-    loop : OpenLoop
-        The open loop; here it is closed.
-    axis : int
-        0 surge, 1 sway, 2 yaw. [1]
-    frequencies : (n,) array
-        Frequencies of the wave motion. [rad/s]
-    law : ControlParameters
-        Of the control law.
-
-    Returns
-    -------
-    (n,) array
-        Ratio of the two responses; below 1 the waves are suppressed. [1]
-    """
-    # Here all three axes are closed: the waves disturb the controlled ship.
-    closed = [a + loop.push @ loop.thrust for a in loop.transitions]
-    w0 = (law.surge_frequency, law.sway_frequency, law.yaw_frequency)[axis]
-    w = np.asarray(frequencies)
-    # A sinusoidal motion has position and rate: x and j ω x.
-    motion = loop.waves[:, [axis]] + 1j * w[:, None, None] * loop.waves[:, [axis + 3]]
-    asked = _responses(closed, motion, loop.request, w, loop.sample)[:, :, 0]
-    # The same law without observer: |ω0² + 2 j ζ ω0 ω| is its gain from motion to acceleration.
-    plain = np.abs(w0 * w0 + 2j * law.damping_ratio * w0 * w)
-    return np.abs(loop.per_mass[axis] @ asked.T) / plain
 
 
 def is_stable(loop: OpenLoop) -> bool:
@@ -350,7 +317,13 @@ def _controller(ship, parameters, law, wave_frequency, new):
     return slopes[:, :own], slopes[:, own:]
 
 
-def _responses(transitions, push, shown, frequencies, h):
+def responses(
+    transitions: list[np.ndarray],
+    push: np.ndarray,
+    shown: np.ndarray,
+    frequencies: np.ndarray,
+    h: float,
+) -> np.ndarray:
     """Response of a periodic system at its excitation frequency; (frequencies, shown, pushed)."""
     n, m = push.shape[-2:]
     count = len(transitions)

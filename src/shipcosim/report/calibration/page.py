@@ -18,6 +18,7 @@ from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
     Figure,
     FigurePage,
+    Figures,
     KeyFigure,
     Link,
     Outcome,
@@ -45,8 +46,8 @@ class CalibrationPage(FigurePage):
 
     refusals: tuple[str, ...]
     remarks: tuple[str, ...]
-    moved: tuple[Figure, ...]
-    errors: tuple[Figure, ...]
+    moved: Figures
+    errors: Figures
     numbers: Table
     error_table: Table
     logs: Table
@@ -150,7 +151,7 @@ def _moved_figure(ship: CalibratedShip) -> Figure:
     return Figure("What moved", "tolerances", (dots,), layout, note, height)
 
 
-def _error_figures(ship: CalibratedShip) -> tuple[Figure, ...]:
+def _error_figures(ship: CalibratedShip) -> Figures:
     """Errors of each log over the horizons."""
     found = []
     for log in ship.logs:

@@ -68,11 +68,15 @@ def error_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
 
 def log_rows(ship: CalibratedShip) -> list[tuple[str, ...]]:
     """Logs: name, faults that were repaired, weather fitted beside the ship, unmodelled errors that are left."""
-    return [(log.name, _faults(log), _weather(log), _left(log)) for log in ship.logs]
-
-
-def _faults(log: CalibratedLog) -> str:
-    return ", ".join(fault.label for fault in log.faults) or "none"
+    return [
+        (
+            log.name,
+            (", ".join(fault.label for fault in log.faults) or "none"),
+            _weather(log),
+            _left(log),
+        )
+        for log in ship.logs
+    ]
 
 
 def _weather(log: CalibratedLog) -> str:

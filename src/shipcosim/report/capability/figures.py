@@ -10,7 +10,7 @@ from shipcosim.capability.result import LEVEL_1, SIMULATOR
 from shipcosim.capability.simulator import simulated_parts
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import line, polar_axes, rounded
-from shipcosim.report.theme.views import Figure, PlotlyDict
+from shipcosim.report.theme.views import Figure, Figures, PlotlyDict
 
 TALL = 400
 """Height of a polar plot. [px]"""
@@ -18,7 +18,7 @@ TALL = 400
 SOURCES = {"wind": palette.SKY, "current": palette.ORANGE, "waves": palette.GREEN}
 
 
-def capability_figures(capability: Capability) -> tuple[Figure, ...]:
+def capability_figures(capability: Capability) -> Figures:
     """Polar plots: Level 1, Level 1 with the simulator, and every failure."""
     # Intact, and the worst loss of one thruster, by both methods.
     numbers = {method: capability.numbers(method) for method in (LEVEL_1, SIMULATOR)}
@@ -61,7 +61,7 @@ def limiting_condition(capability: Capability) -> Condition:
     return CONDITIONS[max(capability.elements()[1], 1) - 1]
 
 
-def load_figures(capability: Capability) -> tuple[Figure, ...]:
+def load_figures(capability: Capability) -> Figures:
     """Sway force and yaw moment by source and method, at the limit of the intact ship."""
     # At the limit the loads are as large as the thrust.
     condition = limiting_condition(capability)

@@ -13,8 +13,8 @@ from shipcosim.report.capability.figures import capability_figures, limiting_con
 from shipcosim.report.theme.numbers import plain
 from shipcosim.report.theme.pages import render as render_template
 from shipcosim.report.theme.views import (
-    Figure,
     FigurePage,
+    Figures,
     KeyFigure,
     Link,
     Outcome,
@@ -47,8 +47,8 @@ class CapabilityPage(FigurePage):
         How many particulars are assumed, of how many.
     """
 
-    plots: tuple[Figure, ...]
-    loads: tuple[Figure, ...]
+    plots: Figures
+    loads: Figures
     numbers: Table
     thrusters: Table
     conditions: Table

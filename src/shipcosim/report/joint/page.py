@@ -26,6 +26,7 @@ from shipcosim.report.theme.views import (
     Fact,
     Figure,
     FigurePage,
+    Figures,
     KeyFigure,
     Link,
     PlotlyDict,
@@ -77,8 +78,8 @@ class JointPage(FigurePage):
     causes: Table
     faults: Table
     alike: Table
-    tracks: tuple[Figure, ...]
-    errors: tuple[Figure, ...]
+    tracks: Figures
+    errors: Figures
     error_table: Table
     is_held_out: bool
     logs: Table
@@ -210,7 +211,7 @@ def key_figures(found: JointDiagnosis) -> tuple[KeyFigure, ...]:
     return tuple(figures)
 
 
-def _error_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
+def _error_figures(errors: dict[str, LogErrors]) -> Figures:
     """Errors after the longest horizon by log, before and after."""
     if not errors:
         return ()
@@ -244,7 +245,7 @@ def _bars(sizes: dict[str, dict[str, tuple[float, ...]]], unit: str) -> tuple[Pl
     )
 
 
-def _track_figures(errors: dict[str, LogErrors]) -> tuple[Figure, ...]:
+def _track_figures(errors: dict[str, LogErrors]) -> Figures:
     """Tracks of the logs, or where there are many of the longest."""
     longest = sorted(
         errors, key=lambda name: -errors[name].tracks.predicted["before"].sizes["segment"]

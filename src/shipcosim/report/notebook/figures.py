@@ -164,7 +164,11 @@ def track_svg(
         axes.set(xlabel="east [m]", ylabel="north [m]")
         # Where she was to be lies below her way, and her outlines below the line.
         for circle in circles:
-            east, north = _around(circle)
+            angle = np.linspace(0.0, 2.0 * np.pi, 73)
+            east, north = (
+                circle.y + circle.radius * np.sin(angle),
+                circle.x + circle.radius * np.cos(angle),
+            )
             colour = COLOURS[palette.PASSED if circle.passed else palette.FAILED]
             axes.plot(east, north, color=colour, linewidth=1.0)
         for path in paths:
@@ -180,12 +184,6 @@ def track_svg(
         figure.legend(loc="outside upper left", ncols=3)
 
     return figure_svg(name, WIDTH, TRACK_HEIGHT[1], draw)
-
-
-def _around(circle: Circle) -> tuple[NDArray, NDArray]:
-    """East and north of points of a circle. [m, m]"""
-    angle = np.linspace(0.0, 2.0 * np.pi, 73)
-    return circle.y + circle.radius * np.sin(angle), circle.x + circle.radius * np.cos(angle)
 
 
 def _draw_outlines(axes: Axes, path: Path, size: tuple[float, float] | None) -> None:

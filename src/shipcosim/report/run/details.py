@@ -102,9 +102,7 @@ def _unit(system: System | None, component: str, name: str) -> str | None:
     if system is None:
         return None
     variables = (
-        system.components[component].fmu.variables
-        if component in system.components
-        else system.inputs
+        system.components[component].variables if component in system.components else system.inputs
     )
     return variables[name].unit if name in variables else None
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from xarray import Dataset
 
@@ -20,7 +20,7 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.display import display_table, is_constant, thinned
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Fact, Link, Outcome, Page, Table, known_facts
+from shipcosim.report.theme.views import Fact, JsonObject, Link, Outcome, Page, Table, known_facts
 from shipcosim.scenario import Scenario, Verdict
 from shipcosim.series import write_file
 from shipcosim.ssp import AnyPath, System
@@ -224,7 +224,7 @@ def drawn_data(
     runs: Sequence[Run],
     sections: Sequence[Section],
     events: Iterable[float],
-) -> dict[str, Any]:
+) -> JsonObject:
     """What the script of the page draws.
 
     Parameters

@@ -16,6 +16,7 @@ from shipcosim.report.run.track import hull_outline, outline_rows, symbol_size
 from shipcosim.report.run.vessels import DrawnThruster, Vessel, find_vessels, in_unit, start_values
 from shipcosim.report.theme.display import is_constant
 from shipcosim.report.theme.packing import LEVELS, packed_series
+from shipcosim.report.theme.views import JsonObject
 from shipcosim.scenario import Verdict
 
 MOST_ROWS = (
@@ -55,13 +56,13 @@ class Run:
 
     label: str
     time: Any
-    columns: dict[str, Any]
-    vessels: list[dict[str, Any]]
-    flows: list[dict[str, Any]]
-    circles: list[dict[str, Any]]
+    columns: JsonObject
+    vessels: list[JsonObject]
+    flows: list[JsonObject]
+    circles: list[JsonObject]
     watch: dict[str, float]
     read_as: list[str]
-    predicted: list[dict[str, Any]]
+    predicted: list[JsonObject]
 
 
 @dataclass
@@ -70,7 +71,7 @@ class _Columns:
 
     table: Dataset
     rows: NDArray
-    packed: dict[str, Any] = field(default_factory=dict)
+    packed: JsonObject = field(default_factory=dict)
     without_unit: list[str] = field(default_factory=list)
 
     def add(self, name: str | None, unit: str, resolution: float = np.inf) -> str | None:
@@ -161,7 +162,7 @@ def unwrap_degrees(values: NDArray) -> NDArray:
     return answer
 
 
-def _packed(values: NDArray, resolution: float) -> float | dict[str, Any] | list[float | None]:
+def _packed(values: NDArray, resolution: float) -> float | JsonObject | list[float | None]:
     """Pack a column; a constant one becomes a single number."""
     if is_constant(values):
         return float(values[0])
@@ -176,7 +177,7 @@ def _rows(count: int) -> NDArray:
     return np.unique(np.linspace(0, count - 1, min(count, MOST_ROWS)).round().astype(int))
 
 
-def _vessel(vessel: Vessel, columns: _Columns) -> dict[str, Any] | None:
+def _vessel(vessel: Vessel, columns: _Columns) -> JsonObject | None:
     """Data of a vessel for the display."""
     # Pose with the resolution of a screen.
     units = ("m", "m", "deg")
@@ -229,7 +230,7 @@ def _aim(names: tuple[str, str, str | None], columns: _Columns) -> list[str | No
     )
 
 
-def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> dict[str, Any] | None:
+def _unit(unit: DrawnThruster, columns: _Columns, to_scale: bool) -> JsonObject | None:
     """A thruster: bars need its thrust; vectors also its force, its place and a ship to scale."""
     thrust = columns.add(unit.thrust, "kN")
     if thrust is None:
@@ -269,10 +270,10 @@ def _force(unit: DrawnThruster, columns: _Columns) -> list[str] | None:
     return [columns.put(f"{unit.name} force {way}", values) for way, values in parts.items()]
 
 
-def _flows(table: Dataset, columns: _Columns) -> list[dict[str, Any]]:
+def _flows(table: Dataset, columns: _Columns) -> list[JsonObject]:
     """Wind and current as velocity north and east, waves as height and direction, if logged."""
     roles = find_roles(table.data_vars)
-    found: list[dict[str, Any]] = []
+    found: list[JsonObject] = []
     # Flows that are zero all along are not shown.
     for what, (sense, sign) in FLOWS.items():
         values = _velocity(table, roles.anywhere, what, sense, sign)
@@ -317,7 +318,7 @@ def _first_in(table: Dataset, names: Iterable[str]) -> str | None:
     return next((name for name in names if name in table and table[name].dtype.kind in "fiu"), None)
 
 
-def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[dict[str, Any]]:
+def _circle(verdict: Verdict, vessel: Vessel, shift: float) -> list[JsonObject]:
     """Circle of an expectation on the vessel's position; else nothing."""
     expect = verdict.expect
     # Only fixed points: a moving target is no circle.

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from xarray import Dataset
 
 from shipcosim.report.run.roles import Roles, join
+from shipcosim.report.run.vessels import Pair
 
 HULL = (  # outline over length and breadth from amidships, starboard side from stern to bow; drawn, not measured
     (-0.5, 0.44),
@@ -23,7 +24,7 @@ SYMBOL = 0.08  # length of the outline of a ship of unknown size, over the exten
 SLENDERNESS = 3.5  # length over breadth of that outline
 
 
-def ship_size(table: Dataset, roles: Roles) -> tuple[float, float] | None:
+def ship_size(table: Dataset, roles: Roles) -> Pair | None:
     """Length and breadth of the ship, where the start values in the table's attributes have both. [m, m]"""
     known = json.loads(table.attrs.get("start_values", "{}"))
     length, breadth = (known.get(join(roles.ship or "", name)) for name in ("length", "breadth"))
@@ -90,7 +91,7 @@ def outline_rows(x: NDArray, y: NDArray, psi: NDArray, length: float) -> list[in
         turn = 1.5 * turn
 
 
-def symbol_size(x: NDArray, y: NDArray) -> tuple[float, float]:
+def symbol_size(x: NDArray, y: NDArray) -> Pair:
     """Size of an outline for a vessel of unknown size. [m, m]"""
     length = max(SYMBOL * max(float(np.ptp(x)), float(np.ptp(y))), 1.0)
     return length, length / SLENDERNESS

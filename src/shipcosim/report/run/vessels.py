@@ -16,6 +16,9 @@ from shipcosim.models.core.tables import columns
 from shipcosim.report.run.roles import find_roles, join
 from shipcosim.series import conversion
 
+Pair = tuple[float, float]
+
+
 AXES = {
     "x": ("x", "north", "northing"),
     "y": ("y", "east", "easting"),
@@ -59,9 +62,9 @@ class DrawnThruster:
     saturated: str | None
     failed: str | None
     available: str | None
-    place: tuple[float, float] | None
-    limits: tuple[float, float] | None
-    sectors: tuple[tuple[float, float], ...]
+    place: Pair | None
+    limits: Pair | None
+    sectors: tuple[Pair, ...]
 
 
 @dataclass(frozen=True)
@@ -87,7 +90,7 @@ class Vessel:
     pose: Pose
     velocity: tuple[str | None, ...]
     aims: dict[str, tuple[str, str, str | None]]
-    size: tuple[float, float] | None
+    size: Pair | None
     units: tuple[DrawnThruster, ...]
 
 
@@ -338,7 +341,7 @@ def find_units(names: Iterable[Hashable], known: Mapping[str, Any]) -> tuple[Dra
     )
 
 
-def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
+def _place(unit: str, known: Mapping[str, Any]) -> Pair | None:
     """Place of a thruster, forward and to starboard; the latter is 0 where missing. [m, m]"""
     forward = _first_number(
         known, unit, ("x", "position_x", "x_position", "rudder_x", "propeller_x")
@@ -349,7 +352,7 @@ def _place(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
     return None if forward is None else (forward, starboard or 0.0)
 
 
-def _limits(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
+def _limits(unit: str, known: Mapping[str, Any]) -> Pair | None:
     # Limits by name, else the ends of the thrust map.
     most, least = (_first_number(known, unit, (f"thrust_{end}",)) for end in ("max", "min"))
     if most is None:
@@ -360,7 +363,7 @@ def _limits(unit: str, known: Mapping[str, Any]) -> tuple[float, float] | None:
     return (-most if least is None else least, most)
 
 
-def _ends_of_map(table: Any) -> tuple[float, float] | tuple[None, None]:
+def _ends_of_map(table: Any) -> Pair | tuple[None, None]:
     """Least and largest thrust of a map, rows 'command thrust' as text. [N, N]"""
     try:
         thrusts = columns(table if isinstance(table, str) else "", 2)[1]
@@ -372,10 +375,10 @@ def _ends_of_map(table: Any) -> tuple[float, float] | tuple[None, None]:
 def _sectors(
     unit: str,
     azimuth: str | None,
-    place: tuple[float, float] | None,
+    place: Pair | None,
     allocators: Iterable[str],
     known: Mapping[str, Any],
-) -> tuple[tuple[float, float], ...]:
+) -> tuple[Pair, ...]:
     """Sector outside the range of angles that an allocator gives a thruster. [rad, rad]
 
     The unit is found by its name in that of the range, `port_azimuth_first`, or by the place of `azimuth_first_1`.

@@ -7,6 +7,8 @@ from math import ceil, degrees, floor
 import numpy as np
 from xarray import Dataset
 
+from shipcosim.report.run.vessels import Pair
+
 NEAR = 0.5  # of a limit: a run that stays farther from it is drawn without it, since its curves would be flat lines
 BESIDE = 45.0  # deg: this far beyond the angles of the curves sectors are drawn
 
@@ -20,7 +22,7 @@ class Zone:
 
 
 def thrust_zones(
-    shown: Dataset, signals: Sequence[str | None], limits: tuple[float, float] | None
+    shown: Dataset, signals: Sequence[str | None], limits: Pair | None
 ) -> tuple[Zone, ...]:
     """Zones beyond the limits of a thruster, of those limits that the curves come near.
 
@@ -54,7 +56,7 @@ def thrust_zones(
 
 
 def angle_zones(
-    shown: Dataset, signals: Sequence[str | None], sectors: Sequence[tuple[float, float]]
+    shown: Dataset, signals: Sequence[str | None], sectors: Sequence[Pair]
 ) -> tuple[Zone, ...]:
     """Forbidden sectors among the angles that a panel shows, as often as the curves turn round.
 
@@ -87,7 +89,7 @@ def angle_zones(
     return tuple(found)
 
 
-def _span(shown: Dataset, signals: Sequence[str | None]) -> tuple[float, float] | None:
+def _span(shown: Dataset, signals: Sequence[str | None]) -> Pair | None:
     """Least and largest value of the curves."""
     values = np.concatenate([shown[name].values for name in signals if name in shown] or [[]])
     known = values[np.isfinite(values)]

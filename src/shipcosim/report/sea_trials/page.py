@@ -14,7 +14,14 @@ from shipcosim.report.sea_trials.words import (
     sets_table,
 )
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, FigurePage, KeyFigure, Link, Table, facts_of
+from shipcosim.report.theme.views import (
+    FigurePage,
+    Figures,
+    KeyFigure,
+    Link,
+    Table,
+    facts_of,
+)
 
 SECTIONS = {
     "tracks": "Tracks",
@@ -43,9 +50,9 @@ class SeaTrialPage(FigurePage):
         What to sail next.
     """
 
-    tracks: tuple[Figure, ...]
-    errors: tuple[Figure, ...]
-    manoeuvres: tuple[Figure, ...]
+    tracks: Figures
+    errors: Figures
+    manoeuvres: Figures
     sets: Table
     held_out: Table
     features: Table

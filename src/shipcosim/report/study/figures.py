@@ -479,9 +479,7 @@ def _figure(
     )
 
 
-def distance_figure(
-    time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]], unit: str = "m"
-) -> Figure:
+def distance_figure(time: NDArray, spread: Sequence[tuple[SeriesOfRows, NDArray]]) -> Figure:
     """Distance from the first position over time: median and 5 to 95 % range of each series.
 
     Parameters
@@ -514,4 +512,4 @@ def distance_figure(
         "hovermode": "x unified",
     }
     note = "Line: median of the runs; band: from 5 to 95 % of them at each time."
-    return Figure("Distance from where each run began", unit, tuple(traces), layout, note, TALL)
+    return Figure("Distance from where each run began", "m", tuple(traces), layout, note, TALL)

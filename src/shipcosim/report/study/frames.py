@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shipcosim.report.study.statistics import mean_interval
-from shipcosim.report.study.tables import FACTOR, Column, StudyTables, columns_of, label
+from shipcosim.report.study.tables import FACTOR, Column, Columns, StudyTables, columns_of, label
 from shipcosim.report.theme import palette
 from shipcosim.sweep.summary import wilson
 
@@ -47,7 +47,7 @@ class Frame:
     """
 
     name: str
-    columns: Mapping[str, Column]
+    columns: Columns
 
     def column(self, name: object) -> Column:
         """A column; if missing, the error lists the columns."""

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from shipcosim.report.study import figures, words
 from shipcosim.report.study.frames import Lacking, narrowed
-from shipcosim.report.study.tables import Column, StudyTables, columns_of, signed
+from shipcosim.report.study.tables import Column, Columns, StudyTables, columns_of, signed
 from shipcosim.report.study.tracks import TracksView, tracks_view
 from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, KeyFigure, Link, Page, Table
+from shipcosim.report.theme.views import Figure, Figures, JsonObject, KeyFigure, Link, Page, Table
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
@@ -82,8 +82,8 @@ class StudyPage(Page):
     remarks: tuple[str, ...]
     key_figures: tuple[KeyFigure, ...]
     tracks: tuple[TracksView, ...]
-    plots: tuple[Figure, ...]
-    figures: tuple[Figure, ...]
+    plots: Figures
+    figures: Figures
     undrawn: tuple[str, ...]
     quantities: Table
     summary: Table
@@ -148,7 +148,7 @@ def page_of(tables: StudyTables) -> StudyPage:
 
 def _views(
     tables: StudyTables,
-) -> tuple[tuple[TracksView, ...], tuple[Figure, ...], tuple[str, ...]]:
+) -> tuple[tuple[TracksView, ...], Figures, tuple[str, ...]]:
     """Views of the study; a view that cannot be drawn does not affect the others."""
     tracks = []
     plots = []
@@ -188,11 +188,11 @@ def _kept_rows(tables: StudyTables, columns: Sequence[Column]) -> NDArray:
 
 def _data(
     tables: StudyTables,
-    columns: Mapping[str, Column],
+    columns: Columns,
     rows: NDArray,
     tracks: Sequence[TracksView],
     drawn: Sequence[Figure],
-) -> dict[str, Any]:
+) -> JsonObject:
     """Data for the scripts of the page."""
     # Error texts are stored once, each run refers to its text.
     failed = words.is_failed(tables)[rows]
@@ -223,7 +223,7 @@ def _data(
     }
 
 
-def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
+def _packed(column: Column, rows: NDArray) -> JsonObject:
     """A column for the script: levels by their places, numbers as they are."""
     # Description of the column, then its values.
     values = column.values[rows]
@@ -249,7 +249,7 @@ def _packed(column: Column, rows: NDArray) -> dict[str, Any]:
     return made | {"values": packed_series(values), "digits": digits}
 
 
-def _choices(columns: Mapping[str, Column]) -> tuple[Choice, ...]:
+def _choices(columns: Columns) -> tuple[Choice, ...]:
     chosen = [
         c for c in columns.values() if len(c.levels) > 1 and (c.role == "factor" or c.is_truth)
     ]
@@ -266,7 +266,7 @@ def _level(column: Column, level: float) -> str:
     return column.text(level) if column.labels else signed(level, 6)
 
 
-def _summary(columns: Mapping[str, Column]) -> Table:
+def _summary(columns: Columns) -> Table:
     """The summary as texts; at most its first rows."""
     # Ends of intervals are shown in the cell of their value.
     ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
@@ -278,7 +278,7 @@ def _summary(columns: Mapping[str, Column]) -> Table:
     return Table(rows, tuple(column.titled for column in shown), tight=tuple(range(len(shown))))
 
 
-def _with_interval(columns: Mapping[str, Column], column: Column, row: int) -> str:
+def _with_interval(columns: Columns, column: Column, row: int) -> str:
     """A cell of the summary, with its interval if it has one."""
     if column.ranges:
         return column.text_at(row)

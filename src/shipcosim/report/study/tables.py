@@ -113,7 +113,7 @@ def _ship(swept: Swept) -> dict[str, float]:
     tracks = swept.plan.study.tracks
     system = swept.plan.system
     name = system.split(tracks.signals[0])[0] if tracks is not None else None
-    if name is None or not system.components[name].fmu.variables.keys() >= {"length", "breadth"}:
+    if name is None or not system.components[name].variables.keys() >= {"length", "breadth"}:
         return {}
     sizes = {size: system.components[name].start_value(size) for size in ("length", "breadth")}
     return {size: float(value) for size, value in sizes.items() if value is not None}
@@ -200,6 +200,9 @@ class Column:
             )
         number = f"{signed(value, 4 if self.role == FACTOR else 3)}{'' if self.unit in ('', '°') else ' '}{self.unit}"
         return f"{self.name} {number}" if with_name else number
+
+
+Columns = Mapping[str, Column]
 
 
 def signed(value: float, digits: int = 4) -> str:

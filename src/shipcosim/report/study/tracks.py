@@ -15,7 +15,7 @@ from shipcosim.report.study.frames import RUNS, Frame, Lacking, SeriesOfRows, le
 from shipcosim.report.study.tables import StudyTables, columns_of
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import packed_series
-from shipcosim.report.theme.views import Figure
+from shipcosim.report.theme.views import Figure, JsonObject
 
 MOST_TRACKS = 150
 MOST_TIMES = 80
@@ -42,7 +42,7 @@ class TracksView:
     title: str
     note: str
     series: tuple[tuple[str, str], ...]
-    data: dict[str, Any]
+    data: JsonObject
     distance: Figure
 
 
@@ -146,7 +146,7 @@ def _data(
     series: Sequence[SeriesOfRows],
     drawn: Sequence[NDArray],
     circles: Sequence[float],
-) -> dict[str, Any]:
+) -> JsonObject:
     every = np.concatenate([one.rows for one in series]) if series else np.zeros(0, int)
     # West, east, south and north end of all tracks, the start included. [m]
     ends = []
@@ -213,7 +213,7 @@ def _beyond(tracks: _Tracks, rows: NDArray, circles: Sequence[float]) -> list[li
     return [[round(float(share), 4) for share in one] for one in shares]
 
 
-def _track(tables: StudyTables, tracks: _Tracks, row: int) -> dict[str, Any]:
+def _track(tables: StudyTables, tracks: _Tracks, row: int) -> JsonObject:
     parts = {"north": tracks.north[row], "east": tracks.east[row], "heading": tracks.heading[row]}
     return {"run": int(tables.runs["run"].iloc[row])} | {
         k: packed_series(v, LEVELS) for k, v in parts.items()

@@ -16,6 +16,7 @@ from shipcosim.report.study.tables import (
     SAMPLE,
     SUMMARY,
     Column,
+    Columns,
     StudyTables,
     signed,
 )
@@ -49,9 +50,7 @@ def facts(tables: StudyTables) -> tuple[Fact, ...]:
     return tuple(Fact(name, str(text)) for name, text in known.items() if text not in (None, ""))
 
 
-def outcome(
-    tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]
-) -> Outcome:
+def outcome(tables: StudyTables, runs: Columns, summary: Columns) -> Outcome:
     """Result of the study in one sentence."""
     # The summary says most; else the first quantity over all runs.
     failed = int(is_failed(tables).sum())
@@ -63,7 +62,7 @@ def outcome(
     return Outcome("failed" if failed == count else "partial" if failed else "named", word, said)
 
 
-def _of_summary(summary: Mapping[str, Column]) -> str:
+def _of_summary(summary: Columns) -> str:
     """Range of the first summary, and where its ends lie."""
     # The first summary with a value.
     found = next(
@@ -83,13 +82,13 @@ def _of_summary(summary: Mapping[str, Column]) -> str:
     return f"{_capital(name)}: from {ends[0]} to {ends[1]}."
 
 
-def _where(columns: Mapping[str, Column], row: int) -> str:
+def _where(columns: Columns, row: int) -> str:
     """Factor levels of a row."""
     factors = [c for c in columns.values() if c.role in (FACTOR, SAMPLE)]
     return ", ".join(c.text(c.values[row], with_name=not c.labels) for c in factors) or "one row"
 
 
-def _of_runs(runs: Mapping[str, Column]) -> str:
+def _of_runs(runs: Columns) -> str:
     """First quantity over all runs."""
     found = next(
         (c for c in runs.values() if c.role == QUANTITY and np.isfinite(c.values).any()), None
@@ -111,9 +110,7 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def key_figures(
-    tables: StudyTables, runs: Mapping[str, Column], summary: Mapping[str, Column]
-) -> tuple[KeyFigure, ...]:
+def key_figures(tables: StudyTables, runs: Columns, summary: Columns) -> tuple[KeyFigure, ...]:
     """Number of runs, and values of the first quantities and summaries."""
     found = [KeyFigure(str(len(tables.runs)), f"runs, {int(is_failed(tables).sum())} failed")]
     # Summaries first: they are what the study asks for.
@@ -149,7 +146,7 @@ def _key_figure(column: Column, known: NDArray) -> KeyFigure:
     return KeyFigure(column.text(np.quantile(known, 0.9)), f"{name}: nine of ten runs are below")
 
 
-def quantities_table(runs: Mapping[str, Column]) -> Table:
+def quantities_table(runs: Columns) -> Table:
     """Each quantity over all runs, and the factors that explain most of its variance."""
     causes = [c for c in runs.values() if c.role in (FACTOR, SAMPLE)]
     rows = []

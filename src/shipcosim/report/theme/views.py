@@ -4,6 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+JsonObject = dict[str, Any]
+
+
 PlotlyDict = dict[str, Any]
 """A trace of a figure, or a part of its layout, as plotly has it."""
 
@@ -92,6 +95,9 @@ class Figure:
         return {"data": self.traces, "layout": self.layout}
 
 
+Figures = tuple[Figure, ...]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Page:
     """Contents of every page.
@@ -128,7 +134,7 @@ class FigurePage(Page):
     """
 
     key_figures: tuple[KeyFigure, ...] = ()
-    figures: tuple[Figure, ...] = ()
+    figures: Figures = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "data", tuple(figure.drawn for figure in self.figures))

@@ -1,7 +1,7 @@
 """An SSP in memory: changes are made together or not at all, checked, and written."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import replace
@@ -16,6 +16,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ssp.edit.parameter_sets import Sets
 from shipcosim.ssp.edit.write import relocated, write_file
 from shipcosim.ssp.flatten.assemble import assemble_package
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.fmu.description import FmuDescription
 from shipcosim.ssp.fmu.reader import describe_fmu
@@ -95,7 +96,7 @@ class Draft:
     # ---------------------------------------------------------------- reading
 
     def assemble(
-        self, parameters: ParameterSets = (), swapped: Mapping[str, Path] | None = None
+        self, parameters: ParameterSets = (), swapped: Swapped = None
     ) -> tuple[System | None, Findings]:
         """Assemble the system as it is now; None or incomplete where there are errors."""
         findings = Findings()
@@ -229,7 +230,11 @@ class Draft:
                 for path in sorted(folder.rglob("*"))
                 if path.is_file()
             }
-            files = {name.as_posix(): path for name, path in found.items() if not _is_hidden(name)}
+            files = {
+                name.as_posix(): path
+                for name, path in found.items()
+                if not any(part.startswith(".") for part in name.parts)
+            }
         # FMUs that were found elsewhere, then every changed file.
         files |= self.package.located
         for path, held in self.package.held.items():
@@ -245,10 +250,6 @@ class Draft:
 
 
 PREFIXES = {".ssd": ("ssd", "ssc", "ssv", "osp"), ".ssv": ("ssv", "ssc")}
-
-
-def _is_hidden(name: Path) -> bool:
-    return any(part.startswith(".") for part in name.parts)
 
 
 def _is_elsewhere(file: Path | bytes, folder: Path) -> bool:

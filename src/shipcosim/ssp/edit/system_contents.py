@@ -1,6 +1,6 @@
 """Contents of a system structure: elements, connections, default experiment; check and write."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
@@ -12,6 +12,7 @@ from shipcosim.ssp.edit.elements import element_named
 from shipcosim.ssp.edit.experiment import experiment_time, set_experiment_time, write_step_size
 from shipcosim.ssp.edit.names import connections, walk
 from shipcosim.ssp.edit.start_values import StartValues
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.flatten.system import Component, System
 from shipcosim.ssp.read.parameters import ParameterSets
 from shipcosim.ssp.xml.annotations import step_sizes
@@ -130,9 +131,7 @@ class SystemContents:
         """
         return problems_of(*self._draft.assemble(parameters))
 
-    def checked(
-        self, parameters: ParameterSets = (), components: Mapping[str, Path] | None = None
-    ) -> System:
+    def checked(self, parameters: ParameterSets = (), components: Swapped = None) -> System:
         """The system ready to run, as `shipcosim.ssp.read_system` gives it.
 
         Parameters

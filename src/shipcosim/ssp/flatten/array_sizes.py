@@ -11,7 +11,7 @@ RESIZE = "Set it in the SSD or in a parameter set."
 
 def resized(component: Component) -> Iterator[str]:
     """Sentences on start values that would resize arrays whose elements are laid out already."""
-    for variable in component.fmu.variables.values():
+    for variable in component.variables.values():
         # Only the first element of each array: the others have the same sizes.
         if variable.whole is not None and variable.place == 0:
             for name, size in zip(variable.sizes, variable.whole.dimensions, strict=True):
@@ -25,7 +25,7 @@ def sizes_wanted(components: Mapping[str, Component]) -> dict[str, dict[str, Val
     wanted = {}
     for name, component in components.items():
         # A size is a number, or the name of the structural parameter that holds it.
-        sizes = {size for variable in component.fmu.variables.values() for size in variable.sizes}
+        sizes = {size for variable in component.variables.values() for size in variable.sizes}
         structural = {size for size in sizes if isinstance(size, str)}
         values = {size: component.start[size] for size in structural & set(component.start)}
         wanted |= {name: values} if values else {}

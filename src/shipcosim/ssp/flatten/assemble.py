@@ -3,12 +3,11 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 
 from shipcosim.ssp.flatten.array_sizes import RESIZE, resized, sizes_wanted
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.connections import Connection, connect
-from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.hierarchy import Hierarchy, Swapped
 from shipcosim.ssp.flatten.outer_signals import OuterSignals
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.ports import Key
@@ -28,7 +27,7 @@ def assemble_package(
     file: str,
     findings: Findings,
     described: dict | None = None,
-    swapped: Mapping[str, Path] | None = None,
+    swapped: Swapped = None,
 ) -> System | None:
     """System of a package, None or incomplete where there are errors.
 

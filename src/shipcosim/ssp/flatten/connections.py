@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from shipcosim.ssp.flatten.conversions import Flow, advance
 from shipcosim.ssp.flatten.hierarchy import Hierarchy
 from shipcosim.ssp.flatten.ports import Key, Port, Wire
+from shipcosim.ssp.read.structure import End
 from shipcosim.ssp.xml.document import Findings
 from shipcosim.ssp.xml.values import Value
 
@@ -33,8 +34,8 @@ class Connection:
         Where its last part stands, for messages.
     """
 
-    source: tuple[str | None, str]
-    target: tuple[str | None, str]
+    source: End
+    target: End
     factor: float = 1.0
     offset: float = 0.0
     mapping: Mapping[Value, Value] | None = None
@@ -107,7 +108,7 @@ def _way(key: Key, incoming: Mapping[Key, Wire], findings: Findings) -> list[Wir
     return wires[::-1]
 
 
-def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
+def _source(key: Key, tree: Hierarchy) -> End | None:
     """Component (None: the outermost system) and name of a source; None if there is no source."""
     port = tree.ports[key]
     if port.owner == "component":
@@ -115,9 +116,7 @@ def _source(key: Key, tree: Hierarchy) -> tuple[str | None, str] | None:
     return (None, key.name) if port.owner == "system" and key.path == () else None
 
 
-def _connection(
-    wires: list[Wire], source: tuple[str | None, str], tree: Hierarchy, findings: Findings
-) -> Connection:
+def _connection(wires: list[Wire], source: End, tree: Hierarchy, findings: Findings) -> Connection:
     # Convert from wire to wire, then into the unit of the FMU's variable.
     first = tree.ports[wires[0].source]
     last = tree.ports[wires[-1].target]

@@ -16,6 +16,10 @@ from shipcosim.ssp.read.parameters import DictionaryEntry
 from shipcosim.ssp.read.structure import ComponentElement, Structure, SystemElement
 from shipcosim.ssp.xml.document import Findings
 
+Swapped = Mapping[str, Path] | None
+"""FMUs that components run in place of their own."""
+
+
 ElementPath = tuple[str, ...]
 """Names of the elements around something and its own; empty for the outermost system."""
 
@@ -62,7 +66,7 @@ class Hierarchy:
         findings: Findings,
         described: dict | None = None,
         sizes: Mapping[str, Mapping[str, int]] | None = None,
-        swapped: Mapping[str, Path] | None = None,
+        swapped: Swapped = None,
     ):
         self.findings = findings
         self.components: dict[ElementPath, tuple[ComponentElement, FmuDescription | None]] = {}

@@ -65,9 +65,7 @@ class OuterSignals:
         pairs = [(c.target, c) for c in self.connections if c.source == near]
         pairs += [(c.source, c) for c in self.connections if c.target == near]
         return [
-            (self.components[name].fmu.variables[variable], c)
-            for (name, variable), c in pairs
-            if name
+            (self.components[name].variables[variable], c) for (name, variable), c in pairs if name
         ]
 
     def _derived(self, ends: list[tuple[Variable, Connection]]) -> Value | None:

@@ -7,9 +7,9 @@ from typing import Any
 
 from shipcosim.errors import Problem, ShipcosimError, it_has, suggestion
 from shipcosim.ssp.flatten.connections import Connection
-from shipcosim.ssp.fmu.description import FmuDescription
+from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.read.package import Package
-from shipcosim.ssp.read.structure import Experiment
+from shipcosim.ssp.read.structure import End, Experiment
 from shipcosim.ssp.xml.values import Value
 from shipcosim.units import Unit, find_unit
 
@@ -41,14 +41,19 @@ class Component:
     implementation: str = "any"
     tolerances: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def variables(self) -> Mapping[str, Variable]:
+        """Variables of its FMU, by name."""
+        return self.fmu.variables
+
     def start_value(self, variable: str) -> Value | None:
         """Start value of a variable: the system's, else the FMU's own, else None."""
-        return self.start.get(variable, self.fmu.variables[variable].start)
+        return self.start.get(variable, self.variables[variable].start)
 
     @property
     def left_out(self) -> list[str]:
         """Parameters that the FMU must be given and the system does not set."""
-        known = self.fmu.variables.items()
+        known = self.variables.items()
         return [
             name for name, v in known if v.required and self.start.get(name, v.start) == v.start
         ]
@@ -128,7 +133,7 @@ class System:
         counts = f"{len(self.components)} components, {len(self.connections)} connections"
         return f"<System {self.name!r}: {counts}>"
 
-    def split(self, signal: str, where: str = "") -> tuple[str | None, str]:
+    def split(self, signal: str, where: str = "") -> End:
         """Component and variable that a signal's name means.
 
         Parameters
@@ -153,7 +158,7 @@ class System:
         # Names of components may contain dots: the longest one that fits wins.
         owners = [name for name in self.components if signal.startswith(f"{name}.")]
         for name in sorted(owners, key=len, reverse=True):
-            if signal[len(name) + 1 :] in self.components[name].fmu.variables:
+            if signal[len(name) + 1 :] in self.components[name].variables:
                 return name, signal[len(name) + 1 :]
         raise ShipcosimError(self._no_signal(signal, owners, where))
 
@@ -177,7 +182,7 @@ class System:
         if owners:
             owner = max(owners, key=len)
             variable = signal[len(owner) + 1 :]
-            known = self.components[owner].fmu.variables
+            known = self.components[owner].variables
             return Problem(where, f"{owner} has no variable '{variable}'.", it_has(variable, known))
         element = signal.split(".")[0]
         known = [*self.components, *self.inputs, *self.outputs, *self.parameters]
@@ -204,13 +209,13 @@ def alias_remarks(
         # Values by variable, in the order in which the FMU gets them; a connection's is not known.
         given: dict[str, Any] = dict(component.start)
         for is_initial in (True, False):
-            for name in component.fmu.variables:
+            for name in component.variables:
                 if fed.get((component.name, name)) is is_initial:
                     given.pop(name, None)
                     given[name] = f"the value that is connected to {name}"
         names: dict[tuple, dict[str, Any]] = defaultdict(dict)
         for name, value in given.items():
-            variable = component.fmu.variables[name]
+            variable = component.variables[name]
             kind = "Integer" if variable.kind == "Enumeration" else variable.kind
             if variable.negated and not isinstance(value, str):
                 value = -value

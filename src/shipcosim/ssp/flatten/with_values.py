@@ -53,7 +53,7 @@ def with_values(system: System, values: Mapping[str, Value], where: str = "") ->
             remedy = "Set what feeds it, or hold it with an event (override)."
             findings.error(place, f"It is connected: {source} gives its value.", remedy)
         elif component is not None:
-            variable = system.components[component].fmu.variables[name]
+            variable = system.components[component].variables[name]
             unit = system.unit_of(component, name)
             _set(starts[component], variable, _number(value, variable.kind, unit), place, findings)
         elif name in inputs:

@@ -25,15 +25,13 @@ from shipcosim.ssp.xml.document import (
 from shipcosim.ssp.xml.validation import validate
 
 
-def read_fmu(path: AnyPath, shown: str | None = None) -> FmuDescription:
+def read_fmu(path: AnyPath) -> FmuDescription:
     """Read the description of an FMU without running any of it.
 
     Parameters
     ----------
     path : path
         The .fmu.
-    shown : str, optional
-        Its name in messages, where it is not `path`.
 
     Returns
     -------
@@ -45,7 +43,7 @@ def read_fmu(path: AnyPath, shown: str | None = None) -> FmuDescription:
         With everything that is wrong with it.
     """
     findings = Findings()
-    fmu = describe_fmu(path, findings, shown)
+    fmu = describe_fmu(path, findings)
     if fmu is None or findings.errors:
         raise ShipcosimError(findings.errors)
     return fmu

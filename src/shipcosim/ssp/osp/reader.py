@@ -4,7 +4,7 @@ The result is a system ready to run. Elements mean what libcosim (tried: libcosi
 them for, where known.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from math import isfinite
 from os import PathLike
 from pathlib import Path
@@ -12,7 +12,7 @@ from pathlib import Path
 from shipcosim.ssp.flatten.array_sizes import resized, sizes_wanted
 from shipcosim.ssp.flatten.assemble import components_of, parameter_sets, remark_unconnected
 from shipcosim.ssp.flatten.bindings import apply_set
-from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.hierarchy import Hierarchy, Swapped
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
 from shipcosim.ssp.flatten.start_values import Settings
 from shipcosim.ssp.flatten.swapped import take_swapped
@@ -41,7 +41,7 @@ def assemble_osp(
     parameters: ParameterSets,
     fmus: Iterable[str | PathLike[str]],
     findings: Findings,
-    swapped: Mapping[str, Path] | None = None,
+    swapped: Swapped = None,
 ) -> System | None:
     """System of an OspSystemStructure.xml.
 

@@ -7,6 +7,7 @@ from xml.sax.saxutils import quoteattr
 
 from shipcosim.ssp.flatten.connections import Connection
 from shipcosim.ssp.osp.schema import NAMESPACE
+from shipcosim.ssp.read.structure import End
 from shipcosim.ssp.xml.markup import free_name
 from shipcosim.ssp.xml.values import Value, text_of
 
@@ -124,12 +125,12 @@ def _connections(
     return linear + sums, joined
 
 
-def _signal(end: tuple[str | None, str], function: str, name: str) -> str:
+def _signal(end: End, function: str, name: str) -> str:
     signal = f'<Signal function="{function}" name="{name}"/>'
     return f"<SignalConnection>{_variable(end)}{signal}</SignalConnection>"
 
 
-def _variable(end: tuple[str | None, str]) -> str:
+def _variable(end: End) -> str:
     return f"<Variable simulator={quoteattr(end[0] or '')} name={quoteattr(end[1])}/>"
 
 

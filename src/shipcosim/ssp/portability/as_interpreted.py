@@ -118,7 +118,7 @@ def _takes(host: str, value: ParameterValue, variable: Variable, fmu: FmuDescrip
 
 
 def _value(component: Component, variable: str, applied: Mapping[str, Value]) -> Value | None:
-    return applied.get(variable, component.fmu.variables[variable].start)
+    return applied.get(variable, component.variables[variable].start)
 
 
 def _instead(component: Component, variable: str, applied: Mapping[str, Value]) -> str:

@@ -1,10 +1,11 @@
 """Checks of a system for a tool that reads its file itself: features it ignores or misreads."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 from shipcosim.errors import Problem, error_at, suggestion
+from shipcosim.ssp.flatten.hierarchy import Swapped
 from shipcosim.ssp.osp.reader import assemble_osp, osp_file
 from shipcosim.ssp.portability.subject import Subject, subject_of
 from shipcosim.ssp.portability.support_table import FEATURES, HOSTS, TOLD, Feature
@@ -28,7 +29,7 @@ def check_for(
     path: AnyPath,
     *,
     fmus: Iterable[AnyPath] = (),
-    components: Mapping[str, Path] | None = None,
+    components: Swapped = None,
 ) -> list[Problem]:
     """Features of a file that a tool would ignore, misread, refuse or crash on.
 
@@ -80,9 +81,7 @@ def _problems(host: str, feature: Feature, subject: Subject) -> Iterator[Problem
         yield replace(problem, severity="remark") if verdict == TOLD else problem
 
 
-def _osp_subject(
-    path: Path, fmus: Iterable[AnyPath], components: Mapping[str, Path] | None
-) -> Subject | None:
+def _osp_subject(path: Path, fmus: Iterable[AnyPath], components: Swapped) -> Subject | None:
     findings = Findings()
     system = assemble_osp(path, (), fmus, findings, components)
     document = read_document(path, str(path), findings)

@@ -1,14 +1,13 @@
 """Input to the portability checks: an SSP as written in its outermost file, and as resolved."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import lxml.etree as etree
 
 from shipcosim.ssp.flatten.assemble import assemble_package
-from shipcosim.ssp.flatten.hierarchy import Hierarchy
+from shipcosim.ssp.flatten.hierarchy import Hierarchy, Swapped
 from shipcosim.ssp.flatten.ports import Key, Port
 from shipcosim.ssp.flatten.system import System
 from shipcosim.ssp.flatten.walk import take_in
@@ -140,7 +139,7 @@ class Subject:
 def subject_of(
     path: AnyPath,
     fmus: Iterable[AnyPath] = (),
-    components: Mapping[str, Path] | None = None,
+    components: Swapped = None,
 ) -> Subject | None:
     """Subject of an SSP, or None if it has errors.
 

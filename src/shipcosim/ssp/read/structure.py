@@ -10,6 +10,10 @@ from shipcosim.ssp.read.parameters import Transformation
 from shipcosim.ssp.xml.document import Document
 from shipcosim.units import Unit
 
+End = tuple[str | None, str]
+"""An end of a connection: its component, or none for a connector of the system, and its connector."""
+
+
 FMU = "application/x-fmu-sharedlibrary"
 SSD = "application/x-ssp-definition"
 SSP = "application/x-ssp-package"
@@ -94,7 +98,7 @@ class Link:
     end_indices: tuple[int, ...] = ()
 
     @property
-    def ends(self) -> tuple[tuple[str | None, str], tuple[str | None, str]]:
+    def ends(self) -> tuple[End, End]:
         """Element and connector of the start, and of the end."""
         return (self.start_element, self.start_connector), (self.end_element, self.end_connector)
 

@@ -3,10 +3,10 @@
 import importlib.util
 
 import pytest
+from fmi.export.compile_loader import compile_loader
 from fmi.export.test_loader import REMEDY
 
 from shipcosim.fmi.export.loader import SUFFIXES, loader_for
-from shipcosim.fmi.export.loader.compile import compile_loader
 
 
 @pytest.mark.parametrize("platform", SUFFIXES)

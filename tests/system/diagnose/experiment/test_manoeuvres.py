@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 from diagnose import twin
+from manoeuvres.testability import testability as nats_of
 
 from shipcosim.diagnose.experiment.design import CLEAR, design_experiment, separations
-from shipcosim.diagnose.experiment.design import testability as nats_of
 from shipcosim.diagnose.experiment.manoeuvres import (
     LONGEST,
     Manoeuvre,

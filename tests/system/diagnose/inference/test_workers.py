@@ -13,7 +13,7 @@ from shipcosim.diagnose.inference.workers import each
 
 @pytest.fixture
 def four_cores(monkeypatch):
-    monkeypatch.setattr(workers, "_cores", lambda: 4)
+    monkeypatch.setattr(workers, "cores", lambda: 4)
 
 
 def test_results_come_in_the_order_of_the_arguments(four_cores):

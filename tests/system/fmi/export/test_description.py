@@ -5,7 +5,7 @@ import pytest
 from fmpy import read_model_description
 
 from shipcosim.fmi import Fmu, Input, Output, Parameter
-from shipcosim.fmi.export.description import model_description, table_of_variables
+from shipcosim.fmi.export.description import model_description
 
 SCRIPT = '''
 from dataclasses import dataclass
@@ -138,16 +138,3 @@ def test_an_unknown_unit_is_reported_with_its_variable():
 
     with pytest.raises(ValueError, match="a: unit 'furlong'"):
         model_description(Odd, "odd", "guid")
-
-
-def test_the_table_for_readmes_has_a_row_per_variable():
-    class Two(Fmu):
-        a = Input("N", "force | push")
-        b = Output("m/s", "speed")
-        c = Parameter(2.0, "s", "time constant", tunable=True)
-
-    assert table_of_variables(Two).splitlines()[2:] == [
-        "| `a` | input | Real | N | `0.0` | force &#124; push |",
-        "| `b` | output | Real | m/s |  | speed |",
-        "| `c` | tunable parameter | Real | s | `2.0` | time constant |",
-    ]

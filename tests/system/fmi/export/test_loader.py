@@ -6,11 +6,11 @@ import subprocess
 import zipfile
 
 import pytest
+from fmi.export.compile_loader import digest
 
 from shipcosim.fmi.export.loader import SUFFIXES, loader_for
-from shipcosim.fmi.export.loader.compile import digest
 
-REMEDY = "Run `python -m shipcosim.fmi.export.loader.compile`."
+REMEDY = "Run `python tests/bench/fmi/export/compile_loader.py`."
 
 
 @pytest.mark.parametrize("platform", SUFFIXES)

@@ -9,6 +9,7 @@ import pytest
 import torch
 from ships import parameters
 
+from dead_reckoning.paper_ii_worlds import worlds_of_test
 from shipcosim.learn.dead_reckoning import inputs, motion_filter, paper_ii, recipes, worlds
 from shipcosim.learn.dead_reckoning.regions import TIMES, calibrated
 from shipcosim.learn.networks import Recurrent
@@ -43,13 +44,13 @@ def test_no_world_serves_two_purposes():
     ]
     assert sum(map(len, purposes)) == len(set.union(*purposes))
     drawn = [worlds.drawn(seed) for seed in (*worlds.TRAINING, *worlds.CALIBRATION, *worlds.TUNING)]
-    held_out = worlds.worlds_of_test(worlds.HELD_OUT)
+    held_out = worlds_of_test(worlds.HELD_OUT)
     weather = {(world.wave_height, world.current_to) for world in [*drawn, *held_out]}
     assert len(weather) == len(drawn) + len(held_out)
 
 
 def test_the_test_has_every_sea_state_from_every_direction():
-    given = worlds.worlds_of_test(worlds.HELD_OUT)
+    given = worlds_of_test(worlds.HELD_OUT)
     assert len({(world.wave_height, round(world.wind_from[1], 6)) for world in given}) == 48
     assert {(world.wave_height, world.wind_speed[1]) for world in given} == set(worlds.SEA_STATES)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from ships import parameters
+from wave_suppression import wave_suppression
 
 from shipcosim.models.control.margins import (
     AXES,
@@ -13,7 +14,6 @@ from shipcosim.models.control.margins import (
     is_stable,
     linear_loop,
     margins,
-    wave_suppression,
 )
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters

@@ -23,6 +23,7 @@ from shipcosim.diagnose.log.thresholds import (
     RUN_CHANCE,
     SHORTEST_GAP,
 )
+from shipcosim.diagnose.numerics import finite
 
 LIFELESS = "values never change, while others say that they should: not used"
 LEAPING = "the ship leaps many times faster than she goes"
@@ -80,7 +81,7 @@ def lifeless(log: dict) -> list[Finding]:
     constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
     moved = all(role in log and _changes(log[role]) for role in ("north", "east"))
     turned = "heading" in log and _changes(
-        np.degrees(np.unwrap(np.radians(_known(log["heading"]))))
+        np.degrees(np.unwrap(np.radians(finite(log["heading"]))))
     )
     sailed = any(role in log and _changes(log[role]) for role in ("surge", "sway"))
     should = {
@@ -96,12 +97,8 @@ def lifeless(log: dict) -> list[Finding]:
     return [Finding("gap", None, "data", 1.0, {}, whole, roles, note=LIFELESS)] if roles else []
 
 
-def _known(values):
-    return values[np.isfinite(values)]
-
-
 def _is_constant(values):
-    values = _known(values)
+    values = finite(values)
     is_one = len(values) >= FEWEST_CONSTANT and np.ptp(values) == 0.0
     return (
         is_one and len(np.unique(np.signbit(values))) == 1
@@ -110,7 +107,7 @@ def _is_constant(values):
 
 def _changes(values):
     """Whether a channel changes by much more than its noise and resolution."""
-    values = _known(values)
+    values = finite(values)
     if len(values) < FEWEST_CONSTANT:
         return False
     return bool(np.ptp(values) > CHANGES * (noise_of(values) + quantum(values)))
@@ -228,13 +225,13 @@ def _bend(values, role):
 def _straight(values, role):
     """Largest bend of a straight line after rounding: two of the channel's smallest steps."""
     bends = _bend(values, role)
-    usual = np.median(bends[np.isfinite(bends)]) if np.isfinite(bends).any() else 0.0
+    usual = np.median(finite(bends)) if np.isfinite(bends).any() else 0.0
     return 2.02 * quantum(values) + 1e-3 * usual
 
 
 def quantum(values: np.ndarray) -> float:
     """Resolution of a channel: the smallest step between its values that is no rounding error; 0 if it is fine."""
-    levels = np.unique(values[np.isfinite(values)])
+    levels = np.unique(finite(values))
     steps = np.diff(levels)
     steps = steps[steps > 1e-9 * (np.abs(levels).max(initial=0.0) + 1e-300)]
     return float(np.quantile(steps, 0.01)) if len(steps) and len(steps) < 0.8 * len(values) else 0.0
@@ -282,7 +279,7 @@ def _with_followers(log, run):
 
 
 def _range(values):
-    values = values[np.isfinite(values)]
+    values = finite(values)
     return np.ptp(values) if len(values) else 0.0
 
 
@@ -292,7 +289,7 @@ def _follows(inner, role, kind, limit):
     if kind == HELD:
         return not np.nanmax(np.abs(np.diff(inner)), initial=0.0) > 0.0
     bends = _bend(inner, role)
-    return bool((bends[np.isfinite(bends)] <= 1.5 * limit).all())
+    return bool((finite(bends) <= 1.5 * limit).all())
 
 
 def wraps(log: dict) -> list[Finding]:
@@ -303,7 +300,9 @@ def wraps(log: dict) -> list[Finding]:
     heading = log["heading"]
     bad = np.zeros(len(heading), bool)
     fine = quantum(heading)
-    faster = _no_turn(heading)
+    # Change from row to row that is no turn of this craft, however agile she is. [deg]
+    change = np.abs(wrap_series(np.diff(finite(heading))))
+    faster = max(NO_TURN, FASTER * float(np.quantile(change, 0.75))) if len(change) else NO_TURN
     full = np.where(
         np.abs(heading) <= fine, heading + 360.0, heading
     )  # 359.98 rounded is written as 0.0
@@ -323,12 +322,6 @@ def wraps(log: dict) -> list[Finding]:
         if segments
         else []
     )
-
-
-def _no_turn(heading):
-    """Change from row to row that is no turn of this craft, however agile she is. [deg]"""
-    change = np.abs(wrap_series(np.diff(heading[np.isfinite(heading)])))
-    return max(NO_TURN, FASTER * float(np.quantile(change, 0.75))) if len(change) else NO_TURN
 
 
 def _long_way(time, heading, a, b, tolerance, faster):

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import finite
 from shipcosim.dialects import NOTHING, WITH_UNIT
 
 _SIDES = ("N", "S", "E", "W")  # after a number of a position, no unit
@@ -87,7 +88,7 @@ def without_fillers(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str
     >>> without_fillers("surge", np.array([1.0, -9999.0, 1.5, -9999.0]))[0].tolist()
     [1.0, nan, 1.5, nan]
     """
-    known = values[np.isfinite(values)]
+    known = finite(values)
     for filler in (known.min(), known.max()) if len(known) > 2 else ():
         rest = known[known != filler]
         if filler not in _FILLERS or len(known) - len(rest) < 2 or not len(rest):

@@ -6,7 +6,7 @@ import datetime
 import zipfile
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.errors import error_at, suggestion
 
 LARGEST_WORKBOOK = 1 << 30
 """Most bytes that a workbook may unpack to."""
@@ -36,9 +36,7 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
         import openpyxl
     except ImportError as error:
         remedy = "Install it by `pip install shipcosim[excel]`, or save the sheet as .csv."
-        raise ShipcosimError(
-            Problem(str(path), "workbooks of Excel need openpyxl.", remedy)
-        ) from error
+        raise error_at(str(path), "workbooks of Excel need openpyxl.", remedy) from error
     try:
         with zipfile.ZipFile(path) as parts:
             size = sum(part.file_size for part in parts.infolist())
@@ -49,17 +47,11 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
             one.title: [row for row in one.iter_rows(values_only=True)] for one in book.worksheets
         }
     except Exception as error:  # openpyxl raises what zip, XML and its own code do
-        raise ShipcosimError(
-            Problem(str(path), f"is no workbook that can be read: {error}.")
-        ) from error
+        raise error_at(str(path), f"is no workbook that can be read: {error}.") from error
     if sheet is not None and sheet not in sheets:
-        raise ShipcosimError(
-            Problem(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
-        )
+        raise error_at(str(path), f"has no sheet '{sheet}'.", suggestion(sheet, sheets))
     if not sheets:
-        raise ShipcosimError(
-            Problem(str(path), "is no workbook that can be read: it has no sheet.")
-        )
+        raise error_at(str(path), "is no workbook that can be read: it has no sheet.")
     used = sheet or max(sheets, key=lambda name: sum(len(row) for row in sheets[name]))
     rows = [[_text(cell) for cell in row] for row in sheets[used]]
     said = (

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.dialects import cells_in, is_comment, is_figure, is_nothing, separator_of
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 
 @dataclass(frozen=True)
@@ -69,10 +69,8 @@ def layout_of(
     if header is None:
         names = ", ".join(f'"column {i + 1}"' for i in range(min(width, 3)))
         found = f"no names of columns stand above the first row of numbers, line {first + 1}, which has {width}."
-        raise ShipcosimError(
-            Problem(
-                source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
-            )
+        raise error_at(
+            source, found, f"Name them in a channel file: file = {{names = [{names}, ...]}}."
         )
     if (
         separator != ","
@@ -108,13 +106,9 @@ def _first_row(source: str, lines: list[str], separator: str) -> tuple[int, int]
         ):
             return i, width
     if rows and width > 1:
-        raise ShipcosimError(
-            Problem(source, "has no row below its header.", "Each row is a time and its values.")
-        )
+        raise error_at(source, "has no row below its header.", "Each row is a time and its values.")
     remedy = "It should be a table: a line of names, then rows of as many cells."
-    raise ShipcosimError(
-        Problem(source, "no table is found in it: no rows of several numbers.", remedy)
-    )
+    raise error_at(source, "no table is found in it: no rows of several numbers.", remedy)
 
 
 def _header(lines, above, separator, width, is_unit):

@@ -9,7 +9,8 @@ import numpy as np
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.table import LogColumns
-from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.diagnose.numerics import finite
+from shipcosim.errors import error_at, suggestion
 
 _NAMES = (
     "name",
@@ -48,7 +49,7 @@ def spread(log: LogColumns, form: FileLayout) -> LogColumns:
     for name in filter(None, (form.name, form.value)):
         if name not in log.values:
             found = f"there is no column '{name}'."
-            raise ShipcosimError(Problem(log.source, found, suggestion(name, log.values)))
+            raise error_at(log.source, found, suggestion(name, log.values))
     names, value = _long(log, form)
     if not names or value is None:
         return log
@@ -89,7 +90,7 @@ def _is_clock(values):
     if values.dtype.kind == "O":
         first = next((str(value) for value in values if value is not None), "")
         return sum(char.isdigit() for char in first) >= 4
-    return values.dtype.kind in "fM" and len(np.unique(values[np.isfinite(values)])) > 1
+    return values.dtype.kind in "fM" and len(np.unique(finite(values))) > 1
 
 
 def _wide(log, names, value, clock, unit):
@@ -143,8 +144,8 @@ def brought_together(
     time, signals and list of str
         Interpolated between a channel's own times, angles the short way round, not across holes; what is to be said.
     """
-    finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
-    there = {name: rows for name, rows in finite.items() if rows.any()}
+    is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
+    there = {name: rows for name, rows in is_finite.items() if rows.any()}
     counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))
     if len(there) < 3 or (counts > 0.5 * len(there)).mean() > _ALONE:
         return time, signals, []
@@ -154,7 +155,7 @@ def brought_together(
     clock = np.unique(time[there[base] & np.isfinite(time)])
     found = {}
     for name, (values, unit) in signals.items():
-        rows = np.flatnonzero(finite[name] & np.isfinite(time))
+        rows = np.flatnonzero(is_finite[name] & np.isfinite(time))
         rows = rows[np.argsort(time[rows], kind="stable")]
         rows = rows[np.diff(time[rows], prepend=-np.inf) > 0.0]
         found[name] = at_times(clock, time[rows], values[rows], unit), unit

@@ -15,7 +15,7 @@ import numpy as np
 
 from shipcosim.diagnose.log.files.interpolation import at_times
 from shipcosim.diagnose.log.files.times import DAY, seconds_of, seconds_of_clock
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 _SENTENCE = re.compile(
     r"(?P<before>[^$!]*)[$!](?P<body>[A-Z][A-Z0-9]{3,7},[^*\r\n\"]*)(?:\*(?P<sum>[0-9A-Fa-f]{2}))?.*"
@@ -176,10 +176,8 @@ def columns_of_sentences(
     count = len(read.sentences) + len(read.damaged)
     if len(read.damaged) > _MOST_DAMAGED * count:
         found = f"{len(read.damaged)} of {count} sentences of NMEA do not fit their checksum or their form."
-        raise ShipcosimError(
-            Problem(
-                f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table."
-            )
+        raise error_at(
+            f"{source}, line {read.damaged[0] + 1}", found, "Record them anew, or as a table."
         )
     said = _told(read)
     times, more = _times(source, read)
@@ -188,7 +186,7 @@ def columns_of_sentences(
         found = (
             f"holds sentences of NMEA, and none gives a channel: {', '.join(read.unread) or 'ZDA'}."
         )
-        raise ShipcosimError(Problem(source, found, f"Read are {', '.join(_KINDS)}."))
+        raise error_at(source, found, f"Read are {', '.join(_KINDS)}.")
     base = next(name for name in ("heading", "latitude", *channels) if name in channels)
     clock = channels[base][0]
     values = {"time": clock} | {
@@ -268,7 +266,7 @@ def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
     if len(timed) < 2:
         found = "holds sentences of NMEA, and none of GGA, RMC, GLL and ZDA says the time."
         remedy = "Log one of them too, or the time of reception before each sentence."
-        raise ShipcosimError(Problem(source, found, remedy))
+        raise error_at(source, found, remedy)
     rows = np.array([k for k, _ in timed])
     seconds, said = _with_dates(timed)
     line = np.array([number for number, *_ in read.sentences], float)

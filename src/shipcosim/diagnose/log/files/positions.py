@@ -6,6 +6,8 @@ import re
 
 import numpy as np
 
+from shipcosim.diagnose.numerics import finite
+
 MINUTES = "ddmm.mmmm"
 """Spelling of the unit of latitudes and longitudes in NMEA 0183: degrees times 100 plus minutes."""
 HEMISPHERES = {"latitude": {"N": 1.0, "S": -1.0}, "longitude": {"E": 1.0, "W": -1.0}}
@@ -30,7 +32,7 @@ def is_minutes(values: np.ndarray, largest: float) -> bool:
     >>> [is_minutes(np.array([value]), 90.0) for value in (6324.0949, 63.4, 6390.0)]
     [True, False, False]
     """
-    known = np.abs(values[np.isfinite(values)])
+    known = np.abs(finite(values))
     if not len(known) or (known > largest).mean() < 0.5:
         return False
     return bool(

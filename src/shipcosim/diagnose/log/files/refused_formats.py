@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 
 _SHEET = "Save it as .xlsx or .csv, or convert it: `libreoffice --headless --convert-to xlsx FILE`."
 _MATLAB = (
@@ -80,11 +80,11 @@ def refuse_foreign(path: Path) -> None:
     if head.startswith(b"PK\x03\x04") and suffix not in (".xlsx", ".xlsm"):
         kind = next((kind for mark, kind in _ZIPPED if mark in head), ".zip")
         if kind not in _BY_NAME:
-            raise ShipcosimError(Problem(str(path), f"is {kind}.", "Name it .xlsx."))
+            raise error_at(str(path), f"is {kind}.", "Name it .xlsx.")
     if kind is None and suffix in _BY_NAME and not head.startswith(b"\x1f\x8b"):
         kind = suffix
     if kind is not None:
         what, remedy = _BY_NAME[kind]
-        raise ShipcosimError(
-            Problem(str(path), f"is {what}, which is not read.", remedy.replace("FILE", path.name))
+        raise error_at(
+            str(path), f"is {what}, which is not read.", remedy.replace("FILE", path.name)
         )

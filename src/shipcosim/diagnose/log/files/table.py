@@ -19,7 +19,7 @@ from shipcosim.diagnose.log.files.refused_formats import refuse_foreign
 from shipcosim.diagnose.log.files.text import text_of
 from shipcosim.diagnose.log.names.units import is_unit, name_and_unit
 from shipcosim.dialects import NOTHING, cells_in, decimal_of, is_comment
-from shipcosim.errors import Problem, ShipcosimError, reading
+from shipcosim.errors import Problem, ShipcosimError, error_at, reading
 
 _FEW = (
     0.01  # share of rows of another length that are left out; more make the file no table. Assumed.
@@ -73,11 +73,9 @@ def read_file(path: Path, form: FileLayout | None = None) -> LogColumns:
 
 def _read(path: Path, form: FileLayout) -> LogColumns:
     if path.is_dir():
-        raise ShipcosimError(
-            Problem(str(path), "is a folder, no table.", "Name the file of a log.")
-        )
+        raise error_at(str(path), "is a folder, no table.", "Name the file of a log.")
     if not path.is_file():
-        raise ShipcosimError(Problem(str(path), "there is no such file."))
+        raise error_at(str(path), "there is no such file.")
     if path.suffix.lower() in (".nc", ".parquet"):
         from shipcosim.series import read_columns
 
@@ -220,7 +218,7 @@ def _checked_frame(source: str, rows: list[str], separator: str, width: int) -> 
     if frame is None or len(frame) != len(rows):
         row = next((row for row in rows if row.count('"') % 2), rows[0])
         found = f"a quotation mark is opened in a row and not closed in it: '{row[:60]}'{why}."
-        raise ShipcosimError(Problem(source, found, "Close it, or leave it out."))
+        raise error_at(source, found, "Close it, or leave it out.")
     return frame
 
 
@@ -269,7 +267,7 @@ def _with_decimal_sign(source, frame, rows, separator, form):
             remedy = (
                 'Say which in a channel file: file = {decimal = ","} groups thousands by points.'
             )
-            raise ShipcosimError(Problem(source, found, remedy))
+            raise error_at(source, found, remedy)
         frame[i] = anew[i]
     return decimal, frame
 

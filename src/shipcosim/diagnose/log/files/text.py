@@ -6,7 +6,7 @@ import codecs
 import zlib
 from pathlib import Path
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.errors import error_at
 from shipcosim.series import unpacked_bytes
 
 _MARKS = (
@@ -34,24 +34,20 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
     try:
         content = unpacked_bytes(path)
     except (OSError, EOFError, zlib.error) as error:
-        raise ShipcosimError(Problem(str(path), f"cannot be read: {error}.")) from error
+        raise error_at(str(path), f"cannot be read: {error}.") from error
     except MemoryError as error:
-        raise ShipcosimError(
-            Problem(str(path), "is larger than the memory.", "Read a part of it.")
-        ) from error
+        raise error_at(str(path), "is larger than the memory.", "Read a part of it.") from error
     if not content.strip(b"\x00 \r\n\t"):
-        raise ShipcosimError(Problem(str(path), "is empty.", "Each row is a time and its values."))
+        raise error_at(str(path), "is empty.", "Each row is a time and its values.")
     used = encoding or _encoding_of(content)
     try:
         text = content.decode(used)
     except (UnicodeDecodeError, LookupError) as error:
         remedy = 'Say its encoding in a channel file: file = {encoding = "latin-1"}.'
-        raise ShipcosimError(
-            Problem(str(path), f"is no text in {used}: {error}.", remedy)
-        ) from error
+        raise error_at(str(path), f"is no text in {used}: {error}.", remedy) from error
     if "\x00" in text[:4096]:
-        raise ShipcosimError(
-            Problem(str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc.")
+        raise error_at(
+            str(path), "is no text: it holds zero bytes.", "Tables are text, .xlsx or .nc."
         )
     is_usual = encoding is not None or used in ("utf-8", "utf-8-sig")
     return text.removeprefix("\ufeff"), [] if is_usual else [f"Read as {used}, as it is not UTF-8."]

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.errors import Problem, ShipcosimError
+from shipcosim.diagnose.numerics import finite
+from shipcosim.errors import error_at
 
 EPOCHS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 _SINCE = 3e8  # s after 1970 that a log can be from: 1979 to 2103
@@ -78,7 +79,7 @@ def epoch_unit(values: np.ndarray) -> str | None:
     >>> epoch_unit(np.array([1.7110e18, 1.7111e18])), epoch_unit(np.array([1711107166.2])), epoch_unit(np.arange(9.0))
     ('ns', 's', None)
     """
-    known = values[np.isfinite(values)]
+    known = finite(values)
     if not len(known):
         return None
     first, last = np.quantile(known, [0.02, 0.98])
@@ -144,7 +145,7 @@ def seconds_of(
     times, said = _decided(readings, str(known.iloc[0]))
     if zone is not None:
         times = times - zone
-        times = times - times[np.isfinite(times)][0]
+        times = times - finite(times)[0]
     return times, said
 
 
@@ -230,7 +231,7 @@ def _minutes_and_seconds(cells, unit):
     if not has_fraction and unit != "mm:ss" and minutes.max() < 24:
         found = f"'{cells.dropna().iloc[0]}' can be hours and minutes or minutes and seconds."
         remedy = 'Say which as its unit in a channel file: time = {column = "...", unit = "mm:ss"}, or "hh:mm".'
-        raise ShipcosimError(Problem("", found, remedy))
+        raise error_at("", found, remedy)
     fraction = ("0" + parts["fraction"].fillna("")).astype(float)
     return seconds_of_clock((60.0 * minutes + seconds + fraction).to_numpy(float), 3600.0)
 
@@ -277,11 +278,11 @@ def _decided(readings: dict[str, np.ndarray], shown: str) -> tuple[np.ndarray, l
         for order, v in readings.items()
     )
     remedy = f'Say which in a channel file: file = {{dates = "{orders[0]}"}}.'
-    raise ShipcosimError(Problem("", f"dates such as '{shown}' can be {both}.", remedy))
+    raise error_at("", f"dates such as '{shown}' can be {both}.", remedy)
 
 
 def _largest_step(values):
-    known = values[np.isfinite(values)]
+    known = finite(values)
     return float(np.abs(np.diff(known)).max()) if len(known) > 1 else 0.0
 
 

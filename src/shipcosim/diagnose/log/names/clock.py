@@ -11,6 +11,7 @@ from shipcosim.diagnose.log.files.times import epoch_unit, seconds_of
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.names.vocabulary import words_of
 from shipcosim.diagnose.log.values import CLOCK_NUMBER
+from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import ShipcosimError
 
 _STEPS = (0.002, 30.0)  # s between rows of a log that a unit is chosen by. Assumed.
@@ -64,7 +65,7 @@ def _seconds_and_nanoseconds(log):
 
 
 def _all_between(values, least, most):
-    known = values[np.isfinite(values)]
+    known = finite(values)
     return bool(len(known)) and known.min() >= least and known.max() < most
 
 
@@ -81,7 +82,7 @@ def _usable(guess: Guess, log: LogColumns, form: FileLayout) -> Guess | None:
         return guess
     if guess.channel.nanoseconds:
         return guess
-    known = values[np.isfinite(values)]
+    known = finite(values)
     if len(np.unique(known[:1000])) < 2 and len(np.unique(known)) < 2:
         return None if guess.rank > EXACT else guess
     if epoch_unit(values):

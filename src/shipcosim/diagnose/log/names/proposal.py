@@ -21,6 +21,7 @@ from shipcosim.diagnose.log.names.guesses import (
 from shipcosim.diagnose.log.names.units import unit_for
 from shipcosim.diagnose.log.names.unstated_units import settled
 from shipcosim.diagnose.log.names.vocabulary import words_of
+from shipcosim.diagnose.numerics import finite
 
 _POSITIONS = (("north", "east"), ("latitude", "longitude"))
 _PAIRS = (
@@ -243,7 +244,7 @@ def _with_hemispheres(chosen, log, left):
 
 def _never_changes(guess, log):
     values = log.values[guess.column]
-    return values.dtype.kind == "f" and len(np.unique(values[np.isfinite(values)])) < 2
+    return values.dtype.kind == "f" and len(np.unique(finite(values))) < 2
 
 
 def _of_one_kind(chosen, log):

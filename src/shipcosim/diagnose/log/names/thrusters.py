@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 from shipcosim.diagnose.log.names.vocabulary import vocabulary, words_of
+from shipcosim.diagnose.numerics import finite
 
 _PWM = (850.0, 2150.0)  # us, pulse widths of servos and speed controllers
 _SURE = {"rpm", "azimuth", "thrust", "rudder", "force"}  # words that hardly say anything else
@@ -161,7 +162,7 @@ def _quantity(words):
 
 def _by_values(quantity, word, unit, values):
     """The quantity by its unit and its numbers besides."""
-    known = values[np.isfinite(values)] if values.dtype.kind == "f" else np.empty(0)
+    known = finite(values) if values.dtype.kind == "f" else np.empty(0)
     if unit in ("%", "pct", "percent"):
         return "percent", ""
     if unit in ("us", "µs", "pwm"):

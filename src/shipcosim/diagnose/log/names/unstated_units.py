@@ -13,6 +13,7 @@ from shipcosim.diagnose.log.names.evidence import frame_of_angle, unit_of_rate, 
 from shipcosim.diagnose.log.names.guesses import EXACT, GUESS, SURE, Guess
 from shipcosim.diagnose.log.roles import ROLES
 from shipcosim.diagnose.log.values import LARGEST, TEN_MILLIONTHS, values_of
+from shipcosim.diagnose.numerics import finite
 from shipcosim.errors import ShipcosimError
 
 _DEGREES = 1.02 * 2.0 * np.pi  # no angle in radians is larger
@@ -82,7 +83,7 @@ def _is_open(chosen, role):
 
 
 def _finite(values):
-    return values[np.isfinite(values)] if values.dtype.kind == "f" else np.empty(0)
+    return finite(values) if values.dtype.kind == "f" else np.empty(0)
 
 
 def _guess(chosen, role, unit, why):

@@ -143,7 +143,9 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
             + _ahead(relation, reading, evidence.courses)
         )
     if rate is not None:
-        said += _direction(rate, reading)
+        # Whether heading and yaw rate go the same way, as evidence.
+        agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
+        said += rate.evidence if agrees else 0.0
     said += _usual(evidence.speed, abs(reading.velocity), USUAL_SPEED) + _usual(
         evidence.step, reading.time, USUAL_STEP
     )
@@ -190,12 +192,6 @@ def _ahead(relation, reading, courses):
 def off_angle(relation: Relation, reading: LogInterpretation) -> float:
     """Angle between the change of position and what a reading makes of the velocity. [rad]"""
     return math.remainder(relation.factor.imag - reading.factor.imag, 2.0 * math.pi)
-
-
-def _direction(rate, reading):
-    """Whether heading and yaw rate go the same way, as evidence."""
-    agrees = (math.cos(rate.factor.imag) > 0.0) == (reading.rate_factor > 0.0)
-    return rate.evidence if agrees else 0.0
 
 
 def _off_position(relation, reading, slabs):

@@ -25,7 +25,7 @@ from shipcosim.diagnose.log.thresholds import (
     THROUGHOUT,
     UNLIKELY_READING,
 )
-from shipcosim.diagnose.numerics import root_mean_square
+from shipcosim.diagnose.numerics import finite, root_mean_square
 
 NOTHING_ELSE = "nothing else is wrong"
 DEGREE = float(np.degrees(1.0))
@@ -109,7 +109,7 @@ def evidence_of(log: dict) -> Evidence:
             positions[True] = metres["north"] + 1j * metres["east"]
         position = position_relations(log, headings, positions)
         speeds = np.hypot(log["surge"], log["sway"])
-        speeds = speeds[np.isfinite(speeds)]
+        speeds = finite(speeds)
         speed = root_mean_square(speeds) if speeds.size else None
         courses = {
             unit: _courses(log["surge"] + 1j * log["sway"], values)

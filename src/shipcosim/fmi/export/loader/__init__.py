@@ -1,6 +1,7 @@
 """The binary of our FMUs: finds a Python where the host has none, and passes all calls on to pythonfmu's binary.
 
-Compiled once, by `compile`, and kept here: whoever builds an FMU needs no compiler, and gets the same bytes everywhere.
+Compiled once, by tests/bench/fmi/export/compile_loader.py, and kept here: whoever builds an FMU needs no compiler, and
+gets the same bytes everywhere.
 """
 
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Compiles the loader: ``pip install -e .[native]``, then ``python -m shipcosim.fmi.export.loader.compile``.
+"""Compiles the loader: ``pip install -e .[native]``, then ``python tests/bench/fmi/export/compile_loader.py``.
 
 That compiler brings the headers and start-up code of every platform, so the bytes do not depend on the machine.
 """

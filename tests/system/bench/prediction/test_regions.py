@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("torch")
 
-from shipcosim.learn.prediction.regions import Scores, calibrated, scores
+from prediction.regions import Scores, calibrated, scores
 from shipcosim.learn.prediction.worlds import KNOWN, Record
 from shipcosim.models.prediction.regions import HORIZONS, JUST_LOST
 

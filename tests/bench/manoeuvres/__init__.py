@@ -1,0 +1,1 @@
+"""What manoeuvres show."""
