@@ -5,6 +5,7 @@ course c(t) does what its columns do, times c(t), as they are linear in θ.
 """
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, islice
@@ -58,6 +59,7 @@ from shipcosim.diagnose.inference.thresholds import (
     SIZES_OVER_TIME,
     WALK_IN_YAW,
 )
+from shipcosim.errors import ShipcosimError
 
 
 class _Try(NamedTuple):
@@ -187,8 +189,10 @@ def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
     """Causes with a course that are large enough to be named, likeliest first."""
     problem = explained.identification.problem
     likely = [one for base in _bases(explained) for one in _tries(problem, base)]
-    fitted = (_fitted(problem, one) for one in likely)
-    return sorted((one for one in fitted if _is_clear(one)), key=lambda one: -one.score)
+    tried = (_fitted(problem, one) for one in likely)
+    return sorted(
+        (one for one in tried if one is not None and _is_clear(one)), key=lambda one: -one.score
+    )
 
 
 def _otherwise(given: ExplainedLog, plain: Identification) -> Iterator[ExplainedLog]:
@@ -269,8 +273,11 @@ def _values(problem, group, theta) -> dict[str, float]:
     return found
 
 
-def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted:
-    """A cause with a course, linearised about its size where it is there and about none where it is not."""
+def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted | None:
+    """A cause with a course, linearised about its size where it is there and about none where it is not.
+
+    None where the ship's loads are no numbers along the log.
+    """
     base = one.base
     count = len(base.columns)
     own = own_columns(problem, (one.hypothesis,))
@@ -283,6 +290,8 @@ def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted:
         there = linearised_by_parts(base.about, base.record, model, own)
         linear = _mixed(plain, there, shares, count)
         filtered = inner_products(linear, problem.noise, problem.record)
+        if not np.isfinite(filtered.products).all():
+            return None
         centre = np.concatenate(
             [base.centre, [_theta_of(column, model, problem) for column in own]]
         )
@@ -494,11 +503,16 @@ def _estimates(hypothesis, columns, theta, covariance, value_of) -> dict[str, Pa
 
 
 def _is_clear(one: _Fitted) -> bool:
-    """Whether a cause with a course is large enough to matter and clearly off none."""
-    own = slice(-len(one.of.hypothesis.parameters), None)
+    """Whether a cause with a course is large enough to matter, clearly off none, and within its bounds."""
+    parameters = one.of.hypothesis.parameters
+    own = slice(-len(parameters), None)
     size = float(np.linalg.norm(one.theta[own]))
     spread = float(np.sqrt(np.diag(one.covariance)[own].mean()))
-    return size >= max(one.of.hypothesis.definition.least, DEVIATIONS * spread)
+    within = all(
+        of.bounds[0] < of.neutral + share * of.typical < of.bounds[1]
+        for of, share in zip(parameters, one.theta[own], strict=True)
+    )
+    return within and size >= max(one.of.hypothesis.definition.least, DEVIATIONS * spread)
 
 
 def _finding(one: _Fitted, chance: float) -> Finding:
@@ -560,13 +574,15 @@ def _of_its_rows(explained: ExplainedLog, best: _Try, course: CourseFound) -> Ex
     found = explained.identification
     time = found.repaired["time"].values
     longest = max(best.course.spells, key=lambda spell: spell[1] - spell[0])
-    if longest[1] - longest[0] < SHORTEST_SPELL:
-        # Too short to be looked at by itself: predictions are of the ship without the cause.
+    part = found.repaired.isel(time=slice(*np.searchsorted(time, longest)))
+    problem = None
+    if longest[1] - longest[0] >= SHORTEST_SPELL:
+        with suppress(ShipcosimError):  # too few whole rows for a ship of her size
+            problem = identification_problem(part, found.ship, found.causes, found.problem.noise)
+    if problem is None:
+        # Predictions are of the ship without the cause.
         nothing = without_causes(explained.fits)
         return replace(explained, fits=(nothing,), is_healthy=False, course=course)
-    rows = slice(*np.searchsorted(time, longest))
-    part = found.repaired.isel(time=rows)
-    problem = identification_problem(part, found.ship, found.causes, found.problem.noise)
     hypotheses = tuple(
         own
         for one in (best.hypothesis, *best.base.hypotheses)
