@@ -324,7 +324,26 @@ def responses(
     frequencies: np.ndarray,
     h: float,
 ) -> np.ndarray:
-    """Response of a periodic system at its excitation frequency; (frequencies, shown, pushed)."""
+    """Response of a periodic system at its excitation frequency.
+
+    Parameters
+    ----------
+    transitions : list of (n, n) array
+        From each state of a period to the next. [units of the states]
+    push : (..., n, m) array
+        What each excitation does to the states in a step. [units of the states]
+    shown : (q, n) array
+        Outputs by the states. [units of the outputs over those of the states]
+    frequencies : (w,) array
+        [rad/s]
+    h : float
+        Time step. [s]
+
+    Returns
+    -------
+    (w, q, m) array
+        Complex. [units of the outputs over those of the excitations]
+    """
     n, m = push.shape[-2:]
     count = len(transitions)
     # Excitation exp(j ω h k). In the periodic steady state x[k + period] = exp(j ω h period) x[k].
