@@ -31,7 +31,7 @@ def missing_libraries(path: Path) -> list[Problem]:
     """Libraries that an FMU's binary for this platform needs and that are not here, as errors.
 
     Only on Linux with glibc: its loader lists them without running any code of the binary. Elsewhere nothing is looked
-    at, and nothing is said.
+    at, and the list is empty.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from shipcosim.diagnose.hypotheses.catalogue import Hypothesis, hypotheses_of
 from shipcosim.diagnose.inference.evidence import evidence
 from shipcosim.diagnose.inference.fitting import IdentificationProblem, Regressor
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.regressors import screening_regressors
+from shipcosim.diagnose.inference.regressors import placed, regressors_of
 from shipcosim.diagnose.inference.thresholds import (
     DEVIATIONS,
     MORE_THAN_NOISE,
@@ -71,12 +71,9 @@ class Excitation:
 def excitation_of(log: JudgedLog) -> Excitation:
     """What a log tells of each cause that can be sought in it."""
     problem = log.problem
-    columns = list(without_causes(log.fits).columns)
-    groups = []
-    for hypothesis in problem.hypotheses:
-        for group in screening_regressors(hypothesis):
-            groups.append((hypothesis, list(range(len(columns), len(columns) + len(group)))))
-            columns.extend(group)
+    known = without_causes(log.fits).columns
+    columns = [*known, *regressors_of(problem.hypotheses)]
+    groups = [(one, places) for one, _, places in placed(problem.hypotheses, len(known))]
     products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
     without_wind = NULL_GAIN_WITHOUT_WIND if problem.record.wind is None else 0.0
     least = TESTABLE + usual_gain(problem.model) + without_wind

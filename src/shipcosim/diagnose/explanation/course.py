@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.finding import Candidate, Finding, Segment
-from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import Fit
 
 STEP = "step"
@@ -72,7 +71,6 @@ class CourseFound:
     ----------
     finding : Finding
         With its onset and course.
-    hypothesis : Hypothesis
     gain : float
         Log-evidence over the best set of causes that stay the same. [nats]
     rivals : tuple of Candidate
@@ -89,7 +87,6 @@ class CourseFound:
     """
 
     finding: Finding
-    hypothesis: Hypothesis
     gain: float
     rivals: tuple[Candidate, ...]
     sizes: tuple[SizeOverTime, ...]

@@ -43,7 +43,7 @@ from shipcosim.diagnose.inference.innovations import inner_products
 from shipcosim.diagnose.inference.linearisation import Regressor
 from shipcosim.diagnose.inference.parts import InParts, beside, linearised_by_parts
 from shipcosim.diagnose.inference.problem import identification_problem
-from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
+from shipcosim.diagnose.inference.regressors import placed, regressors_of, screening_regressors
 from shipcosim.diagnose.inference.thresholds import (
     APART,
     CALM_WALK,
@@ -148,7 +148,6 @@ def with_course(given: ExplainedLog, plain: Identification) -> ExplainedLog:
     hypothesis = best.of.hypothesis
     course = CourseFound(
         _finding(best, chance),
-        hypothesis,
         best.score - _cost(explained) - steady,
         rivals,
         _sizes_over_time(problem, best),
@@ -188,8 +187,11 @@ def _rivals(
 def _clear_tries(explained: ExplainedLog) -> list[_Fitted]:
     """Causes with a course that are large enough to be named, likeliest first."""
     problem = explained.identification.problem
-    likely = [one for base in _bases(explained) for one in _tries(problem, base)]
-    tried = (_fitted(problem, one) for one in likely)
+    tried = []
+    for base in _bases(explained):
+        # All columns of the base once, for every cause beside it.
+        linear = linearised_by_parts(base.about, base.record, base.model, base.columns)
+        tried += [_fitted(problem, one, linear) for one in _tries(problem, base, linear)]
     return sorted(
         (one for one in tried if one is not None and _is_clear(one)), key=lambda one: -one.score
     )
@@ -226,7 +228,7 @@ def _bases(explained: ExplainedLog) -> list[Fit]:
     return [nothing, *islice(named, 1)]
 
 
-def _tries(problem: IdentificationProblem, base: Fit) -> list[_Try]:
+def _tries(problem: IdentificationProblem, base: Fit, linear: InParts) -> list[_Try]:
     """The likeliest courses of the likeliest causes beside a fit, each by the evidence of its own columns."""
     known = {hypothesis.label for hypothesis in base.hypotheses}
     wanted = [
@@ -236,11 +238,10 @@ def _tries(problem: IdentificationProblem, base: Fit) -> list[_Try]:
     ]
     if not wanted:
         return []
-    blocks = _blocks(problem, base, wanted)
+    blocks = _blocks(problem, base, linear, wanted)
     first = sorted(_first_sight(blocks, wanted), key=lambda one: -one.score)
     labels = list(dict.fromkeys(one.hypothesis.label for one in first))[: 2 * LIKELIEST_COURSES]
     chosen = [one for one in first if one.hypothesis.label in labels]
-    linear = base.linear
     time = problem.record.time
     for one in chosen:
         linear = beside(linear, _shaped(problem.base_of(one.group), one.course.at(time)))
@@ -250,7 +251,7 @@ def _tries(problem: IdentificationProblem, base: Fit) -> list[_Try]:
     for one in chosen:
         own = range(place, place + len(one.group))
         place += len(one.group)
-        gain, theta = _weighed(products, base, own)
+        gain, theta, _ = _weighed(products, base, own)
         scored = one._replace(score=gain + one.occam, values=_values(problem, one.group, theta))
         label = one.hypothesis.label
         if label not in found or scored.score > found[label].score:
@@ -273,7 +274,7 @@ def _values(problem, group, theta) -> dict[str, float]:
     return found
 
 
-def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted | None:
+def _fitted(problem: IdentificationProblem, one: _Try, linear: InParts) -> _Fitted | None:
     """A cause with a course, linearised about its size where it is there and about none where it is not.
 
     None where the ship's loads are no numbers along the log.
@@ -282,14 +283,14 @@ def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted | None:
     count = len(base.columns)
     own = own_columns(problem, (one.hypothesis,))
     shares = one.course.at(problem.record.time)
-    plain = beside(base.linear, linearised_by_parts(base.about, base.record, base.model, own))
-    prior = np.concatenate([[column.prior for column in (*base.columns, *own)]])
+    plain = beside(linear, linearised_by_parts(base.about, base.record, base.model, own))
+    prior = np.array([column.prior for column in (*base.columns, *own)])
     values = bounded((one.hypothesis,), one.values)
     for _ in range(ROUNDS_OF_COURSE):
         model = base.model.with_values(values)
         there = linearised_by_parts(base.about, base.record, model, own)
-        linear = _mixed(plain, there, shares, count)
-        filtered = inner_products(linear, problem.noise, problem.record)
+        mixed = _mixed(plain, there, shares, count)
+        filtered = inner_products(mixed, problem.noise, problem.record)
         if not np.isfinite(filtered.products).all():
             return None
         centre = np.concatenate(
@@ -305,7 +306,7 @@ def _fitted(problem: IdentificationProblem, one: _Try) -> _Fitted | None:
     about = (model, base.about, base.motion, base.record)
     spread = base.std | deviations((one.hypothesis,), covariance)
     return _Fitted(
-        one, total, _FitWithCourse(hypotheses, values, spread, total, *posterior, *about, linear)
+        one, total, _FitWithCourse(hypotheses, values, spread, total, *posterior, *about, mixed)
     )
 
 
@@ -353,15 +354,15 @@ def _shaped(plain: InParts, shares: np.ndarray) -> InParts:
     return InParts(plain.rows, plain.columns, part)
 
 
-def _weighed(products, base, own) -> tuple[float, np.ndarray]:
-    """Score of own columns beside those of a fit [nats], and their θ."""
+def _weighed(products, base, own) -> tuple[float, np.ndarray, np.ndarray]:
+    """Score of own columns beside those of a fit [nats], their θ and its covariance."""
     count = len(base.columns)
     chosen = [0, *range(1, count + 1), *(1 + place for place in own)]
     # A course leaves the numbers' own tolerances in place: they are of all rows.
     prior = np.concatenate([[column.prior for column in base.columns], np.ones(len(own))])
     centre = np.concatenate([base.centre, np.zeros(len(own))])
-    score, theta, _ = evidence(products[np.ix_(chosen, chosen)], prior, centre)
-    return score, theta[count:]
+    score, theta, covariance = evidence(products[np.ix_(chosen, chosen)], prior, centre)
+    return score, theta[count:], covariance[count:, count:]
 
 
 @dataclass(frozen=True, eq=False)
@@ -408,18 +409,15 @@ class _Blocks:
         return 0.5 * (pull * mean).sum(1) - 0.5 * np.linalg.slogdet(inner)[1]
 
 
-def _blocks(problem, base, wanted) -> _Blocks:
+def _blocks(problem, base, linear, wanted) -> _Blocks:
     time = problem.record.time
     count = int(np.clip((time[-1] - time[0]) / COURSE_BLOCK, 8, MOST_COURSE_BLOCKS))
-    linear = beside(base.linear, problem.base_of(regressors_of(wanted)))
+    linear = beside(linear, problem.base_of(regressors_of(wanted)))
     parts = inner_products(linear, problem.noise, problem.record, count).blocks
     edges = np.linspace(time[0], time[-1] + problem.record.step, count + 1)
     places: dict[str, list[slice]] = {}
-    place = len(base.columns) + 1
-    for hypothesis in wanted:
-        for group in screening_regressors(hypothesis):
-            places.setdefault(hypothesis.label, []).append(slice(place, place + len(group)))
-            place += len(group)
+    for hypothesis, _, where in placed(wanted, len(base.columns) + 1):
+        places.setdefault(hypothesis.label, []).append(slice(where[0], where[-1] + 1))
     return _Blocks(base, parts, edges, places)
 
 
@@ -490,13 +488,13 @@ def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
     return one._replace(course=Course(SWITCHING, found), occam=occam)
 
 
-def _estimates(hypothesis, columns, theta, covariance, value_of) -> dict[str, ParameterEstimate]:
+def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEstimate]:
     """The parameters of a cause at some θ of its columns."""
     found = {}
     for of in hypothesis.parameters:
         which = [i for i, column in enumerate(columns) if of.path in column.changes]
         sizes = np.array([columns[i].changes[of.path] for i in which])
-        value = value_of(of.path) + float(sizes @ theta[which])
+        value = of.neutral + float(sizes @ theta[which])
         std = float(np.sqrt(sizes @ covariance[np.ix_(which, which)] @ sizes))
         found[of.name] = ParameterEstimate(value * of.factor, abs(std * of.factor), of.unit)
     return found
@@ -518,14 +516,11 @@ def _is_clear(one: _Fitted) -> bool:
 def _finding(one: _Fitted, chance: float) -> Finding:
     hypothesis = one.of.hypothesis
     course = one.of.course
-    neutral = {of.path: of.neutral for of in hypothesis.parameters}
     return Finding(
         hypothesis.cause,
         hypothesis.component,
         probability=chance,
-        parameters=_estimates(
-            hypothesis, one.columns, one.theta, one.covariance, neutral.__getitem__
-        ),
+        parameters=_estimates(hypothesis, one.columns, one.theta, one.covariance),
         segments=course.spells,
         onset=course.start,
         course=course.kind,
@@ -546,15 +541,12 @@ def _sizes_over_time(problem, one: _Fitted) -> tuple[SizeOverTime, ...]:
         linear = beside(linear, _shaped(plain, Course(SPELL, (spell,)).at(time)))
     products = inner_products(linear, problem.noise, problem.record).products
     count = len(base.columns)
-    prior = [column.prior for column in base.columns]
-    prior = np.concatenate([prior, np.ones(len(group) * len(spells))])
-    centre = np.concatenate([base.centre, np.zeros(len(group) * len(spells))])
-    _, theta, covariance = evidence(products, prior, centre)
-    neutral = {of.path: of.neutral for of in hypothesis.parameters}
+    own = range(count, count + len(group) * len(spells))
+    _, theta, covariance = _weighed(products, base, own)
     each: dict[str, list[ParameterEstimate]] = {}
     for k in range(len(spells)):
-        own = slice(count + k * len(group), count + (k + 1) * len(group))
-        sizes = _estimates(hypothesis, group, theta[own], covariance[own, own], neutral.__getitem__)
+        part = slice(k * len(group), (k + 1) * len(group))
+        sizes = _estimates(hypothesis, group, theta[part], covariance[part, part])
         for name, size in sizes.items():
             each.setdefault(name, []).append(size)
     return tuple(

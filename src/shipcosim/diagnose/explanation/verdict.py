@@ -121,7 +121,7 @@ def _judged_course(explained: ExplainedLog, course: CourseFound) -> JudgedLog:
     """The verdict on a cause with a course, which was weighed against all steady ones; beside it steady ones may be."""
     problem = explained.identification.problem
     fit = explained.fits[0]
-    beside = [one for one in fit.hypotheses if one.label != course.hypothesis.label]
+    beside = [one for one in fit.hypotheses if one.label != course.finding.label]
     own = (Candidate(course.finding.cause, course.finding.component, course.finding.probability),)
     candidates = own + course.rivals
     steady = tuple(_finding(one, fit, _of_all(course.steady)) for one in beside)

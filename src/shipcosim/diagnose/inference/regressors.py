@@ -16,6 +16,18 @@ def regressors_of(hypotheses: Iterable[Hypothesis]) -> list[Regressor]:
     return [column for one in hypotheses for group in screening_regressors(one) for column in group]
 
 
+def placed(
+    hypotheses: Iterable[Hypothesis], first: int
+) -> list[tuple[Hypothesis, list[Regressor], list[int]]]:
+    """Each group of `regressors_of`, with its hypothesis and its places in a row of columns from `first` on."""
+    found = []
+    for hypothesis in hypotheses:
+        for group in screening_regressors(hypothesis):
+            found.append((hypothesis, group, list(range(first, first + len(group)))))
+            first += len(group)
+    return found
+
+
 def screening_regressors(hypothesis: Hypothesis) -> list[list[Regressor]]:
     """Groups of regressors by which a hypothesis is first sought: one, or one for each direction of a vector."""
     parameters = hypothesis.parameters

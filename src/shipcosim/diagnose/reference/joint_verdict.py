@@ -15,7 +15,7 @@ from shipcosim.diagnose.explanation.verdict import (
     usual_gain,
 )
 from shipcosim.diagnose.inference.innovations import inner_products
-from shipcosim.diagnose.inference.regressors import regressors_of, screening_regressors
+from shipcosim.diagnose.inference.regressors import placed, regressors_of
 from shipcosim.diagnose.inference.screening import gains
 from shipcosim.diagnose.inference.thresholds import (
     NULL_GAIN_WITHOUT_WIND,
@@ -122,11 +122,6 @@ def joint_excitation(verdict: JointVerdict) -> Excitation:
         columns = nothing.parts[name].columns + regressors_of(own)
         products = inner_products(problem.base_of(columns), problem.noise, problem.record).products
         together = together + layout.spread(name, products)
-    groups = []
-    place = len(nothing.columns)
-    for one in logs.hypotheses:
-        for group in screening_regressors(one):
-            groups.append((one, list(range(place, place + len(group)))))
-            place += len(group)
+    groups = [(one, places) for one, _, places in placed(logs.hypotheses, len(nothing.columns))]
     usual = max(usual_gain(problem.model) for problem in logs.problems.values())
     return Excitation(together, layout.regressors, groups, TESTABLE + usual)

@@ -195,7 +195,6 @@ def _planned(memory, tau, available, h, design, shares):
     missed = abs(tau[0] - plan.tau_X) + abs(tau[1] - plan.tau_Y)
     missed = missed + abs(tau[2] - plan.tau_N) / design.yaw_lever
     # What only the rates keep from it is missed by every plan, and counts for none.
-    # What only the rates keep from it is missed by every plan, and counts for none.
     cost = _power(plan, design) + where(
         plan.saturated, _LOSS * design.dearest * missed, 0.0 * missed
     )
