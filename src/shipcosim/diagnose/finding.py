@@ -13,11 +13,23 @@ def label_of(cause: str, component: str | None) -> str:
 
 @dataclass(frozen=True)
 class ParameterEstimate:
-    """A parameter of a cause, with its standard deviation, both in `unit`."""
+    """A parameter of a cause, with its standard deviation, both in `unit`.
+
+    `given` is what the system says of it, where it is a number of the ship and not one that is 0 or 1 on a ship as
+    modelled.
+    """
 
     estimate: float
     std: float
     unit: str
+    given: float | None = None
+
+    def as_json(self) -> dict:
+        """The estimate as an entry of diagnosis.json; what does not apply is left out."""
+        entry = asdict(self)
+        if self.given is None:
+            del entry["given"]
+        return entry
 
 
 @dataclass(frozen=True)
@@ -82,10 +94,10 @@ class Finding:
     def as_json(self) -> dict:
         """The finding as an entry of diagnosis.json; what does not apply is left out."""
         entry = {key: getattr(self, key) for key in ("cause", "component", "kind", "probability")}
-        entry["parameters"] = {name: asdict(value) for name, value in self.parameters.items()}
+        entry["parameters"] = {name: value.as_json() for name, value in self.parameters.items()}
         if self.at_reference:
             entry["at_reference"] = {
-                name: asdict(value) for name, value in self.at_reference.items()
+                name: value.as_json() for name, value in self.at_reference.items()
             }
         if self.kind == "data":
             entry["segments"] = [list(segment) for segment in self.segments]

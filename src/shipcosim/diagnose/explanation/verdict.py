@@ -425,6 +425,7 @@ def _finding(hypothesis, fit, candidates):
             fit.values[k.path] * k.factor,
             float(abs(np.hypot(fit.std[k.path], k.tolerance) * k.factor)),
             k.unit,
+            None if k.neutral in (0.0, 1.0) else k.neutral * k.factor,
         )
         for k in hypothesis.parameters
     }

@@ -14,6 +14,7 @@ from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError, error_at
+from shipcosim.models.propulsion.tunnel import TunnelParameters
 from shipcosim.series import conversion
 from shipcosim.ssp import AnyPath
 
@@ -197,7 +198,14 @@ def hypotheses_of(
     places = {"ship": [None], "thruster": model.thrusters, "azimuth": model.azimuths}
     causes = [cause for cause in catalogue.values() if cause.sought_in in ("every log", sought_in)]
     found = [_on(cause, place, model) for cause in causes for place in places[cause.for_each]]
-    return [hypothesis for hypothesis in found if hypothesis]
+    hypotheses = [hypothesis for hypothesis in found if hypothesis]
+    alone = {path for one in hypotheses if one.component for path in one.paths}
+    return [one for one in hypotheses if not _says_the_same(one, alone)]
+
+
+def _says_the_same(hypothesis: Hypothesis, alone: set[str]) -> bool:
+    """Whether a cause of all azimuth thrusters together is that of the only one."""
+    return hypothesis.component is None and len(hypothesis.paths) == 1 and hypothesis.paths <= alone
 
 
 def _on(cause: Cause, component: str | None, model: ShipModel) -> Hypothesis | None:
@@ -221,7 +229,10 @@ def _paths(pattern: str, component: str | None, model: ShipModel) -> list[str]:
         else pattern
     )
     if "{azimuths}" in pattern:
-        found = (pattern.replace("{azimuths}", name) for name in model.thrusters)
+        turning = (
+            name for name in model.thrusters if not isinstance(model.parts[name], TunnelParameters)
+        )
+        found = (pattern.replace("{azimuths}", name) for name in turning)
         return [path for path in found if model.has(path)]
     return [pattern.replace("{thruster}", component or "")]
 

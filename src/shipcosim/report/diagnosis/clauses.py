@@ -14,8 +14,10 @@ def filled(
     Parameters
     ----------
     text : str
-        ``{lag}`` is a value with its standard deviation and unit, ``{loss:percent}`` a share in percent.
+        ``{lag}`` is a value with its standard deviation and unit, ``{loss:percent}`` a share in percent, and
+        ``{loss:percent less|more}`` its size with the first word where it is positive, else with the second.
         ``{offset:signed too much|too little}`` is the size, then the first words if it is positive, else the second;
+        ``{x:given}`` is followed by what the system says, ``(the file says 14.5 m)``;
         ``{scale:excess larger|smaller}`` in percent, how far a factor is above or below 1, with such words.
         ``{north+east}`` is size and direction of a vector, ``{component}`` the thruster.
     parameters : dict of str to Estimate
@@ -69,9 +71,15 @@ class _Value:
         value = self.estimate.estimate
         std = self.estimate.std
         if form == "percent":
-            return _percent(value, std)
+            return (
+                f"{_percent(abs(value), std)} {above if value > 0 else below}"
+                if words
+                else _percent(value, std)
+            )
         if form == "excess":
             return f"{_percent(abs(value - 1), std)} {above if value > 1 else below}"
+        if form == "given" and self.estimate.given is not None:
+            return f"{plus_minus(self.estimate)} (the file says {self.estimate.given:.4g} {self.estimate.unit})"
         if form == "signed":
             return f"{plus_minus(self.estimate, absolute=True)} {above if value > 0 else below}"
         return plus_minus(self.estimate)

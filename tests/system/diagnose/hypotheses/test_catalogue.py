@@ -23,6 +23,9 @@ CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
     "wind_direction": {"offset": "deg"},
     "thrust_loss": {"loss": "1"},
     "azimuth_offset": {"offset": "deg"},
+    "thruster_position_x": {"x": "m"},
+    "thruster_position_y": {"y": "m"},
+    "azimuths_position_x": {"x": "m"},
     "rpm_offset": {"offset": "rpm"},
     "reverse_loss": {"loss": "1"},
     "thruster_interaction": {"loss": "1"},
@@ -60,6 +63,8 @@ BY_COMPARISON = {name for name in CONTRACT if name.endswith("_to_inertia")}
 WHERE = {
     "thrust_loss": ["port", "starboard", "tunnel"],
     "azimuth_offset": ["port", "starboard"],
+    "thruster_position_x": ["port", "starboard", "tunnel"],
+    "thruster_position_y": ["port", "starboard"],
     "rpm_offset": ["port", "starboard", "tunnel"],
 }
 MINE = """
