@@ -23,6 +23,7 @@ From the verdict to the gain, `diagnose`:
     stated             Diagnosis       findings, what this log could not have shown, what to sail next
     with_predictions   PredictedLog    predictions on rows that nothing was fitted on, the force that the model lacks
     named_if_better    Diagnosis       no name for a cause that predicts these rows worse than the ship without it
+    verified           Diagnosis       "consistent" only where the system predicts these rows as it would a healthy ship
     with_findings      ExtendedSystem  the system with the named causes in it
     with_cosimulation  SimulatedLog    the predictions as co-simulations of the given and the extended system
     completed          Diagnosis       errors, gain, and all that the page shows
@@ -51,7 +52,7 @@ from shipcosim.diagnose.reference.reference import Reference, read_reference, wi
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.diagnose.statement import completed, named_if_better, stated
+from shipcosim.diagnose.statement import completed, named_if_better, stated, verified
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import AnyPath, AnySystem, System, SystemStructure, read
@@ -120,6 +121,7 @@ def diagnose(
     if basis is None:
         raise ValueError("a diagnosis that does not know its log")
     found, predicted = named_if_better(found, with_predictions(basis, found.is_named))
+    found = verified(found, predicted)
     say("extending the system")
     extended = with_findings(given, found.findings, basis.explained.identification, out)
     say("the gain, by co-simulation")

@@ -12,6 +12,7 @@ from shipcosim.diagnose.extension.extend import Extension
 from shipcosim.diagnose.extension.extended_system import NumberChange
 from shipcosim.diagnose.finding import Candidate, Discrepancy, Finding, VisibleSize
 from shipcosim.diagnose.hypotheses.catalogue import Cause
+from shipcosim.diagnose.validation.healthy_errors import HealthyErrors
 from shipcosim.diagnose.validation.missing_force import MissingForce
 from shipcosim.diagnose.validation.summary import PredictionErrors
 from shipcosim.diagnose.validation.tracks import Tracks
@@ -92,6 +93,9 @@ class Diagnosis:
         In what simulation and log differ at first sight, largest first.
     form : LoadForm or None
         How far the form of her loads differs from the model's; None where it is the model's, or a reference's.
+    healthy : HealthyErrors or None
+        How far off the simulation of a healthy ship would be on the same rows; None unless it was asked whether the
+        system predicts the log.
     obstacles : tuple of str
         Why no cause can be named from the log, whatever it shows, and what would do.
     basis : JudgedLog or None
@@ -123,6 +127,7 @@ class Diagnosis:
     remarks: tuple[str, ...] = ()
     discrepancies: tuple[Discrepancy, ...] = ()
     form: LoadForm | None = None
+    healthy: HealthyErrors | None = None
     obstacles: tuple[str, ...] = ()
     smallest_visible: tuple[VisibleSize, ...] = field(default=(), repr=False)
     basis: JudgedLog | None = field(default=None, repr=False)
@@ -163,5 +168,6 @@ class Diagnosis:
             "discrepancies": [asdict(discrepancy) for discrepancy in self.discrepancies],
             "form": asdict(self.form) if self.form else None,
             "baseline": self.baseline,
+            "healthy_errors": self.healthy.as_json() if self.healthy else None,
             "gain": self.gain,
         }

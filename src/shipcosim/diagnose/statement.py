@@ -21,7 +21,8 @@ from shipcosim.diagnose.inference.thresholds import BESIDE_UNKNOWN
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.validation.conditions import PredictedLog, with_predictions
-from shipcosim.diagnose.validation.gain import HORIZONS, baseline, gain, rms
+from shipcosim.diagnose.validation.gain import CHANNELS, HORIZONS, baseline, gain, rms
+from shipcosim.diagnose.validation.healthy_errors import healthy_errors
 from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.thresholds import WORSE
@@ -119,6 +120,35 @@ def named_if_better(found: Diagnosis, predicted: PredictedLog) -> tuple[Diagnosi
         remarks=(*found.remarks, remark),
     )
     return doubted, with_predictions(predicted.judged, False)
+
+
+def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
+    """A diagnosis that is only consistent where its system predicts the log as well as a healthy ship's would.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    predicted : PredictedLog
+
+    Returns
+    -------
+    Diagnosis
+        As given, with the errors of healthy ships; or ``"unknown"``, where the system's are larger than any of them.
+    """
+    if found.verdict != "consistent" or predicted.comparison is None:
+        return found
+    healthy = healthy_errors(predicted.comparison)
+    if not healthy.beyond:
+        return replace(found, healthy=healthy)
+    sizes = [
+        f"{healthy.measured[channel]:.2g} {CHANNELS[channel]} in {channel} (at most {healthy.largest[channel]:.2g})"
+        for channel in healthy.beyond
+    ]
+    remark = (
+        f"No cause stands out, but after {HORIZONS[-1]:g} s the system misses the log by {' and '.join(sizes)}: by more "
+        "than any of the healthy ships drawn within its tolerances."
+    )
+    return replace(found, verdict="unknown", healthy=healthy, remarks=(*found.remarks, remark))
 
 
 def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:

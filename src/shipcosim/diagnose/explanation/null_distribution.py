@@ -20,6 +20,7 @@ from shipcosim.diagnose.inference.thresholds import LOST_TRACK
 from shipcosim.diagnose.inference.workers import each
 from shipcosim.diagnose.ship.inputs import Record, first_motion, part_of
 from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.track_keeping import DpController, kept_on_track
 from shipcosim.models.core.motion import Motion
 
@@ -125,7 +126,7 @@ def healthy_records(
     Record
         With the ships on the first axis.
     """
-    model = _drawn(problem.model, count, rng)
+    model = drawn_within_tolerances(problem.model, (count,), rng)
     record = problem.record
     noise = problem.noise
     jolts = (
@@ -138,8 +139,10 @@ def healthy_records(
     return _logged(ships, units, model, problem, rng)
 
 
-def _drawn(model, count, rng):
-    """Ships within what is known of a ship model."""
+def drawn_within_tolerances(
+    model: ShipModel, shape: tuple[int, ...], rng: np.random.Generator
+) -> ShipModel:
+    """Ships within what is known of a ship model, whose numbers are arrays of a shape."""
     own = {path: size for path, size in model.uncertainties.items() if path not in model.referenced}
     directions = [
         *model.directions,
@@ -147,7 +150,7 @@ def _drawn(model, count, rng):
     ]
     values = {}
     for direction in directions:
-        share = rng.standard_normal(count)
+        share = rng.standard_normal(shape)
         for path, size in direction.items():
             values[path] = values.get(path, model.get(path)) + size * share
     return model.with_values(values)

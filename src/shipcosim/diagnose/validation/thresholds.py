@@ -35,6 +35,14 @@ BLOCK = 120.0
 FEWEST_INTERVAL_BLOCKS = 3
 """Fewest blocks for an interval of a part of the predictions."""
 
+# Errors of healthy ships
+
+HEALTHY_SHIPS = 100
+"""Healthy ships whose largest error a log must exceed before it is no longer consistent. Of 26 healthy developing logs
+(seeds 94000 to 94025) none came above 0.9 of it."""
+FLOOR_VARIES = 1.5
+"""Factor on the noise floor of a log that chance may bring. Assumed: of some ten independent predictions."""
+
 # Missing force
 
 FORCE_TIME = 10.0

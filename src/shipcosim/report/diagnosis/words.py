@@ -8,6 +8,7 @@ from shipcosim.diagnose.finding import Finding, ParameterEstimate
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue, read_faults
 from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.result import Diagnosis
+from shipcosim.diagnose.validation.split import HORIZONS
 from shipcosim.report.diagnosis.clauses import filled
 from shipcosim.report.diagnosis.estimates import amount, plus_minus
 from shipcosim.report.theme.numbers import metres, percent, plain, span
@@ -158,7 +159,13 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
             "CONSISTENT",
             "Simulation and log agree, where the loads may have another form than the model's.",
         )
-    return "CONSISTENT", "Simulation and log agree, within noise and the tolerances of the model."
+    text = "Simulation and log agree, within noise and the tolerances of the model"
+    if healthy := diagnosis.healthy:
+        text += (
+            f": healthy ships are off by up to {metres(healthy.largest['position'])} and "
+            f"{healthy.largest['heading']:.1f}° after {HORIZONS[-1]:g} s, and she is by less"
+        )
+    return "CONSISTENT", f"{text}."
 
 
 def _form(diagnosis: Diagnosis, form: LoadForm) -> str:

@@ -1,0 +1,80 @@
+"""How far the simulation of a healthy ship is off: one that differs from her file within its tolerances alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.diagnose.explanation.null_distribution import drawn_within_tolerances
+from shipcosim.diagnose.inference.predictions import missing, predicted
+from shipcosim.diagnose.ship.measured_motion import readings
+from shipcosim.diagnose.validation.gain import Comparison, rms
+from shipcosim.diagnose.validation.split import HORIZONS, in_rows
+from shipcosim.diagnose.validation.thresholds import FLOOR_VARIES, HEALTHY_SHIPS
+from shipcosim.models.core.motion import Motion
+
+
+@dataclass(frozen=True)
+class HealthyErrors:
+    """Errors of predictions with the shipped numbers beside those that healthy ships have on the same rows.
+
+    Attributes
+    ----------
+    measured, largest : dict of str to float
+        Root mean square after the longest horizon, ``"position"`` [m] and ``"heading"`` [deg], of the plain model on
+        the log; and the largest that any of `HEALTHY_SHIPS` reaches.
+    """
+
+    measured: dict[str, float]
+    largest: dict[str, float]
+
+    def as_json(self) -> dict:
+        """The entry ``healthy_errors`` of diagnosis.json: the largest that are no news."""
+        return {
+            "horizon_s": HORIZONS[-1],
+            "position_error_m": self.largest["position"],
+            "heading_error_deg": self.largest["heading"],
+        }
+
+    @property
+    def beyond(self) -> list[str]:
+        """Errors that are larger than any healthy ship's."""
+        return [one for one, error in self.measured.items() if error > self.largest[one]]
+
+
+def healthy_errors(comparison: Comparison, seed: int = 0) -> HealthyErrors:
+    """Errors of the plain model on the rows kept from the fit, beside those that healthy ships have there.
+
+    A healthy ship's numbers are drawn within their tolerances; she sails the same stretches from the same states, and
+    what the plain model misses of her adds to the noise floor of the log.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    seed : int
+        Of the ships' numbers.
+
+    Returns
+    -------
+    HealthyErrors
+    """
+    predictor = comparison.predictors["plain"]
+    rows = comparison.rows
+    horizon = in_rows(predictor.record)[-1:]
+    start = Motion(*(value[rows] for value in predictor.motion))
+    # What the plain model says of each stretch, and what the healthy ships do there.
+    plain = predicted(start, rows, predictor.record, predictor.model, horizon)
+    several = Motion(*(np.broadcast_to(value, (HEALTHY_SHIPS, rows.size)) for value in start))
+    ships = drawn_within_tolerances(
+        predictor.model, (HEALTHY_SHIPS, 1), np.random.default_rng(seed)
+    )
+    sailed = readings(predicted(several, rows, predictor.record, ships, horizon), ships)
+    said = Motion(*(value[0] for value in readings(plain, predictor.model)))
+    off = missing(Motion(*(value[0] for value in sailed)), said, np.arange(rows.size))
+    # Errors beside the noise that no model is without.
+    measured = {}
+    largest = {}
+    for channel in ("position", "heading"):
+        measured[channel] = rms(comparison.errors, channel, "plain")
+        floor = FLOOR_VARIES * rms(comparison.errors, channel, "floor")
+        largest[channel] = float(np.sqrt((off[channel] ** 2).mean(-1) + floor**2).max())
+    return HealthyErrors(measured, largest)
