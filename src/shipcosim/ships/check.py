@@ -1,18 +1,21 @@
 """Checks of a described ship: what is impossible, and what is unusual."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import pi
+from typing import Any
 
 import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.control import mass_matrix, why_no_dp
 from shipcosim.ships.described import Described, describe, file_of, read_file
+from shipcosim.ships.entries import Quantity
 from shipcosim.ships.estimates.propulsion import MOST_KT, most_thrust
 from shipcosim.ships.estimates.resistance import MOST_FROUDE, froude_number
 from shipcosim.ships.file import number
 from shipcosim.ships.folder import read_ship
 from shipcosim.ships.numbers import ESTIMATED
+from shipcosim.ships.passivity import driven_by_water
 from shipcosim.ships.system import check_numbers
 from shipcosim.ships.thrusters import ShipThruster
 
@@ -48,8 +51,7 @@ def check_ship(path: str) -> list[Problem]:
     try:
         said = read_file(file)
         if said.particulars is None and not said.thrusters:
-            read_ship(file.parent)
-            return []
+            return [*driven_by_water(f"{file}: vessel", _vessel(read_ship(file.parent).entries))]
         ship = describe(file, said)
     except ShipcosimError as error:
         return error.problems
@@ -64,6 +66,11 @@ def check_described(ship: Described) -> list[Problem]:
     ship : Described
     """
     return [*check_numbers(ship), *_hull(ship), *_matrix(ship), *_thrusters(ship), *_remarks(ship)]
+
+
+def _vessel(entries: Mapping[str, Mapping[str, Quantity]]) -> dict[str, Any]:
+    """Values of the vessel's parameters by name."""
+    return {name: entry.value for name, entry in entries.get("vessel", {}).items()}
 
 
 def _mass(kilograms: float) -> str:
@@ -251,6 +258,7 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
 
 def _remarks(ship: Described) -> Iterator[Problem]:
     yield from _speed(ship)
+    yield from driven_by_water(f"{ship.path}: hull", _vessel(ship.entries))
     if why := why_no_dp(ship):
         yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
     count = len(estimated(ship))

@@ -3,7 +3,9 @@
 import pytest
 from ships_at_hand import BOAT, COASTER, FILES, SUPPLY
 
+import shipcosim as sc
 from shipcosim.ships.check import check_ship
+from shipcosim.ssp import parameter, write_ssv
 
 PLANTED = {
     "no length": (
@@ -276,3 +278,26 @@ def test_a_ship_too_weak_for_her_speed_and_one_without_a_dp_earn_remarks(written
     assert any("does not reach her service speed" in problem.remedy for problem in weak)
     (remark,) = [p for p in check_ship(str(written(COASTER))) if "no DP system" in p.found]
     assert remark.severity == "remark"
+
+
+def test_a_ship_that_still_water_drives_earns_a_remark_in_any_file(written, root, tmp_path):
+    """In her file, in a system whose set calibrated or extended her, in a scenario with that set."""
+
+    def remarks(file):
+        found = [one for one in sc.check(file).problems if "still water" in one.found]
+        return [one.where for one in found if one.severity == "remark"]
+
+    assert remarks(written(SUPPLY)) == []
+    file = written(SUPPLY, ("[wind]", "[hull]\nY_v = -1e3\nN_v = 2e6\n[wind]"))
+    assert remarks(file) == [f"{file}: hull"]
+    assert remarks("gunnerus_open") == []
+    values = tmp_path / "calibrated.ssv"
+    write_ssv(values, "calibrated", [parameter("vessel.X_u", 3e3, "N.s/m", "calibrated")])
+    system = sc.read("gunnerus_open").copy()
+    system.bind(values)
+    system.write(tmp_path / "extended.ssp")
+    assert remarks(tmp_path / "extended.ssp") == [f"{tmp_path / 'extended.ssp'}: vessel"]
+    scenario = tmp_path / "run.toml"
+    head = f'system = "{root / "ssp" / "gunnerus_open"}"\nparameters = ["calibrated.ssv"]\n'
+    scenario.write_text(head + "stop_time = 1.0\nstep_size = 0.05\n")
+    assert remarks(scenario) == [f"{scenario}: vessel"]

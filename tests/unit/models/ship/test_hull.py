@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from ships import parameters
 
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship import hull as models
 from shipcosim.models.ship.hull import HullParameters, hull_loads
-from shipcosim.models.ship.vessel import accelerations
+from shipcosim.models.ship.vessel import accelerations, step
 
 LONG = parameters(HullParameters)
 SHORT = parameters(HullParameters, "gunnerus-28m9", "vessel")
@@ -70,12 +71,33 @@ def test_the_water_never_gives_the_long_hull_energy():
     assert np.max(X * u + Y * v + N * r) <= 0.0
 
 
+def test_linear_derivatives_astern_are_those_of_the_hull_mirrored_fore_and_aft():
+    hull = replace(LONG, added_mass_coriolis=0.0, lift=0.0, X_uu=0.0, cross_flow_drag=0.0)
+    hull = replace(hull, Y_uv=-3e4, Y_ur=3e5, N_uv=-3e5, N_ur=-2e6)
+    u, v, r = ANY_VELOCITY
+    X, Y, N = hull_loads(u, v, r, hull=hull)
+    np.testing.assert_allclose(hull_loads(-u, v, -r, hull=hull), (-X, Y, -N), rtol=1e-12)
+
+
+def test_short_hull_adrift_astern_loses_energy():
+    """In still water without thrust, as she had gained it: 1.42-fold in a minute with Yuv u v and Nur u r."""
+    start = Motion(0.0, 0.0, 0.0, -0.3, 0.2, 0.0)
+    none = 0.0, 0.0, 0.0, 0.0, 0.0
+    energies = []
+    for _ in range(61):
+        nu = np.array(start[3:])
+        energies.append(0.5 * nu @ mass_matrix(SHORT) @ nu)
+        start = step(start, *none, 1.0, hull=SHORT)
+    assert np.all(np.diff(energies) < 0.0)
+
+
 def test_short_hull_is_the_source_polynomial_which_holds_the_added_mass(shared):
-    """Parameter sheet 2.1 with Xuu as u abs(u): C_A in it, so counted once."""
+    """Parameter sheet 2.1 with Xuu as u abs(u): C_A in it, so counted once. Astern Yuv and Nur damp as ahead."""
     source = json.loads((shared / "reference/data/gunnerus_28p9_simval_hull.json").read_text())
     u, v, r = ANY_VELOCITY
     found = hull_loads(u, v, r, hull=SHORT)
     names = dict(source["coefficients_SI"], u=u, v=v, r=r, Xuu=0.0, Xuuu=0.0)
+    names |= {name: np.sign(u) * names[name] for name in ("Yuv", "Nur")}
     drag = (-2100.0 * u * np.abs(u), 0.0, 0.0)
     for axis, extra, load in zip("XYN", drag, found, strict=True):
         formula = source[axis].replace("^", "**")
