@@ -10,6 +10,7 @@ from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.control import mass_matrix, why_no_dp
 from shipcosim.ships.described import Described, describe, file_of, read_file
 from shipcosim.ships.entries import Quantity
+from shipcosim.ships.estimates.hull import FLATTEST
 from shipcosim.ships.estimates.propulsion import MOST_KT, most_thrust
 from shipcosim.ships.estimates.resistance import MOST_FROUDE, froude_number
 from shipcosim.ships.file import number
@@ -24,7 +25,7 @@ BLOCK = (0.2, 1.0)
 OWN_BLOCK = 0.05
 """Share by which the displacement may differ from the block coefficient's."""
 SLENDER = (1.0, 20.0)
-SHALLOW = (0.3, 15.0)
+SHALLOW = (0.3, 30.0)
 """Length over breadth, breadth over draught."""
 GYRADIUS = (0.15, 0.40)
 BEYOND = 0.6
@@ -258,6 +259,7 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
 
 def _remarks(ship: Described) -> Iterator[Problem]:
     yield from _speed(ship)
+    yield from _flat(ship)
     yield from driven_by_water(f"{ship.path}: hull", _vessel(ship.entries))
     if why := why_no_dp(ship):
         yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
@@ -270,6 +272,16 @@ def _remarks(ship: Described) -> Iterator[Problem]:
             "Give what you know; the rest has the tolerance of its formula.",
             "remark",
         )
+
+
+def _flat(ship: Described) -> Iterator[Problem]:
+    """Check that the hull is within the formulae of loads across."""
+    ratio = ship.form.breadth / ship.form.draught
+    if ratio > FLATTEST and "cross_flow_drag" in ship.vessel:
+        if ship.vessel["cross_flow_drag"].origin.startswith(ESTIMATED):
+            found = f"breadth over draught is {ratio:.3g}, beyond {FLATTEST:g}, where the formulae of her loads end."
+            remedy = "What is estimated of sway and yaw is a guess: give added_sway, added_yaw and drag.cross_flow."
+            yield Problem(f"{ship.path}: particulars", found, remedy, "remark")
 
 
 def _speed(ship: Described) -> Iterator[Problem]:

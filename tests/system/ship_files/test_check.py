@@ -264,6 +264,22 @@ def test_nothing_is_wrong_with_a_ship_as_it_should_be(name, written):
     ]
 
 
+def test_a_flat_ferry_is_possible_with_a_remark_and_a_draught_in_centimetres_is_not(written):
+    """milliAmpere, 5.0 m x 2.8 m x 0.15 m."""
+    ferry = ('"60 m"', '"5 m"'), ('"14 m"', '"2.8 m"'), ('"2650 t"', '"1667 kg"')
+    at = ('"4.5 m"', '"0.15 m"')
+    places = [(f'"{x} m"', f'"{x / 15:g} m"') for x in (-27, -3.5, 3.5, 25)]
+    sizes = ('"2.4 m"', '"0.15 m"'), ('"1200 kW"', '"1 kW"'), ('"1.7 m"', '"0.15 m"')
+    small = *ferry, *places, *sizes, ('"500 kW"', '"1 kW"'), ('"12 kn"', '"3 kn"')
+    changes = [one for one in small for _ in range(SUPPLY.count(one[0]))]
+    found = check_ship(str(written(SUPPLY, *changes, at)))
+    (flat,) = [one for one in found if "breadth over draught is 18.7" in one.found]
+    assert flat.severity == "remark" and "guess" in flat.remedy
+    assert not [one for one in found if one.severity == "error"], found
+    wrong = check_ship(str(written(SUPPLY, *changes, ('"4.5 m"', '"0.015 m"'))))
+    assert any("is a unit missing" in one.remedy for one in wrong)
+
+
 def test_all_mistakes_are_said_at_once(written):
     path = written(
         SUPPLY, ('"60 m"', '"60 t"'), ("draught =", "draft ="), ('x = "25 m"', "xx = 25")

@@ -62,6 +62,39 @@ def test_new_ships_of_any_form_gain_no_energy():
         assert power(hull, 500).max() <= 0.0
 
 
+def test_a_new_ship_near_rest_slows_down_in_seconds_and_keeps_her_resistance_under_way():
+    """Time constants of linear damping, and no more than a thousandth of it at Froude number 0.2."""
+    hull = hull_of(length=60.0, breadth=14.0, draught=4.5, block_coefficient=0.68)
+    without = replace(hull, X_u=0.0, Y_v=0.0, N_r=0.0)
+    mass, inertia = hull.rigid_body
+    root = np.sqrt(60.0 / 9.81)
+    slow = np.array([1e-3, 1e-3, 1e-5])
+    for axis, (own, constant) in enumerate(
+        [(mass + hull.A11, 30.0), (mass + hull.A22, 18.0), (inertia + hull.A66, 9.4)]
+    ):
+        motion = np.where(np.arange(3) == axis, slow, 0.0)
+        load = hull_loads(*motion, hull=hull)[axis]
+        assert -own * motion[axis] / load == pytest.approx(constant * root, rel=0.05)
+    fast = 0.2 * np.sqrt(9.81 * 60.0), 0.05, 0.01
+    assert hull_loads(*fast, hull=hull) == pytest.approx(hull_loads(*fast, hull=without), rel=1e-3)
+
+
+def test_linear_damping_that_the_file_gives_is_never_mixed_with_the_estimated_one():
+    """It holds at all speeds, where the estimated one fades."""
+    form = {"length": 60.0, "breadth": 14.0, "draught": 4.5, "block_coefficient": 0.68}
+    for given, kept in (
+        ({}, {"X_u", "Y_v", "Y_r", "N_v", "N_r", "linear_damping_speed"}),
+        ({"X_u": -5e3}, {"X_u"}),
+        ({"N_r": -5e6}, {"N_r"}),
+        ({"X_uu": -5e3}, {"Y_v", "Y_r", "N_v", "N_r", "linear_damping_speed"}),
+        ({"Y_modvv": -1e5}, {"X_u", "linear_damping_speed"}),
+    ):
+        said = {"particulars": form, "thrusters": [SCREW], "hull": given}
+        entries = describe("new.toml", ShipFile.model_validate(said)).vessel
+        linear = {"X_u", "Y_v", "Y_r", "N_v", "N_r", "linear_damping_speed"}
+        assert entries.keys() & linear == kept, given
+
+
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_load_that_drives_her_is_found_with_its_power(sign):
     hull = replace(parameters(HullParameters), X_rvu=sign * 1e7)

@@ -7,7 +7,7 @@ for which it has coefficients; a new effect is one more function here, with coef
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.models.core.maths import Arithmetic, hypot, maximum, minimum
+from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity, required
 
@@ -91,6 +91,13 @@ class HullParameters:
     Y_r: float = _unused("N.s/rad", "linear damping, sway by yaw")
     N_v: float = _unused("N.s", "linear damping, yaw by sway")
     N_r: float = _unused("N.m.s/rad", "linear damping in yaw")
+    linear_damping_speed: float = quantity(
+        0.0,
+        "m/s",
+        "speed over which the linear damping fades, by exp(-(U/this)^2); 0: the same at all speeds",
+        "neutral",
+        minimum=0.0,
+    )
 
     X_uu: float = quantity(
         0.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", _UNUSED, share=0.05
@@ -300,15 +307,22 @@ def added_mass_coriolis(
 
 
 def linear_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
-    """Linear damping, -D ν_r.
+    """Linear damping, -D ν_r; where there is a `linear_damping_speed` U_0 it is -D ν_r exp(-U²/U_0²).
 
     Parameters and returns as `hull_loads`.
 
     References
     ----------
-    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6. The exponential:
+    forceSurgeDamping.m of his MSS toolbox, where it blends linear into quadratic damping in surge.
     """
     X_u, Y_v, Y_r, N_v, N_r = hull.linear
+    if acts(hull.linear_damping_speed):
+        # Damping of a ship that hardly makes way; with speed the other contributions take over.
+        share = exp(-(u * u + v * v) / (hull.linear_damping_speed * hull.linear_damping_speed))
+        u = share * u
+        v = share * v
+        r = share * r
     return X_u * u, Y_v * v + Y_r * r, N_v * v + N_r * r
 
 

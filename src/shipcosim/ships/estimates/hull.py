@@ -8,7 +8,7 @@ curve over breadth and draught as in Faltinsen, Sea Loads on Ships and Offshore 
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, sqrt
 
 import numpy as np
 
@@ -21,6 +21,13 @@ _HOERNER = (
     (1.97, 1.90, 1.79, 1.20, 1.08, 1.00, 0.88, 0.83, 0.76, 0.69, 0.63, 0.59, 0.56),
 )
 """Half breadth over draught, drag coefficient."""
+FLATTEST = 8.0
+"""Breadth over draught at which that curve ends. [1]"""
+GRAVITY = 9.81  # m/s2
+TIME_CONSTANTS = {"X_u": 30.0, "Y_v": 18.0, "N_r": 9.4}
+"""Of linear damping, over the root of length and gravity; fitted to the models in docs/generated/ship-estimates.md. [1]"""
+SLOW_FROUDE = 0.04
+"""Over which it fades: 1.1 m/s of a ship of 76 m, twice the speeds of DP; assumed. [1]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -187,7 +194,9 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
         "added_mass_coriolis": EstimatedNumber(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),
         "Y_uv": within(-scale * L**2 * (1.0 + 0.40 * Cb * B / T), 0.3, CLARKE),
         "Y_ur": within(scale * L**3 * (0.5 - 2.2 * B / L + 0.08 * B / T), 0.5, CLARKE),
-        "N_uv": within(-scale * L**3 * (0.5 + 2.4 * T / L), 0.3, CLARKE),
+        "N_uv": within(
+            -scale * L**3 * (0.5 + 2.4 * T / L), 0.5, f"{CLARKE}; the Mariner has 0.64 of it"
+        ),
         "N_ur": within(-scale * L**4 * max(0.25 + 0.039 * B / T - 0.56 * B / L, 0.1), 0.3, CLARKE),
         "X_rv": within(
             0.7 * sway_mass,
@@ -195,3 +204,50 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
             "0.7 of the added mass in sway; assumed, as MMG derivatives have it",
         ),
     }
+
+
+def linear_damping(
+    form: HullDimensions, surge: float, sway: float, yaw: float
+) -> dict[str, EstimatedNumber]:
+    """Linear damping of a ship that hardly makes way, from time constants that grow with the root of her length.
+
+    Parameters
+    ----------
+    form : HullDimensions
+        The hull.
+    surge, sway, yaw : float
+        Mass and moment of inertia with the added ones. [kg, kg, kg.m2]
+
+    Returns
+    -------
+    dict of str to EstimatedNumber
+        X_u, Y_v, Y_r, N_v, N_r, linear_damping_speed.
+
+    Notes
+    -----
+    The time constants are those with which this damping, and what else is estimated, comes nearest to six models that
+    were identified at low speed, which differ among themselves by a factor of ten.
+
+    References
+    ----------
+    Damping by time constants: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
+    ch. 6. The six models: docs/generated/ship-estimates.md.
+    """
+    # D = M / T with time constants that grow with the root of the length.
+    root = sqrt(form.length / GRAVITY)
+    times = {name: constant * root for name, constant in TIME_CONSTANTS.items()}
+    masses = {"X_u": surge, "Y_v": sway, "N_r": yaw}
+    values = {name: -masses[name] / times[name] for name in masses}
+    found = {
+        name: within(value, 1.5, f"time constant {times[name]:.3g} s; six ships near rest differ")
+        for name, value in values.items()
+    }
+    # Sway by yaw can have either sign; beyond 1 it would drive her.
+    share = 0.2 * sqrt(values["Y_v"] * values["N_r"])
+    coupling = EstimatedNumber(
+        0.0, share, "0; tolerance 0.2 of the root of Y_v N_r, as Fossen 1996"
+    )
+    speed = SLOW_FROUDE * sqrt(GRAVITY * form.length)
+    source = f"Froude number {SLOW_FROUDE:g}, assumed; under way the derivatives hold"
+    fading = EstimatedNumber(speed, 0.0, source)
+    return {**found, "Y_r": coupling, "N_v": coupling, "linear_damping_speed": fading}

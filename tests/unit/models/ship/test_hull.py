@@ -131,6 +131,17 @@ def test_mass_scale_is_a_ship_of_that_mass_and_inertia_in_the_same_water():
     assert at_rest == pytest.approx((1e4 / (1.15 * 531e3 + 26_550.0), 0.0, 0.0))
 
 
+def test_linear_damping_fades_with_speed_and_not_with_turning():
+    hull = replace(LONG, X_u=-9e3, Y_v=-2e4, Y_r=1e4, N_v=-1e4, N_r=-3e6)
+    fading = replace(hull, linear_damping_speed=1.2)
+    u, v, r = ANY_VELOCITY
+    whole = np.array(models.linear_damping(u, v, r, hull=hull))
+    faded = np.array(models.linear_damping(u, v, r, hull=fading))
+    np.testing.assert_allclose(faded, whole * np.exp(-(u**2 + v**2) / 1.2**2), rtol=1e-12)
+    spot = models.linear_damping(0.0, 0.0, 0.1, hull=fading)
+    assert spot == models.linear_damping(0.0, 0.0, 0.1, hull=hull)
+
+
 def test_drag_scale_multiplies_the_resistance_ahead_and_nothing_else():
     hull = replace(LONG, X_u=-400.0, Y_v=-300.0)
     u, v, r = ANY_VELOCITY
