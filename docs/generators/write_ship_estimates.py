@@ -24,7 +24,7 @@ GUNNERUS = [
     {"name": "port", "x": -14.0, "y": -2.0} | AZIMUTH,
     {"name": "starboard", "x": -14.0, "y": 2.0} | AZIMUTH,
 ]
-STERN = {"name": "propeller", "kind": "rudder", "x": -3.386, "y": 0.0, "diameter": 0.204}
+STERN = {"name": "propeller", "kind": "rudder", "x": -3.386, "y": 0.0, "diameter": 0.2157}
 STERN |= {"rudder_x": -3.5, "rudder_area": 0.0539, "rudder_span": 0.345}
 SCREW = {"name": "screw", "kind": "fixed", "command": "thrust", "x": 0.0, "y": 0.0}
 SHIPS = {
