@@ -341,8 +341,8 @@ class NearRest:
     Attributes
     ----------
     name, source : str
-    masses : list of float
-        Estimated over published. [1]
+    masses, off : list of float
+        Estimated over published, and the difference in tolerances of the estimate. [1, 1]
     linear, other, published : list of float
         Estimated linear damping, the rest of the estimated load, and the published load. [N, N, N.m]
     """
@@ -350,6 +350,7 @@ class NearRest:
     name: str
     source: str
     masses: list[float]
+    off: list[float]
     linear: list[float]
     other: list[float]
     published: list[float]
@@ -373,6 +374,13 @@ def near_rest() -> list[NearRest]:
         mass, inertia = hull.rigid_body
         ours = mass + hull.A11, mass + hull.A22, inertia + hull.A66
         masses = [float(a / b) for a, b in zip(ours, model.masses, strict=True)]
+        tolerances = (
+            np.hypot(entries[own].tolerance, entries[added].tolerance)
+            for own, added in (("mass", "A11"), ("mass", "A22"), ("inertia_yaw", "A66"))
+        )
+        off = [
+            float((a - b) / one) for a, b, one in zip(ours, model.masses, tolerances, strict=True)
+        ]
         all_loads, other, published = (
             [
                 float(_damping(one, axis, at))
@@ -381,7 +389,7 @@ def near_rest() -> list[NearRest]:
             for one in (hull, under_way, model.damping)
         )
         linear = [a - b for a, b in zip(all_loads, other, strict=True)]
-        found.append(NearRest(name, model.source, masses, linear, other, published))
+        found.append(NearRest(name, model.source, masses, off, linear, other, published))
     return found
 
 
@@ -409,6 +417,12 @@ def _near_rest_lines():
     damping = [row.ratio(axis) for row in rows for axis in range(3)]
     masses = [one for row in rows for one in row.masses]
     close = sum(1 / 1.3 <= one <= 1.3 for one in masses)
+    beyond = [
+        f"{row.name} in {axis} ({off:+.1f})"
+        for row in rows
+        for axis, off in zip(("surge", "sway", "yaw"), row.off, strict=True)
+        if abs(off) > BEYOND
+    ]
     half = sum(0.5 <= one <= 2.0 for one in damping)
     return [
         "## Masses and damping near rest, estimated over published",
@@ -422,7 +436,8 @@ def _near_rest_lines():
         ),
         "",
         "At the Froude number of 0.5 m/s of a ship of 76 m; in yaw where the bow moves sideways as fast. "
-        f"Within 30 %: {close} of {len(masses)} masses. Within a factor of 2: {half} of {len(damping)} dampings.",
+        f"Within 30 %: {close} of {len(masses)} masses; beyond two tolerances: {', '.join(beyond)}. "
+        f"Within a factor of 2: {half} of {len(damping)} dampings.",
         "",
         "The time constants of linear damping are fitted to the first six models, so these are no test of them. "
         "Fitted without the model in question, the rms factor between estimate and model is "

@@ -137,7 +137,8 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> 
             value = mass * (gyradius.value**2 + centre**2)
             own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
         else:
-            own.estimate("inertia_yaw", inertia_yaw(mass, form.length, centre))
+            breadth = number(p.breadth)
+            own.estimate("inertia_yaw", inertia_yaw(mass, form.length, breadth, centre))
     # Added mass: as given, else by formulae.
     own.give("A11", m.added_surge)
     own.give("A22", m.added_sway)

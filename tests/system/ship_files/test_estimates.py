@@ -138,6 +138,18 @@ def test_linear_damping_is_fitted_to_the_models_that_were_identified_near_rest(g
     assert far == {("ReVolt", 1), ("ReVolt", 2)}
 
 
+def test_masses_near_rest_lie_within_their_tolerances_but_for_two_models(generator):
+    """Where models have added mass, which those of the thesis and of Loe have not."""
+    without = ("offshore vessel of the thesis", "Viknes 830")
+    far = {
+        (one.name, axis)
+        for one in generator.near_rest()
+        for axis, off in enumerate(one.off)
+        if abs(off) > generator.BEYOND and one.name not in without
+    }
+    assert far == {("milliAmpere", 0), ("ReVolt", 1)}
+
+
 def test_page_states_what_is_found(generator, root):
     text = (root / "docs" / "generated" / "ship-estimates.md").read_text(encoding="utf-8")
     circles = [

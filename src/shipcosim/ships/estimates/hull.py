@@ -8,7 +8,7 @@ curve over breadth and draught as in Faltinsen, Sea Loads on Ships and Offshore 
 """
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import hypot, pi, sqrt
 
 import numpy as np
 
@@ -101,6 +101,8 @@ def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
     # Coupling of sway and yaw: zero, with the uncertainty of its lever.
     lever = 0.05 * L
     share = form.hulls
+    # Of a hull flatter than the formulae's only the order of magnitude is known.
+    flat = B / T > FLATTEST
     coupling = EstimatedNumber(
         0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway"
     )
@@ -110,26 +112,26 @@ def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
             max(0.3 * share * A11, 0.08 * form.mass),
             f"{SODING}; tolerance 8 % of the mass",
         ),
-        "A22": within(share * A22, 0.4, CLARKE),
+        "A22": within(share * A22, 2.0 if flat else 0.4, CLARKE),
         "A26": coupling,
         "A62": coupling,
         "A66": within(
             share * A22 * (0.23 * L) ** 2,
-            0.5,
+            2.0 if flat else 0.5,
             f"strips of {CLARKE}'s added mass in sway, gyration 0.23 L",
         ),
     }
 
 
-def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
+def inertia_yaw(mass: float, length: float, breadth: float, centre_x: float) -> EstimatedNumber:
     """Moment of inertia about midships, with a gyration radius of a quarter of the length.
 
     Parameters
     ----------
     mass : float
         Of the ship. [kg]
-    length : float
-        Between perpendiculars. [m]
+    length, breadth : float
+        Between perpendiculars; of the whole ship. [m]
     centre_x : float
         Centre of gravity forward of midships. [m]
 
@@ -140,9 +142,10 @@ def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
     """
     # Inertia about the centre of gravity, then Steiner's term to midships.
     own = mass * (0.25 * length) ** 2
-    return EstimatedNumber(
-        own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021"
-    )
+    # A box has m (L² + B²) / 12: what its breadth adds is unknown of a ship.
+    tolerance = hypot(0.15 * own, mass * breadth**2 / 12.0)
+    source = "gyration radius 0.25 L, Fossen 2021; tolerance 15 % and the breadth of a box"
+    return EstimatedNumber(own + mass * centre_x**2, tolerance, source)
 
 
 def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:
