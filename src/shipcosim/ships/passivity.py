@@ -94,7 +94,7 @@ def driven_by_water(where: str, values: Mapping[str, Any]) -> Iterator[Problem]:
     known = ((one.name, values.get(one.name)) for one in declared)
     given = {name: value for name, value in known if isinstance(value, int | float)}
     needed = {one.name for one in declared if one.default is MISSING}
-    if not needed <= given.keys() or any(map(left_out, given.values())):
+    if not needed <= given.keys() or any(map(left_out, given.values())) or given["length"] <= 0.0:
         return
     hull = HullParameters(**given)
     gain = energy_gain(hull)

@@ -119,5 +119,13 @@ def test_coriolis_loads_of_any_coefficients_do_no_work():
 def test_of_a_hull_that_is_not_complete_nothing_is_said():
     whole = asdict(parameters(HullParameters, "gunnerus-28m9", "vessel"))
     assert list(driven_by_water("a.toml", whole))
-    for name, value in (("mass", 1e30), ("A11", None), ("length", "")):
+    for name, value in (("mass", 1e30), ("A11", None), ("length", ""), ("length", 0.0)):
         assert not list(driven_by_water("a.toml", whole | {name: value}))
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 0.0, -1.0, 1e200, -1e200])
+def test_impossible_numbers_are_no_crash(value):
+    """Other checks say what is wrong with them."""
+    whole = asdict(parameters(HullParameters, "gunnerus-28m9", "vessel"))
+    for name in whole:
+        list(driven_by_water("a.toml", whole | {name: float(value)}))
