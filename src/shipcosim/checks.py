@@ -6,11 +6,15 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shipcosim import library
 from shipcosim.errors import Problem, ShipcosimError, error_at
+
+if TYPE_CHECKING:
+    from shipcosim.ssp import System
 
 LATE = 1e9  # s; beyond what any run has
 SMALLEST_STEP = 1e-6
@@ -222,7 +226,25 @@ def check_scenario_file(path: Path) -> list[Problem]:
     except ShipcosimError as error:
         problems = error.problems
     flaws = [problem for problem in system.remarks if problem.flaw]
-    return [*flaws, *problems, *check_scenario(scenario, system)]
+    driven = _driven_by_water(str(path), system)
+    return [*flaws, *problems, *check_scenario(scenario, system), *driven]
+
+
+def _driven_by_water(file: str, system: System) -> list[Problem]:
+    """Remarks on ships of a system that gain energy from still water."""
+    from shipcosim.ships.passivity import driven_by_water
+
+    # A component with other loads is a ship; a predictor has her numbers too.
+    ships = {
+        name: {one: part.start_value(one) for one in part.variables}
+        for name, part in system.components.items()
+        if "tau_X_1" in part.variables
+    }
+    return [
+        problem
+        for name, values in ships.items()
+        for problem in driven_by_water(f"{file}: {name}", values)
+    ]
 
 
 def check_osp_scenario(path: Path) -> list[Problem]:
@@ -314,6 +336,10 @@ def _check_system_file(file: str, path: Path) -> list[Problem]:
     fmus = library.fmus(path, build=False)
     problems = check_file(file, fmus=fmus)
     is_readable = not any(problem.severity == "error" for problem in problems)
+    if is_readable and (path.suffix.lower() in library.SYSTEMS or path.is_dir()):
+        from shipcosim.ssp import read_system
+
+        problems += _driven_by_water(file, read_system(file, fmus=fmus))
     if path.suffix.lower() == ".fmu" and is_readable:
         from shipcosim.cosim.slaves.validation import missing_libraries, validation_problems
 

@@ -1,18 +1,22 @@
 """Checks of a described ship: what is impossible, and what is unusual."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import pi
+from typing import Any
 
 import numpy as np
 
 from shipcosim.errors import Problem, ShipcosimError
 from shipcosim.ships.control import mass_matrix, why_no_dp
 from shipcosim.ships.described import Described, describe, file_of, read_file
+from shipcosim.ships.entries import Quantity
+from shipcosim.ships.estimates.hull import FLATTEST
 from shipcosim.ships.estimates.propulsion import MOST_KT, most_thrust
 from shipcosim.ships.estimates.resistance import MOST_FROUDE, froude_number
 from shipcosim.ships.file import number
 from shipcosim.ships.folder import read_ship
 from shipcosim.ships.numbers import ESTIMATED
+from shipcosim.ships.passivity import driven_by_water
 from shipcosim.ships.system import check_numbers
 from shipcosim.ships.thrusters import ShipThruster
 
@@ -21,7 +25,7 @@ BLOCK = (0.2, 1.0)
 OWN_BLOCK = 0.05
 """Share by which the displacement may differ from the block coefficient's."""
 SLENDER = (1.0, 20.0)
-SHALLOW = (0.3, 15.0)
+SHALLOW = (0.3, 30.0)
 """Length over breadth, breadth over draught."""
 GYRADIUS = (0.15, 0.40)
 BEYOND = 0.6
@@ -48,8 +52,7 @@ def check_ship(path: str) -> list[Problem]:
     try:
         said = read_file(file)
         if said.particulars is None and not said.thrusters:
-            read_ship(file.parent)
-            return []
+            return [*driven_by_water(f"{file}: vessel", _vessel(read_ship(file.parent).entries))]
         ship = describe(file, said)
     except ShipcosimError as error:
         return error.problems
@@ -64,6 +67,11 @@ def check_described(ship: Described) -> list[Problem]:
     ship : Described
     """
     return [*check_numbers(ship), *_hull(ship), *_matrix(ship), *_thrusters(ship), *_remarks(ship)]
+
+
+def _vessel(entries: Mapping[str, Mapping[str, Quantity]]) -> dict[str, Any]:
+    """Values of the vessel's parameters by name."""
+    return {name: entry.value for name, entry in entries.get("vessel", {}).items()}
 
 
 def _mass(kilograms: float) -> str:
@@ -251,6 +259,8 @@ def _thrust(unit: ShipThruster, where: str, draught: float) -> Iterator[Problem]
 
 def _remarks(ship: Described) -> Iterator[Problem]:
     yield from _speed(ship)
+    yield from _flat(ship)
+    yield from driven_by_water(f"{ship.path}: hull", _vessel(ship.entries))
     if why := why_no_dp(ship):
         yield Problem(f"{ship.path}: thrusters", f"there is no DP system: {why}.", "", "remark")
     count = len(estimated(ship))
@@ -262,6 +272,16 @@ def _remarks(ship: Described) -> Iterator[Problem]:
             "Give what you know; the rest has the tolerance of its formula.",
             "remark",
         )
+
+
+def _flat(ship: Described) -> Iterator[Problem]:
+    """Check that the hull is within the formulae of loads across."""
+    ratio = ship.form.breadth / ship.form.draught
+    if ratio > FLATTEST and "cross_flow_drag" in ship.vessel:
+        if ship.vessel["cross_flow_drag"].origin.startswith(ESTIMATED):
+            found = f"breadth over draught is {ratio:.3g}, beyond {FLATTEST:g}, where the formulae of her loads end."
+            remedy = "What is estimated of sway and yaw is a guess: give added_sway, added_yaw and drag.cross_flow."
+            yield Problem(f"{ship.path}: particulars", found, remedy, "remark")
 
 
 def _speed(ship: Described) -> Iterator[Problem]:

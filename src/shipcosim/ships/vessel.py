@@ -12,6 +12,7 @@ from shipcosim.ships.estimates.hull import (
     added_masses,
     cross_flow_drag,
     inertia_yaw,
+    linear_damping,
     manoeuvring_derivatives,
 )
 from shipcosim.ships.estimates.resistance import drag_coefficient
@@ -31,6 +32,11 @@ USUAL_FROUDE = 0.2
 GRAVITY = 9.81
 ALONG = ("X_u", "X_uu")
 """Coefficients of which one is enough for the resistance ahead."""
+ACROSS = {name for _, names in CONTRIBUTIONS.values() for name in names} - {
+    *ALONG,
+    "added_mass_coriolis",
+}
+"""Coefficients of which one is enough for all loads in sway and yaw."""
 NONE = "none"
 _NO_WAVES = "0.5 0 0 0 0; 0.5 180 0 0 0; 5 0 0 0 0; 5 180 0 0 0"
 
@@ -104,6 +110,7 @@ def vessel_of(
     _inertia(own, ship.mass, ship.particulars or Particulars(), form)
     _resistance(own, ship, form)
     _across(own, ship, form)
+    _linear(own, ship, form)
     _weather(own, ship, form)
     return own.entries
 
@@ -130,7 +137,8 @@ def _inertia(own: Numbers, m: Inertia, p: Particulars, form: HullDimensions) -> 
             value = mass * (gyradius.value**2 + centre**2)
             own.give("inertia_yaw", Given(value, tolerance, gyradius.origin or own.source))
         else:
-            own.estimate("inertia_yaw", inertia_yaw(mass, form.length, centre))
+            breadth = number(p.breadth)
+            own.estimate("inertia_yaw", inertia_yaw(mass, form.length, breadth, centre))
     # Added mass: as given, else by formulae.
     own.give("A11", m.added_surge)
     own.give("A22", m.added_sway)
@@ -162,16 +170,37 @@ def _across(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
     """Cross-flow drag and manoeuvring derivatives, estimated if the file has none of them."""
     own.give("cross_flow_drag", ship.drag.cross_flow)
     # The coefficients of a hull belong together: mixing given and estimated ones would be wrong.
-    across = {name for _, names in CONTRIBUTIONS.values() for name in names} - {
-        *ALONG,
-        "added_mass_coriolis",
-    }
-    if across & set(ship.hull):
+    if ACROSS & set(ship.hull):
         return
     own.estimate("cross_flow_drag", cross_flow_drag(form))
     # The derivatives hold for single hulls only.
     if form.hulls == 1:
         own.estimates(manoeuvring_derivatives(form, float(own.entries["A22"].value)))
+
+
+def _linear(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:
+    """Linear damping near rest, of the axes of which the file has no coefficient."""
+    # One that the file gives holds at all speeds, where an estimated one fades: never both.
+    names = CONTRIBUTIONS["linear_damping"][1]
+    if set(names) & set(ship.hull):
+        return
+    value = {
+        name: float(own.entries[name].value)
+        for name in ("mass", "A11", "A22", "inertia_yaw", "A66")
+    }
+    found = linear_damping(
+        form,
+        value["mass"] + value["A11"],
+        value["mass"] + value["A22"],
+        value["inertia_yaw"] + value["A66"],
+    )
+    if set(ALONG) & set(ship.hull):
+        found.pop("X_u")
+    if ACROSS & set(ship.hull):
+        for name in names[1:]:
+            found.pop(name)
+    if len(found) > 1:
+        own.estimates(found)
 
 
 def _weather(own: Numbers, ship: ShipFile, form: HullDimensions) -> None:

@@ -59,9 +59,11 @@ def test_more_thrust_on_the_left_turns_a_boat_to_starboard(name, root):
 
 
 def circle(root, side):
-    """Advance and tactical diameter of KVLCC2 at 35 deg, in lengths; propeller and speed of the paper's model."""
+    """Advance and tactical diameter of KVLCC2 at 35 deg, in lengths; all numbers of the paper's model."""
     system = sc.read(root / "ssp" / "kvlcc2_open", fmus=[build_stale(root)]).copy()
     published = {
+        "vessel.X_uu": -35.0,
+        "vessel.mmg_X_vv": -0.062,
         "propeller.diameter": 0.216,
         "propeller.covered": 0.626,
         "propeller.propeller_x": -3.36,

@@ -3,7 +3,9 @@
 import pytest
 from ships_at_hand import BOAT, COASTER, FILES, SUPPLY
 
+import shipcosim as sc
 from shipcosim.ships.check import check_ship
+from shipcosim.ssp import parameter, write_ssv
 
 PLANTED = {
     "no length": (
@@ -262,6 +264,22 @@ def test_nothing_is_wrong_with_a_ship_as_it_should_be(name, written):
     ]
 
 
+def test_a_flat_ferry_is_possible_with_a_remark_and_a_draught_in_centimetres_is_not(written):
+    """milliAmpere, 5.0 m x 2.8 m x 0.15 m."""
+    ferry = ('"60 m"', '"5 m"'), ('"14 m"', '"2.8 m"'), ('"2650 t"', '"1667 kg"')
+    at = ('"4.5 m"', '"0.15 m"')
+    places = [(f'"{x} m"', f'"{x / 15:g} m"') for x in (-27, -3.5, 3.5, 25)]
+    sizes = ('"2.4 m"', '"0.15 m"'), ('"1200 kW"', '"1 kW"'), ('"1.7 m"', '"0.15 m"')
+    small = *ferry, *places, *sizes, ('"500 kW"', '"1 kW"'), ('"12 kn"', '"3 kn"')
+    changes = [one for one in small for _ in range(SUPPLY.count(one[0]))]
+    found = check_ship(str(written(SUPPLY, *changes, at)))
+    (flat,) = [one for one in found if "breadth over draught is 18.7" in one.found]
+    assert flat.severity == "remark" and "guess" in flat.remedy
+    assert not [one for one in found if one.severity == "error"], found
+    wrong = check_ship(str(written(SUPPLY, *changes, ('"4.5 m"', '"0.015 m"'))))
+    assert any("is a unit missing" in one.remedy for one in wrong)
+
+
 def test_all_mistakes_are_said_at_once(written):
     path = written(
         SUPPLY, ('"60 m"', '"60 t"'), ("draught =", "draft ="), ('x = "25 m"', "xx = 25")
@@ -276,3 +294,26 @@ def test_a_ship_too_weak_for_her_speed_and_one_without_a_dp_earn_remarks(written
     assert any("does not reach her service speed" in problem.remedy for problem in weak)
     (remark,) = [p for p in check_ship(str(written(COASTER))) if "no DP system" in p.found]
     assert remark.severity == "remark"
+
+
+def test_a_ship_that_still_water_drives_earns_a_remark_in_any_file(written, root, tmp_path):
+    """In her file, in a system whose set calibrated or extended her, in a scenario with that set."""
+
+    def remarks(file):
+        found = [one for one in sc.check(file).problems if "still water" in one.found]
+        return [one.where for one in found if one.severity == "remark"]
+
+    assert remarks(written(SUPPLY)) == []
+    file = written(SUPPLY, ("[wind]", "[hull]\nY_v = -1e3\nN_v = 2e6\n[wind]"))
+    assert remarks(file) == [f"{file}: hull"]
+    assert remarks("gunnerus_open") == []
+    values = tmp_path / "calibrated.ssv"
+    write_ssv(values, "calibrated", [parameter("vessel.X_u", 3e3, "N.s/m", "calibrated")])
+    system = sc.read("gunnerus_open").copy()
+    system.bind(values)
+    system.write(tmp_path / "extended.ssp")
+    assert remarks(tmp_path / "extended.ssp") == [f"{tmp_path / 'extended.ssp'}: vessel"]
+    scenario = tmp_path / "run.toml"
+    head = f'system = "{root / "ssp" / "gunnerus_open"}"\nparameters = ["calibrated.ssv"]\n'
+    scenario.write_text(head + "stop_time = 1.0\nstep_size = 0.05\n")
+    assert remarks(scenario) == [f"{scenario}: vessel"]

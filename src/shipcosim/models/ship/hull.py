@@ -7,7 +7,7 @@ for which it has coefficients; a new effect is one more function here, with coef
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.models.core.maths import Arithmetic, hypot, maximum, minimum
+from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity, required
 
@@ -91,6 +91,13 @@ class HullParameters:
     Y_r: float = _unused("N.s/rad", "linear damping, sway by yaw")
     N_v: float = _unused("N.s", "linear damping, yaw by sway")
     N_r: float = _unused("N.m.s/rad", "linear damping in yaw")
+    linear_damping_speed: float = quantity(
+        0.0,
+        "m/s",
+        "speed over which the linear damping fades, by exp(-(U/this)^2); 0: the same at all speeds",
+        "neutral",
+        minimum=0.0,
+    )
 
     X_uu: float = quantity(
         0.0, "N.s2/m2", "quadratic damping in surge, u abs(u)", _UNUSED, share=0.05
@@ -105,7 +112,7 @@ class HullParameters:
     X_rvu: float = _unused("N.s3/(m2.rad)", "r v u")
     X_urr: float = _unused("N.s3/(m.rad2)", "u r r")
     X_umodv: float = _unused("N.s2/m2", "u abs(v)")
-    Y_uv: float = _unused("N.s2/m2", "u v")
+    Y_uv: float = _unused("N.s2/m2", "abs(u) v")
     Y_ur: float = _unused("N.s2/(m.rad)", "u r")
     Y_uur: float = _unused("N.s3/(m2.rad)", "u u r")
     Y_uuv: float = _unused("N.s3/m3", "u u v")
@@ -117,7 +124,7 @@ class HullParameters:
     Y_modrr: float = _unused("N.s2/rad2", "r abs(r)")
     Y_modvr: float = _unused("N.s2/(m.rad)", "r abs(v)")
     N_uv: float = _unused("N.s2/m", "u v")
-    N_ur: float = _unused("N.s2/rad", "u r")
+    N_ur: float = _unused("N.s2/rad", "abs(u) r")
     N_uur: float = _unused("N.s3/(m.rad)", "u u r")
     N_uuv: float = _unused("N.s3/m2", "u u v")
     N_vvv: float = _unused("N.s3/m2", "v v v")
@@ -300,15 +307,22 @@ def added_mass_coriolis(
 
 
 def linear_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParameters) -> Load:
-    """Linear damping, -D ν_r.
+    """Linear damping, -D ν_r; where there is a `linear_damping_speed` U_0 it is -D ν_r exp(-U²/U_0²).
 
     Parameters and returns as `hull_loads`.
 
     References
     ----------
-    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6.
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021, ch. 6. The exponential:
+    forceSurgeDamping.m of his MSS toolbox, where it blends linear into quadratic damping in surge.
     """
     X_u, Y_v, Y_r, N_v, N_r = hull.linear
+    if acts(hull.linear_damping_speed):
+        # Damping of a ship that hardly makes way; with speed the other contributions take over.
+        share = exp(-(u * u + v * v) / (hull.linear_damping_speed * hull.linear_damping_speed))
+        u = share * u
+        v = share * v
+        r = share * r
     return X_u * u, Y_v * v + Y_r * r, N_v * v + N_r * r
 
 
@@ -388,6 +402,9 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
 
     Those terms are C_A(ν_r) ν_r written out and come from `added_mass_coriolis`, so that they are counted once.
 
+    The source has u v in sway and u r in yaw, for a ship that goes ahead. Here they are abs(u) v and abs(u) r, so that
+    they damp astern too, as of a hull mirrored fore and aft; u r in sway and u v in yaw change sign with it.
+
     Parameters and returns as `hull_loads`.
 
     References
@@ -398,12 +415,12 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
     # Powers and products, each once.
     av = abs(v)
     ar = abs(r)
-    uv = u * v
-    ur = u * r
     rv = r * v
     vv = v * v
     rr = r * r
     uu = u * u
+    # What damps does so ahead and astern.
+    speed = abs(u)
     # Surge, sway and yaw as in the source, grouped by common factors.
     X = (
         p.X_vv * vv
@@ -412,8 +429,8 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
         + u * (p.X_uvv * vv + p.X_rvu * rv + p.X_urr * rr + p.X_umodv * av)
     )
     Y = (
-        p.Y_uv * uv
-        + p.Y_ur * ur
+        p.Y_uv * (speed * v)
+        + p.Y_ur * (u * r)
         + uu * (p.Y_uur * r + p.Y_uuv * v)
         + vv * (p.Y_vvv * v + p.Y_vvr * r)
         + rr * (p.Y_rrr * r + p.Y_rrv * v)
@@ -421,8 +438,8 @@ def polynomial(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullParamet
         + r * (p.Y_modrr * ar + p.Y_modvr * av)
     )
     N = (
-        p.N_uv * uv
-        + p.N_ur * ur
+        p.N_uv * (u * v)
+        + p.N_ur * (speed * r)
         + uu * (p.N_uur * r + p.N_uuv * v)
         + vv * (p.N_vvv * v + p.N_vvr * r)
         + rr * (p.N_rrr * r + p.N_rrv * v)

@@ -8,7 +8,7 @@ curve over breadth and draught as in Faltinsen, Sea Loads on Ships and Offshore 
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import hypot, pi, sqrt
 
 import numpy as np
 
@@ -21,6 +21,13 @@ _HOERNER = (
     (1.97, 1.90, 1.79, 1.20, 1.08, 1.00, 0.88, 0.83, 0.76, 0.69, 0.63, 0.59, 0.56),
 )
 """Half breadth over draught, drag coefficient."""
+FLATTEST = 8.0
+"""Breadth over draught at which that curve ends. [1]"""
+GRAVITY = 9.81  # m/s2
+TIME_CONSTANTS = {"X_u": 30.0, "Y_v": 18.0, "N_r": 9.4}
+"""Of linear damping, over the root of length and gravity; fitted to the models in docs/generated/ship-estimates.md. [1]"""
+SLOW_FROUDE = 0.04
+"""Over which it fades: 1.1 m/s of a ship of 76 m, twice the speeds of DP; assumed. [1]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,6 +101,8 @@ def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
     # Coupling of sway and yaw: zero, with the uncertainty of its lever.
     lever = 0.05 * L
     share = form.hulls
+    # Of a hull flatter than the formulae's only the order of magnitude is known.
+    flat = B / T > FLATTEST
     coupling = EstimatedNumber(
         0.0, share * lever * A22, "0: acts midships; tolerance 0.05 L of the added mass in sway"
     )
@@ -103,26 +112,26 @@ def added_masses(form: HullDimensions) -> dict[str, EstimatedNumber]:
             max(0.3 * share * A11, 0.08 * form.mass),
             f"{SODING}; tolerance 8 % of the mass",
         ),
-        "A22": within(share * A22, 0.4, CLARKE),
+        "A22": within(share * A22, 2.0 if flat else 0.4, CLARKE),
         "A26": coupling,
         "A62": coupling,
         "A66": within(
             share * A22 * (0.23 * L) ** 2,
-            0.5,
+            2.0 if flat else 0.5,
             f"strips of {CLARKE}'s added mass in sway, gyration 0.23 L",
         ),
     }
 
 
-def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
+def inertia_yaw(mass: float, length: float, breadth: float, centre_x: float) -> EstimatedNumber:
     """Moment of inertia about midships, with a gyration radius of a quarter of the length.
 
     Parameters
     ----------
     mass : float
         Of the ship. [kg]
-    length : float
-        Between perpendiculars. [m]
+    length, breadth : float
+        Between perpendiculars; of the whole ship. [m]
     centre_x : float
         Centre of gravity forward of midships. [m]
 
@@ -133,9 +142,10 @@ def inertia_yaw(mass: float, length: float, centre_x: float) -> EstimatedNumber:
     """
     # Inertia about the centre of gravity, then Steiner's term to midships.
     own = mass * (0.25 * length) ** 2
-    return EstimatedNumber(
-        own + mass * centre_x**2, 0.15 * own, "gyration radius 0.25 L, Fossen 2021"
-    )
+    # A box has m (L² + B²) / 12: what its breadth adds is unknown of a ship.
+    tolerance = hypot(0.15 * own, mass * breadth**2 / 12.0)
+    source = "gyration radius 0.25 L, Fossen 2021; tolerance 15 % and the breadth of a box"
+    return EstimatedNumber(own + mass * centre_x**2, tolerance, source)
 
 
 def cross_flow_drag(form: HullDimensions) -> EstimatedNumber:
@@ -187,7 +197,9 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
         "added_mass_coriolis": EstimatedNumber(0.0, 0.0, f"the derivatives of {CLARKE} hold it"),
         "Y_uv": within(-scale * L**2 * (1.0 + 0.40 * Cb * B / T), 0.3, CLARKE),
         "Y_ur": within(scale * L**3 * (0.5 - 2.2 * B / L + 0.08 * B / T), 0.5, CLARKE),
-        "N_uv": within(-scale * L**3 * (0.5 + 2.4 * T / L), 0.3, CLARKE),
+        "N_uv": within(
+            -scale * L**3 * (0.5 + 2.4 * T / L), 0.5, f"{CLARKE}; the Mariner has 0.64 of it"
+        ),
         "N_ur": within(-scale * L**4 * max(0.25 + 0.039 * B / T - 0.56 * B / L, 0.1), 0.3, CLARKE),
         "X_rv": within(
             0.7 * sway_mass,
@@ -195,3 +207,50 @@ def manoeuvring_derivatives(form: HullDimensions, sway_mass: float) -> dict[str,
             "0.7 of the added mass in sway; assumed, as MMG derivatives have it",
         ),
     }
+
+
+def linear_damping(
+    form: HullDimensions, surge: float, sway: float, yaw: float
+) -> dict[str, EstimatedNumber]:
+    """Linear damping of a ship that hardly makes way, from time constants that grow with the root of her length.
+
+    Parameters
+    ----------
+    form : HullDimensions
+        The hull.
+    surge, sway, yaw : float
+        Mass and moment of inertia with the added ones. [kg, kg, kg.m2]
+
+    Returns
+    -------
+    dict of str to EstimatedNumber
+        X_u, Y_v, Y_r, N_v, N_r, linear_damping_speed.
+
+    Notes
+    -----
+    The time constants are those with which this damping, and what else is estimated, comes nearest to six models that
+    were identified at low speed, which differ among themselves by a factor of ten.
+
+    References
+    ----------
+    Damping by time constants: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., Wiley, 2021,
+    ch. 6. The six models: docs/generated/ship-estimates.md.
+    """
+    # D = M / T with time constants that grow with the root of the length.
+    root = sqrt(form.length / GRAVITY)
+    times = {name: constant * root for name, constant in TIME_CONSTANTS.items()}
+    masses = {"X_u": surge, "Y_v": sway, "N_r": yaw}
+    values = {name: -masses[name] / times[name] for name in masses}
+    found = {
+        name: within(value, 1.5, f"time constant {times[name]:.3g} s; six ships near rest differ")
+        for name, value in values.items()
+    }
+    # Sway by yaw can have either sign; beyond 1 it would drive her.
+    share = 0.2 * sqrt(values["Y_v"] * values["N_r"])
+    coupling = EstimatedNumber(
+        0.0, share, "0; tolerance 0.2 of the root of Y_v N_r, as Fossen 1996"
+    )
+    speed = SLOW_FROUDE * sqrt(GRAVITY * form.length)
+    source = f"Froude number {SLOW_FROUDE:g}, assumed; under way the derivatives hold"
+    fading = EstimatedNumber(speed, 0.0, source)
+    return {**found, "Y_r": coupling, "N_v": coupling, "linear_damping_speed": fading}

@@ -18,15 +18,15 @@ RHO, L = 1000.0, 7.0
 
 
 def published(n, delta, u, v, r):
-    """Loads of the paper's formulas, written with J, KT and beta as there. KVLCC2's numbers, propeller of 0.204 m."""
+    """Loads of the paper's formulas, written with J, KT and beta as there. KVLCC2's numbers."""
     U, beta, rate = hypot(u, v), atan2(-v, u), r * L / hypot(u, v)
     beta_P, beta_R = beta + 3.386 / L * rate, beta + 0.710 * rate
     C2 = 1.6 if beta_P > 0.0 else 1.1
     w = 1.0 - (1.0 - 0.40) * (1.0 + (1.0 - exp(-2.0 * abs(beta_P))) * (C2 - 1.0))
-    J = u * (1.0 - w) / (n * 0.204)
+    J = u * (1.0 - w) / (n * 0.2157)
     KT = 0.2931 - 0.2753 * J - 0.1385 * J**2
-    T = RHO * n**2 * 0.204**4 * KT
-    eta = 0.591
+    T = RHO * n**2 * 0.2157**4 * KT
+    eta = 0.625
     u_R = (
         1.09
         * u
@@ -58,9 +58,9 @@ def test_loads_are_those_of_the_published_formulas(n, delta, u, v, r):
 
 def test_thrust_is_that_of_the_polynomial_over_the_advance_ratio():
     thrust, u_p = propeller_in_wake(10.0, 1.0, 0.0, 0.0, unit=STERN)
-    J = u_p / (10.0 * 0.204)
+    J = u_p / (10.0 * 0.2157)
     assert u_p == pytest.approx(0.6)
-    assert thrust == pytest.approx(RHO * 100.0 * 0.204**4 * (0.2931 - 0.2753 * J - 0.1385 * J * J))
+    assert thrust == pytest.approx(RHO * 100.0 * 0.2157**4 * (0.2931 - 0.2753 * J - 0.1385 * J * J))
 
 
 def test_positive_azimuth_pushes_the_stern_to_starboard_and_turns_her_to_port():

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from ships import parameters
 
+from shipcosim.models.core.motion import Motion
 from shipcosim.models.ship import hull as models
 from shipcosim.models.ship.hull import HullParameters, hull_loads
-from shipcosim.models.ship.vessel import accelerations
+from shipcosim.models.ship.vessel import accelerations, step
 
 LONG = parameters(HullParameters)
 SHORT = parameters(HullParameters, "gunnerus-28m9", "vessel")
@@ -70,12 +71,33 @@ def test_the_water_never_gives_the_long_hull_energy():
     assert np.max(X * u + Y * v + N * r) <= 0.0
 
 
+def test_linear_derivatives_astern_are_those_of_the_hull_mirrored_fore_and_aft():
+    hull = replace(LONG, added_mass_coriolis=0.0, lift=0.0, X_uu=0.0, cross_flow_drag=0.0)
+    hull = replace(hull, Y_uv=-3e4, Y_ur=3e5, N_uv=-3e5, N_ur=-2e6)
+    u, v, r = ANY_VELOCITY
+    X, Y, N = hull_loads(u, v, r, hull=hull)
+    np.testing.assert_allclose(hull_loads(-u, v, -r, hull=hull), (-X, Y, -N), rtol=1e-12)
+
+
+def test_short_hull_adrift_astern_loses_energy():
+    """In still water without thrust, as she had gained it: 1.42-fold in a minute with Yuv u v and Nur u r."""
+    start = Motion(0.0, 0.0, 0.0, -0.3, 0.2, 0.0)
+    none = 0.0, 0.0, 0.0, 0.0, 0.0
+    energies = []
+    for _ in range(61):
+        nu = np.array(start[3:])
+        energies.append(0.5 * nu @ mass_matrix(SHORT) @ nu)
+        start = step(start, *none, 1.0, hull=SHORT)
+    assert np.all(np.diff(energies) < 0.0)
+
+
 def test_short_hull_is_the_source_polynomial_which_holds_the_added_mass(shared):
-    """Parameter sheet 2.1 with Xuu as u abs(u): C_A in it, so counted once."""
+    """Parameter sheet 2.1 with Xuu as u abs(u): C_A in it, so counted once. Astern Yuv and Nur damp as ahead."""
     source = json.loads((shared / "reference/data/gunnerus_28p9_simval_hull.json").read_text())
     u, v, r = ANY_VELOCITY
     found = hull_loads(u, v, r, hull=SHORT)
     names = dict(source["coefficients_SI"], u=u, v=v, r=r, Xuu=0.0, Xuuu=0.0)
+    names |= {name: np.sign(u) * names[name] for name in ("Yuv", "Nur")}
     drag = (-2100.0 * u * np.abs(u), 0.0, 0.0)
     for axis, extra, load in zip("XYN", drag, found, strict=True):
         formula = source[axis].replace("^", "**")
@@ -107,6 +129,17 @@ def test_mass_scale_is_a_ship_of_that_mass_and_inertia_in_the_same_water():
     )
     at_rest = accelerations(0.0, 0.0, 0.0, 1e4, 0.0, 0.0, hull=replace(LONG, mass_scale=1.15))
     assert at_rest == pytest.approx((1e4 / (1.15 * 531e3 + 26_550.0), 0.0, 0.0))
+
+
+def test_linear_damping_fades_with_speed_and_not_with_turning():
+    hull = replace(LONG, X_u=-9e3, Y_v=-2e4, Y_r=1e4, N_v=-1e4, N_r=-3e6)
+    fading = replace(hull, linear_damping_speed=1.2)
+    u, v, r = ANY_VELOCITY
+    whole = np.array(models.linear_damping(u, v, r, hull=hull))
+    faded = np.array(models.linear_damping(u, v, r, hull=fading))
+    np.testing.assert_allclose(faded, whole * np.exp(-(u**2 + v**2) / 1.2**2), rtol=1e-12)
+    spot = models.linear_damping(0.0, 0.0, 0.1, hull=fading)
+    assert spot == models.linear_damping(0.0, 0.0, 0.1, hull=hull)
 
 
 def test_drag_scale_multiplies_the_resistance_ahead_and_nothing_else():
@@ -172,11 +205,11 @@ SIZE = 0.5 * 1000.0 * 7.0 * 0.455
 
 @pytest.mark.parametrize("state", [(1.179, 0.0, 0.0), (0.9, -0.25, 0.05), (0.5, 0.2, -0.06)])
 def test_mmg_hull_is_the_published_sum_with_its_munk_moment_once(state):
-    """Resistance, derivatives, and of the added mass what MMG writes on the other side, m_y v r and -m_x u r."""
+    """Derivatives, resistance of another tank, and what MMG writes on the other side, m_y v r and -m_x u r."""
     u, v, r = state
     U = np.hypot(u, v)
     a, b = v / U, 7.0 * r / U
-    X = -0.022 - 0.040 * a**2 + 0.002 * a * b + 0.011 * b**2 + 0.771 * a**4
+    X = -0.01545 - 0.040 * a**2 + 0.002 * a * b + 0.011 * b**2 + 0.771 * a**4
     Y = -0.315 * a + 0.083 * b - 1.607 * a**3 + 0.379 * a * a * b - 0.391 * a * b * b + 0.008 * b**3
     N = -0.137 * a - 0.049 * b - 0.030 * a**3 - 0.294 * a * a * b + 0.055 * a * b * b - 0.013 * b**3
     expected = SIZE * U**2 * np.array([X, Y, 7.0 * N]) + np.array(
