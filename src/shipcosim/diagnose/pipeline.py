@@ -25,6 +25,7 @@ From the verdict to the gain, `diagnose`:
     named_if_better    Diagnosis       no name for a cause that predicts these rows worse than the ship without it
     verified           Diagnosis       "consistent" only where the system predicts these rows as it would a healthy ship
     with_findings      ExtendedSystem  the system with the named causes in it
+    with_form          ExtendedSystem  the system with the numbers of another form, where that is the answer
     with_cosimulation  SimulatedLog    the predictions as co-simulations of the given and the extended system
     completed          Diagnosis       errors, gain, and all that the page shows
 """
@@ -52,7 +53,7 @@ from shipcosim.diagnose.reference.reference import Reference, read_reference, wi
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
-from shipcosim.diagnose.statement import completed, named_if_better, stated, verified
+from shipcosim.diagnose.statement import completed, named_if_better, stated, verified, with_form
 from shipcosim.diagnose.validation.conditions import with_predictions
 from shipcosim.diagnose.validation.replays import with_cosimulation
 from shipcosim.ssp import AnyPath, AnySystem, System, SystemStructure, read
@@ -124,6 +125,7 @@ def diagnose(
     found = verified(found, predicted)
     say("extending the system")
     extended = with_findings(given, found.findings, basis.explained.identification, out)
+    found, extended = with_form(found, predicted, extended, out)
     say("the gain, by co-simulation")
     simulated = with_cosimulation(
         predicted, extended, lambda *done: say("the gain, by co-simulation", *done)

@@ -13,20 +13,23 @@ from shipcosim.diagnose.experiment.testability import (
     untestable_causes,
     visible_sizes,
 )
+from shipcosim.diagnose.explanation.search import without_causes
 from shipcosim.diagnose.explanation.summary import LoadForm, evidence_of, load_form
 from shipcosim.diagnose.explanation.verdict import JudgedLog
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
+from shipcosim.diagnose.extension.form_numbers import form_numbers, with_form_numbers
 from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.inference.thresholds import BESIDE_UNKNOWN
 from shipcosim.diagnose.log.remarks import handled
 from shipcosim.diagnose.result import Diagnosis, LogSummary
 from shipcosim.diagnose.validation.conditions import PredictedLog, with_predictions
-from shipcosim.diagnose.validation.gain import CHANNELS, HORIZONS, baseline, gain, rms
+from shipcosim.diagnose.validation.gain import CHANNELS, HORIZONS, baseline, error_with, gain, rms
 from shipcosim.diagnose.validation.healthy_errors import healthy_errors
 from shipcosim.diagnose.validation.replays import SimulatedLog
 from shipcosim.diagnose.validation.summary import prediction_errors
 from shipcosim.diagnose.validation.thresholds import WORSE
 from shipcosim.diagnose.validation.tracks import tracks_of
+from shipcosim.ssp import AnyPath
 
 
 def stated(log: JudgedLog) -> Diagnosis:
@@ -149,6 +152,40 @@ def verified(found: Diagnosis, predicted: PredictedLog) -> Diagnosis:
         "than any of the healthy ships drawn within its tolerances."
     )
     return replace(found, verdict="unknown", healthy=healthy, remarks=(*found.remarks, remark))
+
+
+def with_form(
+    found: Diagnosis, predicted: PredictedLog, given: ExtendedSystem, folder: AnyPath
+) -> tuple[Diagnosis, ExtendedSystem]:
+    """A diagnosis of another form with the system that has its numbers, where that predicts the log better.
+
+    Parameters
+    ----------
+    found : Diagnosis
+    predicted : PredictedLog
+    given : ExtendedSystem
+        Not extended yet.
+    folder : path
+        Gets extended.ssp and extended.ssv.
+
+    Returns
+    -------
+    tuple of Diagnosis and ExtendedSystem
+        As given unless the verdict is ``"form"``.
+    """
+    comparison = predicted.comparison
+    if found.verdict != "form" or found.form is None or comparison is None:
+        return found, given
+    # Judged by numbers that never saw the rows which they predict; written with those of the whole log.
+    trained = form_numbers(comparison.fit, given.given)
+    error = error_with(comparison, {path: of.estimate for path, of in trained.items()})
+    found = replace(found, form=replace(found.form, system_m=error))
+    if error >= rms(comparison.errors, "position", "plain"):
+        remark = "No system was written: with the numbers of the form that it has, it predicts other rows no better."
+        return replace(found, remarks=(*found.remarks, remark)), given
+    log = predicted.judged
+    numbers = form_numbers(without_causes(log.fits), given.given)
+    return found, with_form_numbers(given, numbers, log.explained.identification, folder)
 
 
 def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:

@@ -15,6 +15,7 @@ ENTRIES = {
         "discrepancies",
         "form",
         "baseline",
+        "healthy_errors",
         "gain",
     ),
 }

@@ -61,6 +61,8 @@ class LoadForm:
     horizon_s, before_m, after_m : float or None
         Position error of predictions after this time, without the form and with it, on rows that its numbers were not
         fitted on; None where there are too few. [s, m, m]
+    system_m : float or None
+        The same with those of the numbers alone that the system has parameters for. [m]
     """
 
     scale: float
@@ -70,6 +72,7 @@ class LoadForm:
     horizon_s: float | None = None
     before_m: float | None = None
     after_m: float | None = None
+    system_m: float | None = None
 
 
 @dataclass(frozen=True)

@@ -101,11 +101,16 @@ def extend(
         ssv,
         {name: value.value for name, value in draft.values.items()},
         tuple(draft.inserted),
-        {role: f"{draft.shows}.{name}" + draft.suffix for role, name in _SHOWN.items()},
+        signals_of(draft.shows, draft.suffix),
         draft.errors,
         draft.lag,
         tuple(draft.remarks),
     )
+
+
+def signals_of(component: str, suffix: str = "") -> dict[str, str]:
+    """By role: the signal of a ship or of her instruments that shows what the log should."""
+    return {role: f"{component}.{name}{suffix}" for role, name in _SHOWN.items()}
 
 
 def _ship(structure: SystemStructure) -> str:

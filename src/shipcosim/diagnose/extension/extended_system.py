@@ -112,12 +112,13 @@ def extended_by(
             given, remarks=tuple(f"The system was not extended: {text}" for text in said)
         )
     changes = (
-        _change(name, value, given.given, system) for name, value in extension.values.items()
+        change_of(name, value, given.given, system) for name, value in extension.values.items()
     )
     return replace(given, extension=extension, system=system, changes=tuple(changes))
 
 
-def _change(name, value, given, extended):
+def change_of(name: str, value: float, given: System, extended: System) -> NumberChange:
+    """A number that the extended system has otherwise than the given one."""
     component, _, variable = name.rpartition(".")
     start = (
         given.components[component].start_value(variable) if component in given.components else None

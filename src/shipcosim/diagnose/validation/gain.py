@@ -1,5 +1,6 @@
 """What naming the cause is worth: how far predictions with each model are off, on rows that nothing was fitted on."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -278,6 +279,26 @@ def _observed(problem, about_fit, motion, seen, ship_models):
 def rms(errors: xarray.Dataset, channel: str, model: str, horizon: float = HORIZONS[-1]) -> float:
     """Root mean square over the segments of one error of one model."""
     return float(np.sqrt((errors[channel].sel(model=model, horizon=horizon) ** 2).mean()))
+
+
+def error_with(comparison: Comparison, numbers: Mapping[str, float]) -> float:
+    """Root mean square position error after the longest horizon, by the plain model with other numbers. [m]
+
+    Parameters
+    ----------
+    comparison : Comparison
+        Its rows and what was known where they start are taken.
+    numbers : mapping of str to float
+        By ``place.name``, in the units of the ship's numbers.
+    """
+    predictor = comparison.predictors["plain"]
+    rows = comparison.rows
+    start = Motion(*(value[rows] for value in predictor.motion))
+    model = predictor.model.with_values(numbers)
+    horizon = in_rows(predictor.record)[-1]
+    there = readings(predicted(start, rows, predictor.record, model, [horizon]), model)
+    off = missing(Motion(*(value[0] for value in there)), comparison.seen, rows + horizon)
+    return float(np.sqrt((off["position"] ** 2).mean()))
 
 
 def baseline(errors: xarray.Dataset) -> dict[str, list[float]]:

@@ -1,7 +1,7 @@
 """Section 4 of the page: what was changed in the system?"""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from shipcosim.diagnose.extension.extend import Extension
@@ -21,6 +21,8 @@ class ExtensionSection:
         The result in a few words.
     state : str
         "extended"; or why nothing was: "no cause", "failed", "log only" (the log is to be corrected, not the system).
+    content : str
+        What is in it.
     system, parameters : str
         Names of the files with the extended system and its parameter set.
     values : Table
@@ -32,6 +34,7 @@ class ExtensionSection:
 
     found: str
     state: Literal["extended", "no cause", "failed", "log only"]
+    content: str = "The named causes"
     system: str = ""
     parameters: str = ""
     values: Table = Table(())
@@ -41,9 +44,11 @@ class ExtensionSection:
 
 def extension_section(diagnosis: Diagnosis) -> ExtensionSection:
     """Section 4 of the page for the template."""
-    return section_of(
-        diagnosis.extension, diagnosis.changes, any(f.kind == "physics" for f in diagnosis.findings)
-    )
+    is_found = any(finding.kind == "physics" for finding in diagnosis.findings)
+    section = section_of(diagnosis.extension, diagnosis.changes, is_found)
+    if diagnosis.verdict == "form":
+        section = replace(section, content="Those numbers of the other form that the FMUs have")
+    return section
 
 
 def section_of(

@@ -186,8 +186,11 @@ def _form(diagnosis: Diagnosis, form: LoadForm) -> str:
     if form.before_m is not None and form.after_m is not None:
         text += (
             f" After {form.horizon_s:g} s the simulation is {metres(form.before_m)} off the log, with that form "
-            f"{metres(form.after_m)}."
+            f"{metres(form.after_m)}"
         )
+        if form.system_m is not None and form.system_m < form.before_m:
+            text += f", and with those of its numbers that the FMUs have {metres(form.system_m)} (extended.ssp)"
+        text += "."
     if form.hides:
         hidden = listed([title(name).lower() for name in form.hides])
         text += f" It can hide {hidden}."
@@ -293,7 +296,8 @@ def next_steps(
         )
     # What is possible now, and what this log cannot say.
     if extended:
-        steps.append(f"Simulate with the cause in the system: shipcosim simulate {extended}")
+        what = "these numbers" if diagnosis.verdict == "form" else "the cause"
+        steps.append(f"Simulate with {what} in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable and not diagnosis.obstacles:
         steps.append(f"This log {say_nothing(diagnosis.not_testable, 'says')}")
     return steps or ["Nothing needs to be done."]

@@ -1,0 +1,109 @@
+"""The numbers of another form that the system has parameters for: as a log would have them, and written as its set."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from shipcosim.diagnose.explanation.identification import Identification
+from shipcosim.diagnose.extension.extend import Extension, signals_of
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem, change_of
+from shipcosim.diagnose.finding import ParameterEstimate
+from shipcosim.diagnose.inference.fitting import Fit
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read, read_system, write_ssv
+
+
+def form_numbers(fit: Fit, system: System) -> dict[str, ParameterEstimate]:
+    """Numbers of a ship as a log would have them, of those that her system has parameters for.
+
+    The form has more numbers than FMUs have parameters: smooth functions over place and angle. A set that left them out
+    would be half of an answer, so the others are estimated as if these were the model's.
+
+    Parameters
+    ----------
+    fit : Fit
+        Without causes.
+    system : System
+
+    Returns
+    -------
+    dict of str to ParameterEstimate
+        By ``place.name``, in the unit of the system.
+    """
+    carried = np.array([_is_carried(column.changes, system) for column in fit.columns], bool)
+    if not carried.any():
+        return {}
+    # Mean and covariance of what is carried, given that the rest is as in the model: those of a Gaussian.
+    to_rest = fit.covariance[np.ix_(carried, ~carried)]
+    gain = to_rest @ np.linalg.pinv(fit.covariance[np.ix_(~carried, ~carried)])
+    mean = fit.left[carried] - gain @ fit.left[~carried]
+    std = np.sqrt(np.diag(fit.covariance[np.ix_(carried, carried)] - gain @ to_rest.T))
+    found = {}
+    columns = [column for column, is_in in zip(fit.columns, carried, strict=True) if is_in]
+    for column, share, deviation in zip(columns, mean, std, strict=True):
+        for path, size in column.changes.items():
+            about = fit.model.about(path)
+            value = np.clip(
+                fit.model.get(path) + size * share,
+                -np.inf if about["minimum"] is None else about["minimum"],
+                np.inf if about["maximum"] is None else about["maximum"],
+            )
+            deviation_of = float(abs(size) * deviation)
+            found[path] = ParameterEstimate(float(value), deviation_of, about["unit"])
+    return found
+
+
+def _is_carried(changes: Mapping[str, float], system: System) -> bool:
+    """Whether the system has parameters for all numbers of a column."""
+    return all(
+        not ShipModel.is_of_day(path)
+        and place in system.components
+        and name in system.components[place].variables
+        for path in changes
+        for place, _, name in [path.rpartition(".")]
+    )
+
+
+def with_form_numbers(
+    given: ExtendedSystem,
+    numbers: Mapping[str, ParameterEstimate],
+    log: Identification,
+    folder: AnyPath,
+) -> ExtendedSystem:
+    """A system with the numbers of another form in it.
+
+    Parameters
+    ----------
+    given : ExtendedSystem
+        Not extended yet.
+    numbers : mapping of str to ParameterEstimate
+        As from `form_numbers`.
+    log : Identification
+        That they are from.
+    folder : path
+        Gets extended.ssp and extended.ssv.
+
+    Returns
+    -------
+    ExtendedSystem
+    """
+    source = given.source
+    structure = source.copy() if isinstance(source, SystemStructure) else read(source)
+    name = Path(log.log.encoding.get("source", "log")).name
+    values = {}
+    for path, of in numbers.items():
+        text = f"as {name} would have it, beside the others of this set; {log.ship.get(path):.6g} before"
+        unit = None if of.unit == "1" else of.unit
+        values[path] = parameter(path, of.estimate, unit, text, tolerance=of.std)
+    ssv = Path(folder) / "extended.ssv"
+    ssp = Path(folder) / "extended.ssp"
+    write_ssv(ssv, "extended", values.values())
+    structure.bind(ssv)
+    structure.write(ssp)
+    system = read_system(str(ssp))
+    sizes = {path: value.value for path, value in values.items()}
+    changes = tuple(change_of(path, size, given.given, system) for path, size in sizes.items())
+    extension = Extension(ssp, ssv, sizes, signals=signals_of(log.ship.vessel))
+    return replace(given, extension=extension, system=system, changes=changes)
