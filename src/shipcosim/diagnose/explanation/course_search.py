@@ -53,6 +53,7 @@ from shipcosim.diagnose.inference.thresholds import (
     ENOUGH,
     FORM_COST,
     LIKELIEST_COURSES,
+    MEASURED_WHILE_PRESENT,
     MOST_COURSE_BLOCKS,
     ROUNDS_OF_COURSE,
     SHORTEST_SPELL,
@@ -444,14 +445,19 @@ def _first_sight(blocks: _Blocks, wanted) -> list[_Try]:
 
 
 def _courses(edges: np.ndarray) -> Iterator[Course]:
-    """Courses that begin and end at some times; none is there all along."""
-    *starts, end = map(float, edges)
+    """Courses that begin and end at some times; none is there all along, or for one block alone.
+
+    A few wrong rows, as beside a gap, push the ship for a block.
+    """
+    *starts, last, end = map(float, edges)
     for start in starts[1:]:
         yield Course(STEP, ((start, end),))
     for start in starts:
         yield Course(RAMP, ((start, end),))
-    for start, until in combinations(starts, 2):
-        yield Course(SPELL, ((start, until),))
+    times = (*starts, last)
+    for first, after in combinations(range(len(times)), 2):
+        if after - first > 1:
+            yield Course(SPELL, ((times[first], times[after]),))
 
 
 def _with_further_spells(blocks: _Blocks, one: _Try) -> _Try:
@@ -501,7 +507,14 @@ def _estimates(hypothesis, columns, theta, covariance) -> dict[str, ParameterEst
 
 
 def _is_clear(one: _Fitted) -> bool:
-    """Whether a cause with a course is large enough to matter, clearly off none, and within its bounds."""
+    """Whether a cause with a course is large enough to matter, clearly off none, within its bounds, and measured.
+
+    What is wrong beside a gap pushes the ship where nobody measured her.
+    """
+    record = one.of.base.record
+    present = one.of.course.at(record.time) > 0.0
+    if np.isfinite(record.measured[present, :3]).all(-1).mean() < MEASURED_WHILE_PRESENT:
+        return False
     parameters = one.of.hypothesis.parameters
     own = slice(-len(parameters), None)
     size = float(np.linalg.norm(one.theta[own]))

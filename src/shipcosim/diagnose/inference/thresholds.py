@@ -102,6 +102,8 @@ CALM_WALK = 3e-6
 a third of it, one with a tow that came and went ten times it."""
 WALK_IN_YAW = 0.12
 """The same of the acceleration in yaw. [1/m] As tuned on the same logs."""
+MEASURED_WHILE_PRESENT = 0.5
+"""Share of the rows of a spell in which position and heading must be measured. Assumed: in most of them."""
 SHORTEST_SPELL = 300.0
 """Spell of a cause whose rows are predicted by themselves. [s] Assumed."""
 SIZES_OVER_TIME = 12
