@@ -162,7 +162,8 @@ def visible_sizes(excitation: Excitation) -> tuple[VisibleSize, ...]:
         is_vector = len(places) < len(hypothesis.parameters)
         for place, information in zip(places, informations, strict=True):
             spread = 1.0 / np.sqrt(max(float(information), 1e-12))
-            wanted = excitation.least + 0.5 * np.log1p(information)
+            cost = hypothesis.definition.cost
+            wanted = excitation.least + cost + 0.5 * np.log1p(information)
             of_evidence = spread * np.sqrt(2.0 * wanted * (1.0 + spread**2))
             least = max(of_evidence, hypothesis.definition.least, DEVIATIONS * spread)
             path = next(iter(excitation.columns[place].changes))

@@ -16,6 +16,7 @@ from shipcosim.diagnose.hypotheses.catalogue import Hypothesis
 from shipcosim.diagnose.inference.fitting import Fit, IdentificationProblem
 from shipcosim.diagnose.inference.thresholds import (
     APART,
+    BESIDE_A_LARGE_CAUSE,
     BESIDE_UNKNOWN,
     DEVIATIONS,
     ENOUGH,
@@ -36,7 +37,7 @@ _BY_PART = "from part to part"
 _AS_THEY_ARE = (
     _BY_PART,
     "beyond tolerances",
-)  # unmodelled errors whose evidence does not grow with the causes' gain
+)  # unmodelled errors whose evidence hardly grows with the causes' gain
 
 
 @dataclass(frozen=True)
@@ -244,7 +245,7 @@ def judge(
     """
     nothing = without_causes(fits)
     fair = [fit for fit in fits if not fit.hypotheses or admissible(fit, fits, null or {})]
-    best = _best_steady(sorted(fair, key=lambda fit: -fit.score), unmodelled)
+    best = _best_steady(sorted(fair, key=lambda fit: -_with_odds(fit)), unmodelled)
     candidates = _of_all(fair)
     gain = best.score - nothing.score
     if len(best.hypotheses) > MOST_CAUSES or all(
@@ -254,7 +255,9 @@ def judge(
     if not best.hypotheses:
         return Judgement("consistent", best, (), candidates, ())
     rivals = [
-        fit for fit in fair if fit.hypotheses and fit is not best and fit.score > best.score - APART
+        fit
+        for fit in fair
+        if fit.hypotheses and fit is not best and _with_odds(fit) > _with_odds(best) - APART
     ]
     rivals = [fit for fit in rivals if not set(labels(best)) < set(labels(fit))]
     findings = tuple(
@@ -273,8 +276,13 @@ def judge(
 
 def _of_all(fits):
     """Causes with their probabilities by all sets that were fitted, none of them preferred."""
-    scores = [fit.score if fit.hypotheses else fit.score + ENOUGH for fit in fits]
+    scores = [_with_odds(fit) if fit.hypotheses else fit.score + ENOUGH for fit in fits]
     return _candidates(dict(zip(fits, _weights(scores), strict=True)))
+
+
+def _with_odds(fit):
+    """Log-evidence of a set less what its causes cost: the logarithm of its odds. [nats]"""
+    return fit.score - sum(one.definition.cost for one in fit.hypotheses)
 
 
 def _beside_unknown(candidates):
@@ -286,9 +294,10 @@ def _beside_unknown(candidates):
 
 def _stands_out(gains, of_causes):
     """Whether unmodelled errors gain more than the gain of the causes lets one expect."""
-    most = max(UNMODELLED, UNMODELLED_SHARE * of_causes)
+    share = {kind: BESIDE_A_LARGE_CAUSE for kind in _AS_THEY_ARE}
     return any(
-        gain > (UNMODELLED if kind in _AS_THEY_ARE else most) for kind, gain in gains.items()
+        gain > max(UNMODELLED, share.get(kind, UNMODELLED_SHARE) * of_causes)
+        for kind, gain in gains.items()
     )
 
 
@@ -316,7 +325,8 @@ def admissible(fit: Fit, fits: Sequence[Fit], null: dict[str, float]) -> bool:
         _is_sized(hypothesis, fit)
         and _in_shape(hypothesis, fit)
         and _exceeds_special(hypothesis, fit, fits)
-        and not gained(hypothesis, fit, fits) < ENOUGH + max(null.get(hypothesis.label, 0.0), 0.0)
+        and not gained(hypothesis, fit, fits)
+        < ENOUGH + hypothesis.definition.cost + max(null.get(hypothesis.label, 0.0), 0.0)
         for hypothesis in fit.hypotheses
     )
 

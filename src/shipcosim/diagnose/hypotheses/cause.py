@@ -138,6 +138,8 @@ class Cause(_Strict):
         act linearly.
     least : float
         An effect below this share of its typical size is not named.
+    cost : float
+        Log-evidence that it must gain beyond what every cause must: a rare cause needs more. [nats]
     companions : list of str
         Numbers that are only known within their tolerance and only matter where this cause acts.
     shape : list of str
@@ -168,6 +170,7 @@ class Cause(_Strict):
     law: Literal["linear", "vector", "turning"] = "linear"
     sought_by: list[str] = []
     least: float = 0.2
+    cost: float = 0.0
     companions: list[str] = []
     shape: list[str] = []
     replaces: list[str] = []

@@ -17,6 +17,8 @@ from shipcosim.report.theme.views import Outcome
 ADD_A_CAUSE = (
     "If you know a cause that is not in the catalogue, add it as one file (docs/add-a-cause.md)."
 )
+LIKELY = 0.25
+"""Probability of a candidate beside an unknown error, half of what it were alone, from which on it is mentioned."""
 
 
 def title(cause: str, component: str | None = None) -> str:
@@ -218,12 +220,15 @@ def _better_predictor(diagnosis: Diagnosis) -> str:
 
 def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
     """What is certain without a named cause: the largest discrepancy and sure findings."""
+    said = f" Certain is: {listed(physics)}." if physics else ""
+    likely = [one for one in diagnosis.candidates if one.probability >= LIKELY]
+    if likely:
+        names = [title(one.cause, one.component).lower() for one in likely]
+        said += f" Of the known ones {listed(names)} explain{'s' * (len(names) == 1)} most."
     if not diagnosis.discrepancies:
-        certain = f" Certain is: {listed(physics)}." if physics else ""
-        return f"The simulation is wrong by more than noise, and none of the known causes explains it.{certain}"
+        return f"The simulation is wrong by more than noise, and none of the known causes explains it.{said}"
     first = diagnosis.discrepancies[0].what
-    certain = f" Certain is: {listed(physics)}." if physics else ""
-    return f"The simulation is wrong, first of all: {first}.{certain} None of the known causes explains all of it."
+    return f"The simulation is wrong, first of all: {first}. None of the known causes explains all of it.{said}"
 
 
 def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:

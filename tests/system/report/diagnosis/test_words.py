@@ -242,3 +242,10 @@ def test_another_form_is_an_answer_with_what_it_explains_and_hides():
         "crossflow",
     ):
         assert text in said.sentence
+
+
+def test_an_unknown_cause_is_told_with_the_known_ones_that_explain_most():
+    likely = (Candidate("thrust_loss", "port", 0.49), Candidate("drag", None, 0.01))
+    said = outcome(Diagnosis("unknown", candidates=likely)).sentence
+    assert "Of the known ones thrust loss of port explains most." in said
+    assert "drag" not in said
