@@ -34,9 +34,8 @@ def with_learnt_form(found: Identification) -> Identification:
 def learnt(problem: IdentificationProblem) -> IdentificationProblem:
     """The problem of a ship that may differ from the model's form as far as the log says.
 
-    The model's form is preferred by `FORM_COST`. The scale is that of largest evidence at first sight, which says too
-    little of a form that bends the track: it is tried where it is as likely as the model's there, and kept if the log
-    is likelier by that cost once its likeliest cause is fitted beside each. What a reference says of a ship is kept.
+    The model's form is preferred by `FORM_COST`. The scale is that of largest evidence at first sight, and is kept if
+    the log is likelier too once its likeliest cause is fitted beside each. What a reference says of a ship is kept.
 
     Parameters
     ----------
@@ -50,7 +49,7 @@ def learnt(problem: IdentificationProblem) -> IdentificationProblem:
     if problem.model.form_scale or problem.model.directions:
         return problem
     scores = scores_by_scale(problem, fitted(problem))
-    scale = max(scores, key=lambda scale: scores[scale])
+    scale = max(scores, key=lambda scale: scores[scale] - FORM_COST * (scale > 0.0))
     if not scale:
         return problem
     formed = of_scale(problem, scale)
