@@ -194,7 +194,7 @@ def _check_usable(found: dict[str, Identification]) -> None:
             )
         comparison = one.comparison
         problems += [Problem(name, why) for why in comparison.obstacles]
-        for finding in comparison.findings:
+        for finding in comparison.findings(one.causes):
             what = f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well."
             problems.append(
                 Problem(name, what, "Diagnose the log, and calibrate the extended system.")

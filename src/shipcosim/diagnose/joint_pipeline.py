@@ -21,9 +21,10 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.comparison.compared import compared, ratio_finding
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
+from shipcosim.diagnose.craft.learned import ratio_findings
 from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
 from shipcosim.diagnose.experiment.testability import not_testable, visible_sizes
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
@@ -151,7 +152,7 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
     crude = []
     judgement = basis.verdict.judgement
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
-        crude = list(ratio_finding(ratio, found.causes))
+        crude = list(ratio_findings(ratio.ratio, ratio.std, found.causes))
     said = {shared.what.label for shared in found.findings}
     named = [one for one in judgement.fit.hypotheses if one.label in said]
     if not named:
@@ -319,7 +320,8 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     judgement = basis.verdict.judgement
     ratios = basis.ratios
     is_split = ratios.common is None and any(one.differs(GROSS) for one in ratios.each.values())
-    crude = ratio_finding(ratios.common, found.causes) if basis.has_ratio and ratios.common else ()
+    common = ratios.common if basis.has_ratio else None
+    crude = ratio_findings(common.ratio, common.std, found.causes) if common else ()
     causes = () if is_split else judgement.findings
     logs = basis.verdict.logs
     labels = {one.label: one for one in logs.hypotheses}

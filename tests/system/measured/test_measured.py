@@ -86,3 +86,20 @@ def test_kvlcc2_zigzags_as_published_numbers_say(log, fmus):
         ).tracks
     )
     assert float(errors["position"].max()) < 3.5 and float(errors["heading"].max()) < 12.0
+
+
+def test_a_craft_is_learned_from_her_own_log_and_runs_as_a_system(log, fmus, tmp_path):
+    """Co-simulated, the extended system errs by less than half as much as the file's."""
+    table, channels, system = log("blueboat", "run_224.csv.gz")
+    given = read_system(system, fmus=[fmus])
+    found = sc.diagnose(table, given, channels=channels)
+    errors = found.craft.errors
+    assert errors.after < 0.3 * errors.before and errors.after_deg < 0.3 * errors.before_deg
+    # The sides of her thrusters are exchanged in the log.
+    text = channels.read_text().replace("left_force", "?").replace("right_force", "left_force")
+    put_right = tmp_path / "channels.toml"
+    put_right.write_text(text.replace("?", "right_force"))
+    systems = {"before": given, "after": found.extended}
+    replayed = errors_of(replay_log(table, systems, put_right, horizon=3.0).tracks)
+    before, after = (float(replayed["position"].sel(simulation=name)[-1]) for name in systems)
+    assert after < 0.5 * before

@@ -15,7 +15,7 @@ from shipcosim.diagnose.calibration_pipeline import (
     log_names,
     steps_of,
 )
-from shipcosim.diagnose.comparison.compared import LogComparison
+from shipcosim.diagnose.compared_log import LogComparison
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.reference import calibration
@@ -68,10 +68,11 @@ def test_logs_that_cannot_show_a_ship_that_is_well_are_refused_with_why():
     logs = {
         "open": SimpleNamespace(faults=(misread,), comparison=LogComparison()),
         "poor": SimpleNamespace(
-            faults=(), comparison=SimpleNamespace(obstacles=("Rows 9 s apart.",), findings=())
+            faults=(),
+            comparison=SimpleNamespace(obstacles=("Rows 9 s apart.",), findings=lambda _: ()),
         ),
         "gross": SimpleNamespace(
-            faults=(), comparison=SimpleNamespace(obstacles=(), findings=(gross,))
+            faults=(), comparison=SimpleNamespace(obstacles=(), findings=lambda _: (gross,))
         ),
     }
     with pytest.raises(ShipcosimError) as raised:
