@@ -1,6 +1,6 @@
 """The stage between the checks of a log and its identification: what is grossly wrong, and where to start."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -178,13 +178,39 @@ def with_learned_craft(
     comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel
 ) -> LogComparison:
     """The comparison with the craft that a log teaches, where she predicts what was held out better than the file's."""
-    logged = as_logged(ship, repaired)
-    record = record_of(repaired, logged)
-    logged = with_surrogates(logged, record, first_motion(record, logged))
-    log = craft_log(record, logged, comparison.errors["horizon_s"])
-    craft = learn([log]) if log is not None else None
+    craft = learned_from([(repaired, comparison)], ship)
+    return comparison if craft is None else replace(comparison, craft=craft)
+
+
+def learned_from(
+    logs: Sequence[tuple[xarray.Dataset, LogComparison]], ship: ShipModel
+) -> LearnedCraft | None:
+    """The craft that logs teach, each held out in turn; of a single one parts of it.
+
+    Parameters
+    ----------
+    logs : sequence of tuple of Dataset and LogComparison
+        Repaired, and how the simulation compares.
+    ship : ShipModel
+        As her file has her.
+
+    Returns
+    -------
+    LearnedCraft or None
+        None where logs are too short, or she predicts no better than the file's for sure.
+    """
+    each = [comparison.errors["horizon_s"] for _, comparison in logs]
+    horizons = [float(horizon) for horizon in np.median(each, axis=0)]
+    parts = []
+    for part, (log, _) in enumerate(logs):
+        logged = as_logged(ship, log)
+        record = record_of(log, logged)
+        logged = with_surrogates(logged, record, first_motion(record, logged))
+        parts.append(craft_log(record, logged, horizons, part, whole=len(logs) > 1))
+    usable = [one for one in parts if one is not None]
+    craft = learn(usable) if len(usable) == len(logs) else None
     is_better = craft is not None and craft.errors is not None and craft.errors.is_better
-    return replace(comparison, craft=craft) if is_better else comparison
+    return craft if is_better else None
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ import pytest
 from measured.logs import CHANNELS, FOLDERS, as_table
 
 import shipcosim as sc
+from shipcosim.diagnose.joint_pipeline import diagnose_jointly
 from shipcosim.diagnose.replays import replay_log
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.library import build_stale
@@ -103,3 +104,13 @@ def test_a_craft_is_learned_from_her_own_log_and_runs_as_a_system(log, fmus, tmp
     replayed = errors_of(replay_log(table, systems, put_right, horizon=3.0).tracks)
     before, after = (float(replayed["position"].sel(simulation=name)[-1]) for name in systems)
     assert after < 0.5 * before
+
+
+def test_logs_together_teach_a_craft_that_predicts_each_from_the_others(log, fmus):
+    """Without this, three logs together gained nothing: 6.1 m after 10 s, and 6.3 m with their common ratio."""
+    names = ("run_224.csv.gz", "run_230.csv.gz", "run_235.csv.gz")
+    tables = [log("blueboat", name) for name in names]
+    system = read_system(tables[0][2], fmus=[fmus])
+    found = diagnose_jointly([table for table, *_ in tables], system, tables[0][1])
+    gain = found.as_json()["gain"]
+    assert gain["after_m"] < 0.55 * gain["before_m"] and found.craft.logs == 3

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -169,13 +169,19 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     found = _errors(logs, normal.numbers, values)
     parts = len(each) - 1
     spread = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean(0)) ** 2).sum(0))
-    gains = [found.gain(k, 0)[0] for k in range(1, len(tries) - 1)]
-    learned = [
-        LearnedNumber(one, float(each[-1, i]), float(spread[i]), float(np.exp(gain)))
-        for one, i, gain in zip(numbers, free, gains, strict=True)
-        if each[-1, i] != one.given
-    ]
-    return learned_craft(logs[0].model, learned, _of_all(found, logs), len(logs))
+    gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
+
+    def craft(values: np.ndarray) -> LearnedCraft:
+        learned = [
+            LearnedNumber(one, float(values[i]), float(spread[i]), gain)
+            for one, i, gain in zip(numbers, free, gains, strict=True)
+            if values[i] != one.given
+        ]
+        return learned_craft(logs[0].model, learned, _of_all(found, logs), len(logs))
+
+    if len(logs) == 1:
+        return craft(each[-1])
+    return replace(craft(each[-1]), each_without=tuple(map(craft, each[:-1])))
 
 
 def _of_all(found: _HeldOut, logs: Sequence[CraftLog]) -> HeldOutErrors:

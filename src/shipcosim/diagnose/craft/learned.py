@@ -118,6 +118,8 @@ class LearnedCraft:
         None of a ratio of thrust to inertia alone, which the comparison of forces tells.
     logs : int
         How many she was learned from.
+    each_without : tuple of LearnedCraft
+        Of several logs: the same numbers as learned without each of them.
     """
 
     numbers: tuple[LearnedNumber, ...]
@@ -126,6 +128,7 @@ class LearnedCraft:
     std: dict[str, float]
     errors: HeldOutErrors | None = None
     logs: int = 1
+    each_without: tuple[LearnedCraft, ...] = ()
 
     def on(self, model: ShipModel) -> ShipModel:
         """The ship with these numbers, known as well as their standard deviations say."""

@@ -225,8 +225,9 @@ def craft_sentence(craft: LearnedCraft | None) -> str:
     if craft is None or craft.errors is None:
         return ""
     errors = craft.errors
+    taught = "the log teaches her" if craft.logs == 1 else f"{craft.logs} logs teach her"
     return (
-        f" The craft as the log teaches her predicts it better: after {errors.horizon:.3g} s, on parts that were held "
+        f" The craft as {taught} predicts better: after {errors.horizon:.3g} s, on parts that were held "
         f"out, {metres(errors.after)} and {errors.after_deg:.2g}° off instead of {metres(errors.before)} and "
         f"{errors.before_deg:.2g}°."
     )
