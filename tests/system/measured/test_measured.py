@@ -14,6 +14,7 @@ import pytest
 from measured.logs import CHANNELS, FOLDERS, as_table
 
 import shipcosim as sc
+from shipcosim.diagnose.calibration_pipeline import calibrate
 from shipcosim.diagnose.joint_pipeline import diagnose_jointly
 from shipcosim.diagnose.replays import replay_log
 from shipcosim.diagnose.validation.tracks import errors_of
@@ -114,3 +115,17 @@ def test_logs_together_teach_a_craft_that_predicts_each_from_the_others(log, fmu
     found = diagnose_jointly([table for table, *_ in tables], system, tables[0][1])
     gain = found.as_json()["gain"]
     assert gain["after_m"] < 0.55 * gain["before_m"] and found.craft.logs == 3
+
+
+def test_calibration_to_logs_of_a_real_craft_makes_a_reference_that_predicts_each_from_the_others(
+    log, fmus, tmp_path
+):
+    """It refused her as too far off, or made a reference that missed by more than the file's ship."""
+    tables = [log("blueboat", f"run_{run}.csv.gz") for run in (224, 230, 235)]
+    system = read_system(tables[0][2], fmus=[fmus])
+    made = calibrate([table for table, *_ in tables], system, tables[0][1], out=tmp_path)
+    errors = [one.errors for one in made.logs]
+    squares = [(one.before[-1] ** 2, one.after[-1] ** 2) for one in errors]
+    before, after = np.sqrt(np.mean(squares, axis=0))
+    assert not made.refusals and (tmp_path / "reference.json").is_file()
+    assert after < 0.6 * before
