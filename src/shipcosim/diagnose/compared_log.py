@@ -16,7 +16,7 @@ from shipcosim.diagnose.comparison.label_hypotheses import LabelError
 from shipcosim.diagnose.comparison.labels import Labels, read_labels
 from shipcosim.diagnose.comparison.measured_force import felt_by
 from shipcosim.diagnose.comparison.missing_loads import MissingLoad, missing_loads
-from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, RESOLVED
+from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
 from shipcosim.diagnose.craft.learn import learn
 from shipcosim.diagnose.craft.learned import LearnedCraft, ratio_alone, ratio_findings
 from shipcosim.diagnose.craft.logged import craft_log
@@ -89,14 +89,14 @@ class LogComparison:
         return self.craft if self.is_started_with else None
 
     def findings(self, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
-        """Thrust over inertia, where it differs for sure: as the log teaches the craft, else by the forces felt."""
-        if self.craft is None:
+        """Thrust over inertia, where the forces felt tell it: as the log teaches the craft where that is sure."""
+        ratio = self.ratio
+        if self.craft is None or ratio is None or not ratio.differs(PLAIN):
             return ()
-        if thrust := self.craft.thrust:
-            return ratio_findings(thrust.value, thrust.std, causes)
-        if self.is_started_with and self.ratio is not None:
-            return ratio_findings(self.ratio.ratio, self.ratio.std, causes)
-        return ()
+        known = self.craft.thrust
+        if known is not None:
+            return ratio_findings(known.value, known.std, causes)
+        return ratio_findings(ratio.ratio, ratio.std, causes)
 
     def given(self, model: ShipModel) -> ShipModel:
         """A ship as the system has her: without what was put into her beyond doubt."""

@@ -16,6 +16,8 @@ from measured.logs import CHANNELS, FOLDERS, as_table
 import shipcosim as sc
 from shipcosim.diagnose.calibration_pipeline import calibrate
 from shipcosim.diagnose.joint_pipeline import diagnose_jointly
+from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
+from shipcosim.diagnose.log.reader import read_log
 from shipcosim.diagnose.replays import replay_log
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.library import build_stale
@@ -129,3 +131,16 @@ def test_calibration_to_logs_of_a_real_craft_makes_a_reference_that_predicts_eac
     before, after = np.sqrt(np.mean(squares, axis=0))
     assert not made.refusals and (tmp_path / "reference.json").is_file()
     assert after < 0.6 * before
+
+
+@pytest.mark.parametrize("every", [1, 10])
+def test_gusts_in_a_pond_are_no_wrong_labels_of_the_wind(every):
+    """The wind channels are right in all of these logs; ten of eighteen were said to be wrong, at 0.99."""
+    folder = MEASURED / "esso_osaka"
+    if not folder.is_dir():
+        pytest.skip("needs the logs in ../shared/measured, which are not here")
+    for path in sorted(folder.glob("*.gz")):
+        log = read_log(path, CHANNELS / "esso_osaka.toml").isel(time=slice(None, None, every))
+        arrays = {name: log[name].values.astype(float) for name in (*log.data_vars, "time")}
+        arrays["heading"] = np.degrees(np.unwrap(np.radians(arrays["heading"])))
+        assert jumping_wind(arrays) == [], path.name
