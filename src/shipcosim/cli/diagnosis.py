@@ -51,6 +51,7 @@ def _sections(diagnosis):
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
+    from shipcosim.report.diagnosis.gain_section import craft_table
     from shipcosim.report.diagnosis.key_figures import key_figures
     from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
     from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, title
@@ -71,6 +72,7 @@ def _sections(diagnosis):
     return [
         ("Wrong, largest first", table(discrepancy_rows(diagnosis))),
         ("Found", finding_table(diagnosis.findings)),
+        ("Learned of the craft", table(craft_table(diagnosis.craft).rows)),
         ("This log cannot tell apart", table(alike)),
         ("Errors", table(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),

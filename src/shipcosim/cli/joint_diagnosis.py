@@ -33,6 +33,7 @@ def _sections(found):
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
+    from shipcosim.report.diagnosis.gain_section import craft_table
     from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
     from shipcosim.report.diagnosis.words import title
     from shipcosim.report.joint.words import (
@@ -55,6 +56,7 @@ def _sections(found):
         ("Wrong, largest first", table(discrepancy_rows(found))),
         ("Faults of the data in common", table(fault_rows(found))),
         ("Causes in common", table(cause_rows(found))),
+        ("Learned of the craft", table(craft_table(found.craft).rows)),
         ("Errors by log", table([head, *errors] if errors else [])),
         (
             "Each log by itself: verdict, own faults, causes",

@@ -9,6 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 import shipcosim
+from shipcosim.diagnose.compared_log import learned_from
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.thresholds import FORM_COST
@@ -30,6 +31,7 @@ from shipcosim.diagnose.reference.calibration import (
     reference_of,
 )
 from shipcosim.diagnose.reference.joint_fit import JointFit
+from shipcosim.diagnose.reference.learned_reference import learned_errors, learned_reference
 from shipcosim.diagnose.reference.parameter_set import FILE as SET
 from shipcosim.diagnose.reference.parameter_set import write_parameter_set
 from shipcosim.diagnose.reference.reference import FILE, KnownNumber, Reference, ReferenceLog
@@ -41,6 +43,10 @@ from shipcosim.ssp import AnyPath, System
 
 READING = "are the logs right?"
 
+_ANOTHER_CRAFT = (
+    "The craft is not the file's by far, so her numbers are learned from the accelerations that the logs show. Whether "
+    "she was well these logs cannot say."
+)
 _KINDS_OF_THE_LOG = ("slow", "with the heading", "periodic", "in a channel")
 
 
@@ -146,6 +152,9 @@ def calibrate(
         problems = problems_of(logs, given, channels, causes, say)
         found = {name: corrected(problem) for name, problem in problems.items()}
         _check_usable(found)
+        if any(one.comparison.started_craft for one in found.values()):
+            say("fitting the ship's numbers")
+            return _calibrated_craft(found, given, out)
         several = SeveralLogs({name: one.problem for name, one in found.items()}, is_well=True)
         say("fitting the ship's numbers")
         fitted = calibrated_to(several)
@@ -182,6 +191,42 @@ def calibrate(
     return result
 
 
+def _calibrated_craft(
+    found: Mapping[str, Identification], given: System, out: AnyPath | None
+) -> CalibratedShip:
+    """A craft that is not the file's by far, as the logs teach her; refused where she predicts no better.
+
+    Raises
+    ------
+    ShipcosimError
+        Where she predicts logs, or parts of a single one, that were held out no better than the system for sure.
+    """
+    first = next(iter(found.values()))
+    ship = first.comparison.given(first.ship)
+    craft = learned_from([(one.repaired, one.comparison) for one in found.values()], ship)
+    if craft is None:
+        what = "Numbers learned from the others predict a log, or a part of it, no better than the system for sure."
+        right = "Give more logs, with turns and with thrust ahead and astern."
+        raise error_at(", ".join(found), what, right)
+    told = {name: ReferenceLog(**_about(name, one)) for name, one in found.items()}
+    reference = learned_reference(
+        craft, ship, list(told.values()), given.name, shipcosim.__version__
+    )
+    each = craft.each_without or (craft,)
+    logs = []
+    for others, (name, one) in zip(each, found.items(), strict=True):
+        model = one.comparison.given(one.problem.model)
+        names = [other for other in found if other != name]
+        errors = learned_errors(one.problem.record, model, others, craft, names)
+        logs.append(CalibratedLog(name, one.faults, {}, errors, {}))
+    refusals = tuple(_reasons_not_to_trust(logs, {}))
+    result = CalibratedShip(reference, tuple(logs), refusals, (_ANOTHER_CRAFT,))
+    if out is not None and not refusals:
+        write_parameter_set(given, reference, Path(out) / SET)
+        reference.write(Path(out) / FILE)
+    return result
+
+
 def _check_usable(found: dict[str, Identification]) -> None:
     """Raise ShipcosimError where a log cannot show a ship that is well, or a system is wrong by far."""
     problems = []
@@ -194,11 +239,6 @@ def _check_usable(found: dict[str, Identification]) -> None:
             )
         comparison = one.comparison
         problems += [Problem(name, why) for why in comparison.obstacles]
-        for finding in comparison.findings:
-            what = f"{finding.label} stands beyond doubt: the system is wrong by far, or the ship is not well."
-            problems.append(
-                Problem(name, what, "Diagnose the log, and calibrate the extended system.")
-            )
     if problems:
         raise ShipcosimError(problems)
 

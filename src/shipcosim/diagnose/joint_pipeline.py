@@ -21,9 +21,10 @@ from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.calibration_pipeline import READING, log_names, problems_of
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.comparison.compared import compared, ratio_finding
+from shipcosim.diagnose.compared_log import compared, learned_from
 from shipcosim.diagnose.comparison.gains import CommonRatio
 from shipcosim.diagnose.comparison.thresholds import GROSS, PLAIN
+from shipcosim.diagnose.craft.learned import ratio_findings
 from shipcosim.diagnose.experiment.design import ExperimentDesign, design_experiment
 from shipcosim.diagnose.experiment.testability import not_testable, visible_sizes
 from shipcosim.diagnose.explanation.form import of_scale, with_learnt_form
@@ -116,7 +117,7 @@ def diagnose_jointly(
     say("extending the system")
     of_ship = [shared.what for shared in found.findings if shared.what.component not in found.logs]
     about = {"source": ", ".join(found.logs), "sha256": ""}
-    extended = extended_by(given, of_ship, about, found.causes, out)
+    extended = extended_by(given, of_ship, about, found.causes, out, found.craft)
     errors = {}
     if found.basis:
         errors = errors_by_log(
@@ -124,6 +125,7 @@ def diagnose_jointly(
             found.basis.verdict.logs,
             given,
             lambda name: _findings_without(found, name),
+            found.crafts_without,
             found.causes,
             lambda name, *done: say(f"{name} again, by co-simulation", *done),
         )
@@ -151,7 +153,7 @@ def _findings_without(found: JointDiagnosis, name: str) -> tuple[list[Finding], 
     crude = []
     judgement = basis.verdict.judgement
     if basis.has_ratio and (ratio := basis.ratios.without(name)):
-        crude = list(ratio_finding(ratio, found.causes))
+        crude = list(ratio_findings(ratio.ratio, ratio.std, found.causes))
     said = {shared.what.label for shared in found.findings}
     named = [one for one in judgement.fit.hypotheses if one.label in said]
     if not named:
@@ -255,8 +257,11 @@ def _together(
         name: replace(_as_read(usable[name], ship), log=with_right_labels(usable[name].log, faults))
         for name, faults in relabelled.items()
     }
-    comparisons = {name: one.comparison for name, one in usable.items()}
-    comparisons |= {name: compared(checked(one)).comparison for name, one in read.items()}
+    stages = {name: (one.repaired, one.comparison) for name, one in usable.items()}
+    for name, one in read.items():
+        again = compared(checked(one))
+        stages[name] = again.repaired, again.comparison
+    comparisons = {name: comparison for name, (_, comparison) in stages.items()}
     ratios = ratio_of_logs({name: one.ratio for name, one in comparisons.items() if one.ratio})
     start = ratios.common if ratios.common is not None and ratios.common.differs(GROSS) else None
     about = {name: _about_common(one, read.get(name), ship, start) for name, one in usable.items()}
@@ -275,11 +280,13 @@ def _together(
     has_ratio = ratios.common is not None and ratios.common.differs(
         GROSS if verdict.judgement.verdict != "unknown" else PLAIN
     )
+    # Where no cause explains the logs, or the craft is another beyond doubt, they teach her together.
+    craft = None
+    if verdict.judgement.verdict == "unknown" or start is not None:
+        craft = learned_from(list(stages.values()), ship)
     basis = JointBasis(verdict, ratios, has_ratio)
-    said = replace(
-        found, basis=basis, relabelled={name: tuple(faults) for name, faults in relabelled.items()}
-    )
-    return _stated(said)
+    faults = {name: tuple(faults) for name, faults in relabelled.items()}
+    return _stated(replace(found, basis=basis, relabelled=faults, craft=craft))
 
 
 def _relabelled(
@@ -319,7 +326,8 @@ def _stated(found: JointDiagnosis) -> JointDiagnosis:
     judgement = basis.verdict.judgement
     ratios = basis.ratios
     is_split = ratios.common is None and any(one.differs(GROSS) for one in ratios.each.values())
-    crude = ratio_finding(ratios.common, found.causes) if basis.has_ratio and ratios.common else ()
+    common = ratios.common if basis.has_ratio else None
+    crude = ratio_findings(common.ratio, common.std, found.causes) if common else ()
     causes = () if is_split else judgement.findings
     logs = basis.verdict.logs
     labels = {one.label: one for one in logs.hypotheses}

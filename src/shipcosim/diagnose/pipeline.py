@@ -16,7 +16,7 @@ From there to its verdict, `verdict_on`:
     with_right_inputs  ExplainedLog    mislabelled channels of thrusters and wind, which look like causes
     with_course        ExplainedLog    causes that begin, grow, or come and go
     judged             JudgedLog       the verdict, against unmodelled errors and what healthy ships gain
-    with_crude_model   JudgedLog       thrust and damping over inertia after all, where nothing else explains the log
+    with_craft         JudgedLog       the craft as the log teaches her, where no cause explains it
 
 From the verdict to the gain, `diagnose`:
 
@@ -36,12 +36,12 @@ from dataclasses import replace
 from threadpoolctl import threadpool_limits
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.comparison.compared import compared
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.explanation.course_search import with_course
 from shipcosim.diagnose.explanation.form import with_learnt_form, with_settled_form
 from shipcosim.diagnose.explanation.identification import Identification, identified
 from shipcosim.diagnose.explanation.search import with_causes
-from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_crude_model
+from shipcosim.diagnose.explanation.verdict import JudgedLog, judged, with_craft
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_findings
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
@@ -124,7 +124,8 @@ def diagnose(
     found, predicted = named_if_better(found, with_predictions(basis, found.is_named))
     found = verified(found, predicted)
     say("extending the system")
-    extended = with_findings(given, found.findings, basis.explained.identification, out)
+    identification = basis.explained.identification
+    extended = with_findings(given, found.findings, identification, out)
     found, extended = with_form(found, predicted, extended, out)
     say("the gain, by co-simulation")
     simulated = with_cosimulation(
@@ -250,4 +251,4 @@ def verdict_on(problem: Identification, progress: Progress) -> JudgedLog:
     explained = with_settled_form(with_causes(identification))
     explained = with_course(with_right_inputs(explained), plain)
     progress("what do healthy ships look like?")
-    return with_crude_model(judged(explained))
+    return with_craft(judged(explained))

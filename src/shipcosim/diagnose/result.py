@@ -4,6 +4,7 @@ from dataclasses import asdict, dataclass, field
 
 import xarray
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.experiment.manoeuvres import Manoeuvre
 from shipcosim.diagnose.explanation.summary import Evidence, LoadForm
@@ -98,6 +99,8 @@ class Diagnosis:
         system predicts the log.
     obstacles : tuple of str
         Why no cause can be named from the log, whatever it shows, and what would do.
+    craft : LearnedCraft or None
+        What the log teaches of a craft that is not the file's, with what that gains on parts that were held out.
     basis : JudgedLog or None
         What the findings rest on, for further work: the log, the identification problem, the fits.
     folder : TemporaryDirectory or None
@@ -129,6 +132,7 @@ class Diagnosis:
     form: LoadForm | None = None
     healthy: HealthyErrors | None = None
     obstacles: tuple[str, ...] = ()
+    craft: LearnedCraft | None = None
     smallest_visible: tuple[VisibleSize, ...] = field(default=(), repr=False)
     basis: JudgedLog | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
@@ -138,15 +142,6 @@ class Diagnosis:
         """Whether causes of the physics are named, and nothing else is the matter."""
         return self.verdict == "named" and any(
             finding.kind == "physics" for finding in self.findings
-        )
-
-    @property
-    def has_crude(self) -> bool:
-        """Whether a cause is among the findings that only a comparison of commanded with felt force finds."""
-        causes = self.basis.explained.identification.causes if self.basis else self.causes
-        return any(
-            one.cause in causes and causes[one.cause].sought_in == "comparison"
-            for one in self.findings
         )
 
     @property
@@ -167,6 +162,7 @@ class Diagnosis:
             "prescription": asdict(self.prescription) if self.prescription else None,
             "discrepancies": [asdict(discrepancy) for discrepancy in self.discrepancies],
             "form": asdict(self.form) if self.form else None,
+            "craft": self.craft.as_json() if self.craft else None,
             "baseline": self.baseline,
             "healthy_errors": self.healthy.as_json() if self.healthy else None,
             "gain": self.gain,

@@ -48,9 +48,7 @@ def stated(log: JudgedLog) -> Diagnosis:
             baseline=comparison.errors,
             basis=log,
         )
-    of_log = (*found.faults, *found.misconnections, *comparison.findings)
-    if judgement.verdict == "unknown":
-        of_log = (*of_log, *comparison.found_without())
+    of_log = (*found.faults, *found.misconnections, *comparison.findings(found.causes))
     seen = {one.cause for one in (*of_log, *judgement.candidates, *judgement.findings)}
     rivals = (
         judgement.rivals if not found.ship.third_party else ()
@@ -64,7 +62,7 @@ def stated(log: JudgedLog) -> Diagnosis:
     verdict = judgement.verdict
     if verdict == "consistent" and of_log:
         verdict = "named"
-    elif verdict == "consistent" and form_of and form_of.numbers:
+    elif verdict == "consistent" and (comparison.craft or (form_of and form_of.numbers)):
         verdict = "form"
     return Diagnosis(
         verdict,
@@ -74,13 +72,13 @@ def stated(log: JudgedLog) -> Diagnosis:
         ),
         judgement.candidates,
         judgement.indistinguishable,
-        tuple(cause for cause in untestable if not _is_said(cause, seen, log)),
+        tuple(cause for cause in untestable if cause not in seen),
         design_experiment(log.problem, log.fit, rivals) if rivals else None,
         comparison.errors,
         discrepancies=comparison.told(judgement.verdict),
         form=form_of,
         obstacles=comparison.obstacles,
-        remarks=comparison.remarks,
+        craft=comparison.craft,
         smallest_visible=tuple(
             one for one in sizes if label_of(one.cause, one.component) not in named
         ),
@@ -188,28 +186,12 @@ def with_form(
     return found, with_form_numbers(given, numbers, log.explained.identification, folder)
 
 
-def _is_said(cause: str, seen: set[str], log: JudgedLog) -> bool:
-    """Whether a cause, or all that it could say, is said in other words."""
-    found = log.explained.identification
-    if cause in seen or cause not in found.causes:
-        return cause in seen
-    return found.comparison.spoken_for(found.causes[cause], seen, found.causes)
-
-
 def _with_errors(form: LoadForm | None, errors: xarray.Dataset) -> LoadForm | None:
     """A form with the errors of predictions without it and with it, on rows that its numbers were not fitted on."""
     if form is None:
         return None
     before, after = (rms(errors, "position", model) for model in ("plain", "calibrated"))
     return replace(form, horizon_s=float(HORIZONS[-1]), before_m=before, after_m=after)
-
-
-def _crude_gain(found: Diagnosis, log: JudgedLog) -> dict | None:
-    """What the crude model gains over the craft's own horizon, where it is named and was measured."""
-    crude = log.explained.identification.comparison.crude
-    if not found.has_crude or crude is None or crude.errors is None:
-        return None
-    return crude.errors.as_gain()
 
 
 def completed(
@@ -220,6 +202,7 @@ def completed(
     errors = simulated.errors
     identification = log.explained.identification
     problem = log.problem
+    craft = found.craft
     summary = LogSummary(
         Path(identification.log.encoding.get("source", "log")).name,
         identification.log,
@@ -235,14 +218,14 @@ def completed(
         facts=log_facts(problem),
         log=summary,
         evidence=evidence_of(log),
-        tracks=tracks_of(log, found.is_named, found.has_crude),
+        tracks=tracks_of(log, found.is_named),
         force=predicted.force,
         extension=extended.extension,
         extended=extended.system,
         changes=extended.changes,
         system=extended.given,
         remarks=(*found.remarks, *extended.remarks, *simulated.remarks),
-        gain=_crude_gain(found, log),
+        gain=craft.errors.as_gain() if craft and craft.errors else None,
     )
     if errors is None or predicted.comparison is None:
         return complete

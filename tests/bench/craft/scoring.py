@@ -5,7 +5,7 @@ from collections import Counter
 import numpy as np
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.comparison.compared import compared
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
 
@@ -21,7 +21,8 @@ def score(drawn, found):
     """One row: what was hidden, what is said, and how it counts."""
     comparison = found.comparison
     labels = sorted((fault.cause, *fault.channels) for fault in found.faults)
-    ratio = [finding.parameters["ratio"].estimate for finding in comparison.findings]
+    found_ratio = comparison.findings(found.causes)
+    ratio = [finding.parameters["ratio"].estimate for finding in found_ratio]
     is_open = (
         comparison.labels is not None
         and comparison.labels.is_wrong

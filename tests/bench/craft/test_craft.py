@@ -44,31 +44,18 @@ def test_of_thrusters_told_nearly_alike_none_is_said_to_push_many_times_as_much(
 @pytest.mark.parametrize(
     "seed", [108, 115]
 )  # thrust twice and damping thrice the model's; a half and a quarter
-def test_thrust_and_damping_over_inertia_are_found_together_and_predict_better(seed):
+def test_a_craft_with_another_thrust_and_damping_is_learned_and_predicts_better(seed):
     drawn = draw(seed, change="ratio and damping", rough=0.0)
     found = answer(drawn)
-    crude = found.comparison.crude
-    assert (
-        found.comparison.is_started_with
-        and crude.errors.is_better
-        and crude.errors.after < 0.5 * crude.errors.before
-    )
-    size = {one.axis: one.estimate for one in crude.numbers}
-    hidden = {axis: drawn.damping if axis else drawn.size for axis in size}
-    assert {"", "yaw"} <= set(size)
-    assert {a: size[a] for a in ("", "yaw")} == pytest.approx(
-        {a: hidden[a] for a in ("", "yaw")}, rel=0.15
-    )
-    for one in crude.numbers:
-        assert abs(np.log(one.estimate / hidden[one.axis])) < 2.0 * one.std / one.estimate
-    damping = f"{drawn.model.vessel}.N_r"
-    assert found.ship.get(damping) == pytest.approx(size["yaw"] * drawn.model.get(damping))
-    assert found.comparison.given(found.ship).get(damping) == pytest.approx(
-        drawn.model.get(damping)
-    )
+    craft = found.comparison.craft
+    assert found.comparison.is_started_with and craft.errors.is_better
+    assert craft.errors.after < 0.5 * craft.errors.before
+    (finding,) = found.comparison.findings(found.causes)
+    assert finding.parameters["ratio"].estimate == pytest.approx(drawn.size, rel=0.2)
+    assert found.comparison.given(found.ship).parts["hull"] == drawn.model.parts["hull"]
 
 
 @pytest.mark.parametrize("seed", [108, 113, 115])
-def test_of_a_healthy_craft_there_is_no_crude_model(seed):
-    comparison = answer(draw(seed, rough=0.0)).comparison
-    assert comparison.crude is None and comparison.findings == () == comparison.remarks
+def test_of_a_healthy_craft_nothing_is_learned_before_causes_are_sought(seed):
+    found = answer(draw(seed, rough=0.0))
+    assert found.comparison.craft is None and found.comparison.findings(found.causes) == ()

@@ -123,6 +123,7 @@ class Schema(Strict):
     findings: list[Finding]
     discrepancies: list[Discrepancy]
     form: LoadForm | None
+    craft: dict | None = None
     candidates: list[Candidate]
     indistinguishable: list[Candidate]
     not_testable: list[str]

@@ -14,6 +14,7 @@ ENTRIES = {
         "prescription",
         "discrepancies",
         "form",
+        "craft",
         "baseline",
         "healthy_errors",
         "gain",

@@ -81,13 +81,19 @@ def regressed(
         )  # not the median: a craft that lies idle would hide what she does
         weights = np.sqrt(np.minimum(1.0, HUBER * spread / np.maximum(np.abs(left), 1e-300)))
         if prior is not None:
-            pull = np.sqrt(np.mean((weights * left) ** 2) * _apart(left, block)) / (prior * scale)
+            pull = np.sqrt(np.mean((weights * left) ** 2) * rows_per_independent(left, block)) / (
+                prior * scale
+            )
     covariance = _by_blocks(
         unit, left * weights**2, weights, pull, (found != 0.0) | ~positive, block
     )
     squares = float((weights**2 * left**2 * (2.0 - weights**2)).mean())
     return Regression(
-        found / scale, covariance / np.outer(scale, scale), left, squares, _apart(left, block)
+        found / scale,
+        covariance / np.outer(scale, scale),
+        left,
+        squares,
+        rows_per_independent(left, block),
     )
 
 
@@ -129,7 +135,7 @@ def _by_blocks(unit, errors, weights, pull, free, block):
     return found
 
 
-def _apart(left, block):
+def rows_per_independent(left: np.ndarray, block: int) -> float:
     """Integral of the autocorrelation of residuals. [rows]"""
     most = min(4 * block, left.size // 2)
     centred = left - left.mean()

@@ -155,35 +155,6 @@ FEWEST_STARTS = 5
 MOST_STARTS = 300
 """Predictions that are made at most."""
 
-# Crude model
-
-ROUND_MODEL = 1.0
-"""Standard deviation of the natural logarithm of damping and thrust over inertia over the model's. Assumed: a factor of
-e either way is as usual for a model that was never measured."""
-DAMPING_SPREAD = 0.3
-"""Natural logarithm by which one factor on an axis' damping may be off, standard deviation: it stands for linear,
-quadratic and coupled parts that differ from the model's each by its own. Without it 8 of 23 dampings of drawn craft
-(tests/bench/craft, seeds 7000 to 7029) were more than two standard deviations off, up to 6."""
-TYPICAL_CURRENT = 0.25
-"""Current in each direction that may take the place of a crude model, standard deviation. [m/s] As of sea trials."""
-NOT_ZERO = 2.0
-"""Standard deviations of a number's logarithm from which it is part of a crude model. Assumed."""
-CRUDE_STARTS = 100
-"""Predictions that a crude model is fitted on at most."""
-CRUDE_ROUNDS = 8
-"""Steps of its fit at most; from a fit on other rows of the same log a half does."""
-CRUDE_SETTLED = 0.01
-"""Change of the logarithms below which a fit has settled."""
-LARGEST_STEP = 0.7
-"""Change of a logarithm in one step at most: a factor of two."""
-CRUDE_FOLDS = 10
-"""Parts of a log that are held out in turn, as is usual. Each is of blocks spread over the log: a craft that lies idle
-for most of it would else have nothing to fit on."""
-CRUDE_BLOCK = 2.0
-"""Length of these blocks and of those of the bootstrap, over the horizon."""
-FEWEST_BLOCKS = 5
-"""Blocks that a log must have for any of this."""
-
 # What a log must have
 
 RESOLVED = 1.5

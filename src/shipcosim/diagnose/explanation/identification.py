@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from shipcosim.diagnose.checked_log import CheckedLog
-from shipcosim.diagnose.comparison.compared import ComparedLog, LogComparison
+from shipcosim.diagnose.compared_log import ComparedLog, LogComparison
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.inference.fitting import IdentificationProblem
 from shipcosim.diagnose.inference.problem import identification_problem

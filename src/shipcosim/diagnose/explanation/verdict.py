@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.comparison.compared import with_crude
+from shipcosim.diagnose.compared_log import with_learned_craft
 from shipcosim.diagnose.explanation.course import CourseFound
 from shipcosim.diagnose.explanation.null_distribution import null_gains
 from shipcosim.diagnose.explanation.search import ExplainedLog, names, without_causes
@@ -202,16 +202,16 @@ def judge_against_healthy(
     return judgement, unmodelled[judgement.fit], null
 
 
-def with_crude_model(log: JudgedLog) -> JudgedLog:
-    """A judged log, where no cause explains it, with what the comparison tells of thrust and damping nevertheless."""
+def with_craft(log: JudgedLog) -> JudgedLog:
+    """A judged log, where no cause explains it, with what it teaches of the craft."""
     found = log.explained.identification
     comparison = found.comparison
     unclear = any(fault.alternatives for fault in found.faults)
-    if comparison.obstacles or comparison.findings or unclear:
+    if comparison.obstacles or comparison.craft is not None or unclear:
         return log
-    if log.judgement.verdict != "unknown" or comparison.ratio is None:
+    if log.judgement.verdict != "unknown":
         return log
-    known = with_crude(comparison, found.repaired, found.ship, found.causes)
+    known = with_learned_craft(comparison, found.repaired, found.ship)
     identification = replace(found, comparison=known)
     return replace(log, explained=replace(log.explained, identification=identification))
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.extension.connections import connect_neighbours, put_on_connections, rewire
 from shipcosim.diagnose.extension.draft import Estimated, ExtensionDraft, converted
 from shipcosim.diagnose.extension.insertions import add_current, add_force, add_instruments
@@ -55,6 +56,7 @@ def extend(
     system: str | Path | SystemStructure,
     findings: Iterable[Finding],
     folder: AnyPath,
+    craft: LearnedCraft | None = None,
     *,
     log_attributes: Mapping[str, Any] | None = None,
     catalogue: Mapping[str, Cause] | None = None,
@@ -69,6 +71,8 @@ def extend(
         Those of kind ``"data"`` are passed over.
     folder : path
         Gets extended.ssp and extended.ssv.
+    craft : LearnedCraft, optional
+        The ship as logs taught her: her numbers go into the set.
     log_attributes : mapping, optional
         Of the log: ``source`` and ``sha256`` go into the descriptions, ``span`` (first and last time, in s) is that
         of a varying current.
@@ -89,6 +93,9 @@ def extend(
     catalogue = catalogue or read_catalogue()
     findings = [finding for finding in findings if finding.kind == "physics"]
     with structure.changes():
+        if craft is not None:
+            _put_craft(draft, craft)
+            findings = [one for one in findings if catalogue[one.cause].sought_in != "comparison"]
         for finding in findings:
             _carry(draft, finding, catalogue)
     ssp = Path(folder) / "extended.ssp"
@@ -163,6 +170,17 @@ def _carry(draft: ExtensionDraft, finding: Finding, catalogue: Mapping[str, Caus
             finding,
             f"when it begins, at {finding.onset:.0f} s, and how it goes on are not carried: it acts from the start",
         )
+
+
+def _put_craft(draft: ExtensionDraft, craft: LearnedCraft) -> None:
+    """Put the numbers of a craft into the components that have them."""
+    learned = Finding("craft", None, probability=1.0)
+    for path, value in craft.after.items():
+        place, _, name = path.rpartition(".")
+        parts = draft.structure.checked().components
+        variable = parts[place].variables.get(name) if place in parts else None
+        unit = variable.unit if variable is not None and variable.unit else "1"
+        draft.put_parameter(learned, place, name, ParameterEstimate(value, craft.std[path], unit))
 
 
 def _numbers(draft: ExtensionDraft, finding: Finding, cause: Cause) -> dict[str, ParameterEstimate]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.explanation.identification import Identification
 from shipcosim.diagnose.extension.extend import Extension, extend
 from shipcosim.diagnose.finding import Finding
@@ -57,7 +58,7 @@ def with_findings(
     log: Identification,
     folder: AnyPath,
 ) -> ExtendedSystem:
-    """The system extended by findings of the physics; the given one where there are none.
+    """The system extended by findings of the physics and by what is learned of the craft; the given one without these.
 
     Parameters
     ----------
@@ -78,7 +79,12 @@ def with_findings(
     source = log.log.encoding.get("source", "")
     about = {"source": Path(source).name, "sha256": log.log.encoding.get("sha256", "")}
     return extended_by(
-        given, findings, about | {"span": (float(time[0]), float(time[-1]))}, log.causes, folder
+        given,
+        findings,
+        about | {"span": (float(time[0]), float(time[-1]))},
+        log.causes,
+        folder,
+        log.comparison.craft,
     )
 
 
@@ -88,6 +94,7 @@ def extended_by(
     about: Mapping[str, Any],
     causes: Mapping[str, Cause],
     folder: AnyPath,
+    craft: LearnedCraft | None = None,
 ) -> ExtendedSystem:
     """The same by findings of several logs.
 
@@ -99,12 +106,16 @@ def extended_by(
         Of the logs, as `extend` takes it: ``source``, ``sha256``, ``span``.
     causes : mapping of str to Cause
         The catalogue.
+    craft : LearnedCraft, optional
+        The ship as the logs taught her.
     """
     findings = [finding for finding in findings if finding.kind == "physics"]
-    if not findings:
+    if not findings and craft is None:
         return given
     try:
-        extension = extend(given.source, findings, folder, log_attributes=about, catalogue=causes)
+        extension = extend(
+            given.source, findings, folder, craft, log_attributes=about, catalogue=causes
+        )
         system = read_system(str(extension.ssp))
     except ShipcosimError as error:
         said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.extension.extend import extend
 from shipcosim.diagnose.extension.extended_system import ExtendedSystem
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
@@ -143,6 +144,7 @@ def errors_by_log(
     logs: SeveralLogs,
     given: ExtendedSystem,
     findings: Callable[[str], tuple[list[Finding], list[Finding]]],
+    crafts: Mapping[str, LearnedCraft],
     causes: Mapping[str, Cause],
     progress: Callable[[str, int, int], None],
 ) -> dict[str, LogErrors]:
@@ -159,6 +161,8 @@ def errors_by_log(
         Not extended yet.
     findings : callable
         From the name of a log to causes in the ship, sized without that log, and those of its own weather.
+    crafts : mapping of str to LearnedCraft
+        By log, the craft as the other logs teach her, where they do.
     causes : mapping of str to Cause
     progress : callable
         Called with the name of a log, how many pieces of it are done, and of how many.
@@ -167,8 +171,11 @@ def errors_by_log(
     horizon = min(fitting_horizon(one.record, one.model) for one in logs.problems.values())
     for name, problem in logs.problems.items():
         of_ship, own = findings(name)
-        others = tuple(other for other in logs.problems if other != name) if of_ship else ()
-        about = _Judged(name, problem, calibrated(fit.parts[name]), horizon, of_ship, own, others)
+        craft = crafts.get(name)
+        others = tuple(other for other in logs.problems if other != name)
+        others = others if of_ship or craft else ()
+        fitted_to_it = calibrated(fit.parts[name])
+        about = _Judged(name, problem, fitted_to_it, horizon, of_ship, own, others, craft)
         found[name] = _log_errors(about, given, causes, progress)
     return {name: one for name, one in found.items() if one is not None}
 
@@ -184,6 +191,7 @@ class _Judged:
     of_ship: list[Finding]
     own: list[Finding]
     others: tuple[str, ...]
+    craft: LearnedCraft | None = None
 
 
 def _log_errors(
@@ -226,12 +234,13 @@ def _cosimulated(log, given, causes, progress) -> Tracks:
     model = log.problem.model
     systems = {"before": Replayed(given.given)}
     with temporary_folder() as folder:
-        if log.of_ship or log.own:
+        if log.of_ship or log.own or log.craft:
             about = {"span": model.span, "source": ", ".join(log.others)}
             made = extend(
                 given.source,
                 [*log.of_ship, *log.own],
                 folder,
+                log.craft,
                 log_attributes=about,
                 catalogue=causes,
             )

@@ -3,6 +3,7 @@
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.extension.extend import Extension
 from shipcosim.diagnose.extension.extended_system import NumberChange
@@ -68,6 +69,8 @@ class JointDiagnosis:
         By cause and log: the parameters of a common cause by that log alone.
     errors : dict of str to LogErrors
         By log.
+    craft : LearnedCraft or None
+        What the logs together teach of a craft that is not the file's.
     causes : dict of str to Cause
         The catalogue.
     system : System or None
@@ -95,6 +98,7 @@ class JointDiagnosis:
     relabelled: dict[str, tuple[Finding, ...]] = field(default_factory=dict)
     sizes: SizesOfLogs = field(default_factory=dict)
     errors: dict[str, LogErrors] = field(default_factory=dict)
+    craft: LearnedCraft | None = None
     causes: dict[str, Cause] = field(default_factory=dict, repr=False)
     system: System | None = field(default=None, repr=False)
     extension: Extension | None = None
@@ -103,6 +107,13 @@ class JointDiagnosis:
     smallest_visible: tuple[VisibleSize, ...] = field(default=(), repr=False)
     basis: JointBasis | None = field(default=None, repr=False)
     folder: object = field(default=None, repr=False, compare=False)
+
+    @property
+    def crafts_without(self) -> dict[str, LearnedCraft]:
+        """By log, the craft as the others teach her."""
+        if self.basis is None or self.craft is None or not self.craft.each_without:
+            return {}
+        return dict(zip(self.basis.verdict.logs.problems, self.craft.each_without, strict=True))
 
     def own_faults(self, name: str) -> list[Finding]:
         """Faults of the data that are one log's own."""
@@ -129,6 +140,7 @@ class JointDiagnosis:
             "discrepancies": [
                 asdict(one.what) | {"logs": list(one.logs)} for one in self.discrepancies
             ],
+            "craft": self.craft.as_json() if self.craft else None,
             "baseline": joint_baseline(self.errors),
             "gain": joint_gain(self.errors),
             "remarks": list(self.remarks),

@@ -189,6 +189,10 @@ class ShipModel:
             | {part: replace(self.parts[part], **new) for part, new in changes.items()},
         )
 
+    def with_tolerances(self, tolerances: dict[str, float]) -> ShipModel:
+        """The same ship with other tolerances of some numbers."""
+        return replace(self, tolerances=self.tolerances | tolerances)
+
     def _where(self, path: str) -> tuple[str, str]:
         place, _, name = path.rpartition(".")
         for part in ("hull", "wind") if place == self.vessel else (place,):

@@ -195,6 +195,18 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     return found
 
 
+def thrust_numbers(model: ShipModel) -> tuple[str, ...]:
+    """Of each thruster, the number that scales all its thrust."""
+    return tuple(path for name in model.thrusters if model.has(path := f"{name}.thrust_loss"))
+
+
+def astern_numbers(model: ShipModel) -> tuple[str, ...]:
+    """Of each thruster, the number that scales its thrust astern, where it has one."""
+    kinds = ("reverse_loss", "gain_astern")
+    paths = [f"{name}.{kind}" for name in model.thrusters for kind in kinds]
+    return tuple(path for path in paths if model.has(path))
+
+
 def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
     """The ship with all thrusters' thrust a ratio of what it was, known as well as the standard deviation says.
 
@@ -208,7 +220,7 @@ def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
     -------
     ShipModel
     """
-    paths = [path for name in model.thrusters if model.has(path := f"{name}.thrust_loss")]
+    paths = thrust_numbers(model)
     values = {path: 1.0 - ratio * (1.0 - model.get(path)) for path in paths}
     known = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}
     return replace(model.with_values(values), tolerances=model.tolerances | known)

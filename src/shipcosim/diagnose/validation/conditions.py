@@ -51,7 +51,7 @@ def with_predictions(log: JudgedLog, is_named: bool) -> PredictedLog:
     problem = log.problem
     fit = log.fit if is_named else without_causes(log.fits)
     found = log.explained.identification.comparison
-    plain = found.given(problem.model) if found.findings else None
+    plain = found.given(problem.model) if found.started_craft else None
     comparison = compare(problem, fit, plain=plain)
     force = missing_forces(problem, fit if is_named else None)
     held_out = compare_held_out(problem, fit, plain) if is_named and comparison is not None else {}

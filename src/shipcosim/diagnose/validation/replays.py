@@ -55,10 +55,10 @@ def with_cosimulation(
         return SimulatedLog(None, {}, False)
     in_array_form = {name: one.errors for name, one in log.held_out.items()}
     found = log.judged.explained.identification
-    beyond_doubt = found.comparison.findings
-    if (log.comparison.fit.hypotheses or beyond_doubt) and extended.extension is None:
+    craft = found.comparison.started_craft
+    if (log.comparison.fit.hypotheses or craft) and extended.extension is None:
         return SimulatedLog(log.comparison.errors, in_array_form, False)
-    run = partial(_cosimulated, extended, found.causes, beyond_doubt)
+    run = partial(_cosimulated, extended, found.causes, craft)
     count = 1 + len(log.held_out)
     say = progress or (lambda *_: None)
     try:
@@ -77,14 +77,16 @@ def with_cosimulation(
     return SimulatedLog(errors, held_out, True)
 
 
-def _cosimulated(extended, causes, beyond_doubt, progress, comparison, most):
+def _cosimulated(extended, causes, craft, progress, comparison, most):
     """Errors of one comparison, by the given system and by the one extended by what the comparison was fitted with."""
     fitted = None
-    findings = [*beyond_doubt, *findings_of(comparison.fit)]
+    findings = findings_of(comparison.fit)
     with temporary_folder() as folder:
-        if findings:
+        if findings or craft:
             about = {"span": comparison.fit.model.span}
-            made = extend(extended.source, findings, folder, log_attributes=about, catalogue=causes)
+            made = extend(
+                extended.source, findings, folder, craft, log_attributes=about, catalogue=causes
+            )
             fitted = Replayed(read_system(str(made.ssp)), made.signals)
         return simulated(comparison, Replayed(extended.given), fitted, most=most, progress=progress)
 

@@ -54,7 +54,7 @@ class Tracks:
     predicted: dict[str, xarray.Dataset]
 
 
-def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool) -> Tracks | None:
+def tracks_of(log: JudgedLog, is_named: bool) -> Tracks | None:
     """Tracks of a judged log, before and, where something of the model is found wrong, after.
 
     Parameters
@@ -62,8 +62,6 @@ def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool) -> Tracks | None:
     log : JudgedLog
     is_named : bool
         Whether the causes of its fit are named.
-    has_crude : bool
-        Whether a crude model is named; then it is in what is simulated after.
 
     Returns
     -------
@@ -74,9 +72,9 @@ def tracks_of(log: JudgedLog, is_named: bool, has_crude: bool) -> Tracks | None:
     model = log.problem.model
     comparison = log.explained.identification.comparison
     models = {"before": comparison.given(model)}
-    if is_named or has_crude:
+    if is_named or comparison.craft is not None:
         after = model.with_values(log.fit.values) if is_named else model
-        models["after"] = comparison.with_crude(after) if has_crude else after
+        models["after"] = comparison.craft.on(after) if comparison.craft else after
     try:
         return tracks_by_models(record, models, fitting_horizon(record, model))
     except ShipcosimError:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.report.diagnosis.prediction_errors import (
     MODELS,
@@ -12,10 +13,13 @@ from shipcosim.report.diagnosis.prediction_errors import (
     models_to_show,
     removed,
 )
-from shipcosim.report.theme.numbers import metres, percent
+from shipcosim.report.theme.numbers import metres, percent, plain
 from shipcosim.report.theme.views import Figure, Table
 
 LACKING = {"other headings": "another quarter of headings", "free drift": "a drift without thrust"}
+
+
+_LEARNED = ("Learned from the log", "By the file", "Learned", "Error without it")
 
 
 @dataclass(frozen=True)
@@ -28,10 +32,10 @@ class GainSection:
         The result in a few words.
     is_cosimulation, is_extended : bool
         Whether predictions are co-simulations or in array form; whether the extended system was among them.
-    crude : str
-        Over which time a crude model was measured by itself, on blocks of the log that were held out; else empty.
+    craft : str
+        Over which time a learned craft was measured by itself, on parts of the log that were held out; else empty.
     errors : Table
-        After 60 s, with each model; of a crude model after the craft's own time.
+        After 60 s, with each model; of a learned craft after her own time.
     figures : tuple of Figure
         Empty if there was too little data to measure it.
     conditions : Table
@@ -47,7 +51,7 @@ class GainSection:
     found: str
     is_cosimulation: bool
     is_extended: bool
-    crude: str = ""
+    craft: str = ""
     errors: Table = Table(())
     figures: tuple[Figure, ...] = ()
     conditions: Table = Table(())
@@ -55,15 +59,16 @@ class GainSection:
     extended: str = ""
     calibrated: str = ""
     difference: str = ""
+    numbers: Table = Table(())
 
 
 def gain_section(diagnosis: Diagnosis) -> GainSection:
     """Section 5 of the page for the template."""
     gain = diagnosis.gain
     errors = diagnosis.predictions
-    # A crude model has no co-simulation and only one comparison.
+    # A learned craft has no co-simulation and only one comparison.
     if gain and "error_ratio" in gain:
-        return _of_crude_model(gain)
+        return _of_craft(gain, diagnosis)
     # Without an extension, only the models before it.
     models = models_to_show(tuple(MODELS), diagnosis)
     if diagnosis.extension is None or gain is None:
@@ -88,18 +93,23 @@ def gain_section(diagnosis: Diagnosis) -> GainSection:
     )
 
 
-def _of_crude_model(gain: Mapping[str, Any]) -> GainSection:
-    """Gain of thrust and damping per inertia, where no cause explains the rest."""
+def _of_craft(gain: Mapping[str, Any], diagnosis: Diagnosis) -> GainSection:
+    """Gain of the craft as the log teaches her, where no cause explains the rest."""
     # Error before, after, and what is left, with its interval.
     after, low, high = f"{gain['horizon_s']:g} s", *map(percent, gain["error_ratio_ci95"])
     rows = (
         ("Simulation as it was", metres(gain["before_m"])),
-        ("with the named causes", metres(gain["after_m"])),
+        ("with what the log teaches", metres(gain["after_m"])),
         ("Error left", f"{percent(gain['error_ratio'])} (95 % sure: {low} to {high})"),
     )
     table = Table(rows, head=(f"Position error after {after}", "Root mean square"))
     return GainSection(
-        f"{percent(1.0 - gain['error_ratio'])} of the error", False, True, after, table
+        f"{percent(1.0 - gain['error_ratio'])} of the error",
+        False,
+        True,
+        after,
+        table,
+        numbers=craft_table(diagnosis.craft),
     )
 
 
@@ -124,3 +134,19 @@ def _errors(gain: Mapping[str, Any] | None) -> Table:
     return Table(
         rows, head=("Position error after 60 s, rows kept from the fit", "Root mean square")
     )
+
+
+def craft_table(craft: LearnedCraft | None) -> Table:
+    """Her numbers by the file and as learned, each with the error on held-out parts without it."""
+    if craft is None:
+        return Table(())
+    rows = []
+    for one in craft.numbers:
+        number = one.number
+        unit = "of the file's" if number.is_factor else number.unit
+        given = "1" if number.is_factor else plain(number.given)
+        learned = f"{plain(one.value)} ± {plain(one.std, 2)} {unit}"
+        larger = one.gain - 1.0
+        without = f"+ {percent(larger)}" if craft.errors and larger >= 0.005 else ""
+        rows.append((number.name[0].upper() + number.name[1:], given, learned, without))
+    return Table(tuple(rows), head=_LEARNED, tight=(1, 2, 3))

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from shipcosim.diagnose.craft.learned import LearnedCraft
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.explanation.summary import LoadForm
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
@@ -128,7 +129,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     log = f" The log itself is faulty: {listed(data)}." if data else ""
     # An unknown cause comes first: it puts everything else in doubt.
     if diagnosis.verdict == "unknown":
-        return "UNKNOWN", _unknown(diagnosis, physics) + log
+        return "UNKNOWN", _unknown(diagnosis, physics) + craft_sentence(diagnosis.craft) + log
     # Next, channels that can be read in several ways.
     if misread := [f.sentence for f in diagnosis.findings if f.alternatives]:
         return (
@@ -146,7 +147,7 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     # Named causes, then faults of the log alone.
     if physics:
         many = f"{len(physics)} things are" if len(physics) > 1 else "one thing is"
-        better = _better_predictor(diagnosis)
+        better = _better_predictor(diagnosis) + craft_sentence(diagnosis.craft)
         return "NAMED", f"At least {many} not as modelled: {listed(physics)}.{better}{log}"
     if data:
         return (
@@ -156,6 +157,9 @@ def _verdict(diagnosis: Diagnosis, causes: Mapping[str, Cause] | None) -> tuple[
     # No cause, and the log is explained by loads of another form alone; or perhaps so.
     if diagnosis.verdict == "form" and diagnosis.form:
         return "FORM", _form(diagnosis, diagnosis.form)
+    if diagnosis.craft:
+        learned = craft_sentence(diagnosis.craft)
+        return "FORM", f"No cause is found, but numbers of the ship are not the file's.{learned}"
     if diagnosis.form:
         return (
             "CONSISTENT",
@@ -231,6 +235,19 @@ def _unknown(diagnosis: Diagnosis, physics: Sequence[str]) -> str:
     return f"The simulation is wrong, first of all: {first}. None of the known causes explains all of it.{said}"
 
 
+def craft_sentence(craft: LearnedCraft | None) -> str:
+    """What the learned craft gains, as a sentence after others; empty without one."""
+    if craft is None or craft.errors is None:
+        return ""
+    errors = craft.errors
+    taught = "the log teaches her" if craft.logs == 1 else f"{craft.logs} logs teach her"
+    return (
+        f" The craft as {taught} predicts better: after {errors.horizon:.3g} s, on parts that were held "
+        f"out, {metres(errors.after)} and {errors.after_deg:.2g}° off instead of {metres(errors.before)} and "
+        f"{errors.before_deg:.2g}°."
+    )
+
+
 def discrepancy_rows(diagnosis: Diagnosis) -> list[tuple[str, str, str]]:
     """Discrepancies, largest first: in words, size, share of the error."""
     rows = []
@@ -301,8 +318,7 @@ def next_steps(
         )
     # What is possible now, and what this log cannot say.
     if extended:
-        what = "these numbers" if diagnosis.verdict == "form" else "the cause"
-        steps.append(f"Simulate with {what} in the system: shipcosim simulate {extended}")
+        steps.append(f"Simulate with it in the system: shipcosim simulate {extended}")
     if diagnosis.not_testable and not diagnosis.obstacles:
         steps.append(f"This log {say_nothing(diagnosis.not_testable, 'says')}")
     return steps or ["Nothing needs to be done."]

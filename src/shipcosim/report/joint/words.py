@@ -10,6 +10,7 @@ from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.report.diagnosis.words import (
     ADD_A_CAUSE,
     cause_steps,
+    craft_sentence,
     listed,
     manoeuvre_step,
     say_nothing,
@@ -40,7 +41,8 @@ def _sentence(found: JointDiagnosis, physics: list[str], has_faults: bool) -> st
             else " by more than noise"
         )
         certain = f" Certain is: {listed(physics)}." if physics else ""
-        return f"{logs}: the simulation is wrong{first}.{certain} None of the known causes explains all of it."
+        unexplained = f"None of the known causes explains all of it.{craft_sentence(found.craft)}"
+        return f"{logs}: the simulation is wrong{first}.{certain} {unexplained}"
     if found.verdict == "ambiguous":
         if not found.indistinguishable:
             return f"{logs} say nothing of the ship: their channels may be misread. Each log's own line says how."

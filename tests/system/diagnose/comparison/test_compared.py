@@ -8,7 +8,7 @@ import pytest
 from diagnose import twin, usv
 
 from shipcosim.diagnose.checked_log import ReadLog, checked
-from shipcosim.diagnose.comparison.compared import compared
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.comparison.errors import horizons_of
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.log.reader import read_log
@@ -45,7 +45,12 @@ def test_nothing_is_said_of_a_healthy_craft():
 
 def check_healthy(seed):
     found = held(sailed(seed))
-    assert found.comparison.discrepancies == () == found.comparison.findings == found.faults
+    assert (
+        found.comparison.discrepancies
+        == ()
+        == found.comparison.findings(found.causes)
+        == found.faults
+    )
     assert found.ship is not None and found.ship.parts == ship().parts
 
 
@@ -66,7 +71,7 @@ def test_one_reversed_thruster_is_told_from_exchanged_ones():
 
 def test_a_common_ratio_of_thrust_to_inertia_is_found_with_its_size():
     found = held(sailed(13, 0.6, 0.6))
-    (finding,) = found.comparison.findings
+    (finding,) = found.comparison.findings(found.causes)
     ratio = finding.parameters["ratio"]
     assert abs(ratio.estimate - 0.4) < 0.04 and "only their ratio" in finding.note
     assert found.comparison.discrepancies[0].what.startswith("thrust over inertia 0.")
@@ -75,7 +80,7 @@ def test_a_common_ratio_of_thrust_to_inertia_is_found_with_its_size():
 
 def test_one_weak_thruster_is_no_common_ratio_but_named_by_itself():
     found = held(sailed(14, 0.6, 0.0))
-    assert found.comparison.findings == () == found.faults
+    assert found.comparison.findings(found.causes) == () == found.faults
     first = found.comparison.discrepancies[0]
     assert first.component == "left" and abs(first.estimate - 0.4) < 0.05
 
@@ -134,7 +139,11 @@ def test_without_what_drives_a_thruster_nothing_is_said_of_sides_signs_and_sizes
     found = held(sailed(13, 0.6, 0.6).drop_vars("left_rpm"))
     (obstacle,) = found.comparison.obstacles
     assert "left_rpm" in obstacle and "zeros" in obstacle
-    assert not found.comparison.findings and not found.faults and found.comparison.ratio is None
+    assert (
+        not found.comparison.findings(found.causes)
+        and not found.faults
+        and found.comparison.ratio is None
+    )
     assert {one.what for one in found.comparison.discrepancies} == {
         one.discrepancy.what for one in found.comparison.missing if one.is_large
     }

@@ -424,18 +424,6 @@ def test_a_cause_of_the_users_own_is_carried_by_what_its_file_turns(system, tmp_
     assert len(extension.remarks) == 1 and "no component 'keel'" in extension.remarks[0]
 
 
-def test_a_factor_on_the_damping_multiplies_what_the_ship_has(root, tmp_path):
-    """The model of this boat has linear damping alone: what it has not stays nothing."""
-    causes = ("surge_damping_to_inertia", "yaw_damping_to_inertia")
-    extension = extend(
-        root / "ssp" / "blueboat_open",
-        [found(cause, ratio=(0.2, "1")) for cause in causes],
-        tmp_path,
-    )
-    assert extension.values == pytest.approx({"vessel.drag_scale": 0.2, "vessel.N_r": 0.2 * -6.0})
-    assert not extension.remarks
-
-
 def test_an_extended_system_can_be_extended(extended, tmp_path):
     again = extend(extended("around").ssp, [*ABOARD, vector("tow", 1.0, 2.0, "N")], tmp_path)
     values = read_system(again.ssp).components

@@ -38,9 +38,6 @@ CONTRACT = {  # parameters and units by cause, ../shared/contracts.md
     "navigation_lag": {"lag": "s"},
     "thruster_lag": {"lag": "s"},
     "thrust_to_inertia": {"ratio": "1"},
-    "surge_damping_to_inertia": {"ratio": "1"},
-    "sway_damping_to_inertia": {"ratio": "1"},
-    "yaw_damping_to_inertia": {"ratio": "1"},
 }
 SEA_TRIALS = {  # sought only where a ship manoeuvres at speed
     "hull_interaction": {"loss": "1"},

@@ -118,6 +118,7 @@ class Schema(Strict):
     not_testable: list[str]
     smallest_visible: list[dict]
     prescription: dict | None
+    craft: dict | None
     baseline: JointBaseline | None
     gain: JointGain | None
     remarks: list[str]

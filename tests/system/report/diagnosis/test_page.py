@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from shipcosim.diagnose.comparison.crude_model import HeldOutErrors
+from shipcosim.diagnose.craft.learned import HeldOutErrors
 from shipcosim.diagnose.experiment.design import ExperimentDesign
 from shipcosim.diagnose.experiment.manoeuvres import library
 from shipcosim.diagnose.experiment.testability import log_facts
@@ -120,8 +120,8 @@ def test_gain_is_told_by_condition_with_an_interval_where_there_is_enough(diagno
     assert f"{known} would be missed over the later part instead of" in text
 
 
-def test_gain_of_thrust_and_damping_alone_is_told_over_the_time_of_the_craft(diagnosis):
-    errors = HeldOutErrors(3.0, 2.0, 0.5, (0.2, 0.4), (0.2, 0.4))
+def test_gain_of_a_learned_craft_is_told_over_her_own_time(diagnosis):
+    errors = HeldOutErrors(3.0, 2.0, 0.5, 40.0, 5.0, (0.2, 0.4))
     shown = render(replace(diagnosis, gain=errors.as_gain()))
     assert "75 % of the error" in shown and "25 % (95 % sure: 20 % to 40 %)" in shown
     assert "Position error after 3 s" in shown and "bias observer, as DP" not in shown

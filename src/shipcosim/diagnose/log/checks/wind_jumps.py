@@ -1,7 +1,8 @@
 """Wind channels that are not what they are labelled in a part of the log: at both its ends the wind jumps.
 
-No wind changes from one second to the next by just the factor of another unit, or by just the ship's heading, and back
-again. So it does not take a ship that moves or turns to see it.
+A label changes between two neighbouring rows. So the wind over ground, as logged, makes one of its largest changes from
+row to row at either end of the part, and with the label undone one of usual size. What is large and usual the log's own
+changes say, whatever their distribution: gusts have no normal one.
 """
 
 import numpy as np
@@ -10,12 +11,10 @@ from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.log.checks.kinematics import complete_rows
 from shipcosim.diagnose.log.mislabels import WIND_LABELS, finding_of
 from shipcosim.diagnose.log.thresholds import (
-    BESIDE_JUMP,
     BETWEEN_JUMPS,
-    CALM_WIND,
-    JUMP_GAIN,
     JUMPS_GAIN,
     JUMPS_TIED,
+    LARGEST_JUMPS,
     STEADINESS_LAG,
 )
 
@@ -63,36 +62,22 @@ def _unsteadiness(wind):
     return float(np.mean(np.abs(wind[STEADINESS_LAG:] - wind[:-STEADINESS_LAG]) ** 2))
 
 
-def _best_pair(logged, undone):
+def _best_pair(logged: np.ndarray, undone: np.ndarray) -> tuple[float, int, int]:
     """Gain of undoing a mislabel between two rows, less the cost of choosing them, and the first and last row."""
-    before, after = _means(logged)
-    before_undone, after_undone = _means(undone)
-    # Usual size of jumps, as if they were normal.
-    scale = 1.4826 * np.median(np.abs(_jump(before, after)), axis=0) + 0.02
-    begins = _gain(_jump(before, after), _jump(before, after_undone), scale)
-    ends = _gain(_jump(before, after), _jump(before_undone, after), scale)
-    begins, ends = (np.where(gain > JUMP_GAIN, gain, -np.inf) for gain in (begins, ends))
-    best = np.maximum.accumulate(begins)[: len(begins) - BETWEEN_JUMPS] + ends[BETWEEN_JUMPS:]
-    if not np.isfinite(best).any():
-        return -np.inf, 0, 0
-    end = int(np.argmax(best))
-    first = int(np.argmax(begins[: end + 1])) + BESIDE_JUMP
-    last = end + BETWEEN_JUMPS + BESIDE_JUMP - 1
-    return float(best[end]) - 2.0 * np.log(len(begins)), first, last
+    sizes = np.abs(np.diff(logged))
+    ordered = np.sort(sizes)
+    rows = 1 + np.sort(np.argsort(-sizes)[:LARGEST_JUMPS])
+    # Change at the start of a part and at its end, as logged and with the label undone.
+    begins = _gain(sizes[rows - 1], np.abs(undone[rows] - logged[rows - 1]), ordered)
+    ends = _gain(sizes[rows - 1], np.abs(logged[rows] - undone[rows - 1]), ordered)
+    total = begins[:, None] + ends
+    total[rows[None] - rows[:, None] < BETWEEN_JUMPS] = -np.inf
+    first, last = np.unravel_index(int(np.argmax(total)), total.shape)
+    gain = float(total[first, last]) - 2.0 * np.log(rows.size)
+    return gain, int(rows[first]), int(rows[last]) - 1
 
 
-def _means(wind):
-    """Mean wind over the rows before each row, and over those from it on."""
-    total = np.cumsum(np.r_[0.0, wind])
-    means = (total[BESIDE_JUMP:] - total[:-BESIDE_JUMP]) / BESIDE_JUMP
-    return means[:-BESIDE_JUMP], means[BESIDE_JUMP:]
-
-
-def _jump(before, after):
-    """Change of speed as a logarithm, and of direction in radians: (n, 2)."""
-    speeds = [np.log(np.maximum(np.abs(mean), CALM_WIND)) for mean in (before, after)]
-    return np.column_stack([speeds[1] - speeds[0], np.angle(after * np.conj(before))])
-
-
-def _gain(given, otherwise, scale):
-    return 0.5 * np.sum((given / scale) ** 2 - (otherwise / scale) ** 2, axis=1)
+def _gain(given: np.ndarray, otherwise: np.ndarray, ordered: np.ndarray) -> np.ndarray:
+    """How much commoner one size of changes is than another, by those of the log in order. [nats]"""
+    above = [ordered.size + 1.0 - np.searchsorted(ordered, size) for size in (otherwise, given)]
+    return np.log(above[0] / above[1])

@@ -1,5 +1,6 @@
 """The stage between the checks of a log and its identification: what is grossly wrong, and where to start."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -8,14 +9,7 @@ import xarray
 from shipcosim.diagnose.checked_log import CheckedLog
 from shipcosim.diagnose.comparison.axes import axes_of
 from shipcosim.diagnose.comparison.commanded import commanded_by
-from shipcosim.diagnose.comparison.crude_fit import crude_model
-from shipcosim.diagnose.comparison.crude_model import (
-    CrudeModel,
-    CrudeNumber,
-    crude_numbers,
-    spoken_for,
-)
-from shipcosim.diagnose.comparison.discrepancies import discrepancies_of, is_of_damping
+from shipcosim.diagnose.comparison.discrepancies import discrepancies_of
 from shipcosim.diagnose.comparison.errors import errors_of, errors_over_none
 from shipcosim.diagnose.comparison.gains import AxisGain, CommonRatio, common_ratio, gains_of
 from shipcosim.diagnose.comparison.label_hypotheses import LabelError
@@ -23,8 +17,11 @@ from shipcosim.diagnose.comparison.labels import Labels, read_labels
 from shipcosim.diagnose.comparison.measured_force import felt_by
 from shipcosim.diagnose.comparison.missing_loads import MissingLoad, missing_loads
 from shipcosim.diagnose.comparison.thresholds import FEWEST_USABLE, GROSS, PLAIN, RESOLVED
+from shipcosim.diagnose.craft.learn import learn
+from shipcosim.diagnose.craft.learned import LearnedCraft, ratio_alone, ratio_findings
+from shipcosim.diagnose.craft.logged import craft_log
 from shipcosim.diagnose.finding import Discrepancy, Finding
-from shipcosim.diagnose.hypotheses.catalogue import Cause
+from shipcosim.diagnose.hypotheses.cause import Cause
 from shipcosim.diagnose.inference.problem import as_logged
 from shipcosim.diagnose.log.mislabels import exchanged, finding_of, negative
 from shipcosim.diagnose.log.repair import repaired
@@ -50,8 +47,8 @@ class LogComparison:
     labels : Labels or None
     ratio : CommonRatio or None
         Of thrust to inertia.
-    crude : CrudeModel or None
-        What may be said of thrust and damping over inertia.
+    craft : LearnedCraft or None
+        What the log teaches of a craft that is not the file's.
     is_started_with : bool
         Whether the ship is started with it: it is beyond doubt, whatever the fits find.
     remarks : tuple of str
@@ -67,7 +64,7 @@ class LogComparison:
     gains: tuple[AxisGain, ...] = ()
     labels: Labels | None = None
     ratio: CommonRatio | None = None
-    crude: CrudeModel | None = None
+    craft: LearnedCraft | None = None
     is_started_with: bool = False
     remarks: tuple[str, ...] = ()
     obstacles: tuple[str, ...] = ()
@@ -87,33 +84,23 @@ class LogComparison:
         return (self.missing[0].discrepancy,)
 
     @property
-    def findings(self) -> tuple[Finding, ...]:
-        """What is named of the physics beyond doubt: the ship is started with it."""
-        return self.crude.findings if self.crude is not None and self.is_started_with else ()
+    def started_craft(self) -> LearnedCraft | None:
+        """What the ship is started with beyond doubt."""
+        return self.craft if self.is_started_with else None
+
+    def findings(self, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
+        """Thrust over inertia, where the forces felt tell it: as the log teaches the craft where that is sure."""
+        ratio = self.ratio
+        if self.craft is None or ratio is None or not ratio.differs(PLAIN):
+            return ()
+        known = self.craft.thrust
+        if known is not None:
+            return ratio_findings(known.value, known.std, causes)
+        return ratio_findings(ratio.ratio, ratio.std, causes)
 
     def given(self, model: ShipModel) -> ShipModel:
         """A ship as the system has her: without what was put into her beyond doubt."""
-        return (
-            self.crude.without(model) if self.crude is not None and self.is_started_with else model
-        )
-
-    def with_crude(self, model: ShipModel) -> ShipModel:
-        """A ship with the crude model, beyond doubt or only where nothing else explains the log."""
-        return model if self.crude is None or self.is_started_with else self.crude.on(model)
-
-    def found_without(self) -> tuple[Finding, ...]:
-        """What may be named where no cause of the catalogue explains the log."""
-        return () if self.crude is None or self.is_started_with else self.crude.findings
-
-    def spoken_for(self, cause: Cause, named: set[str], causes: dict[str, Cause]) -> bool:
-        """Whether all that a cause could say is said, by a cause that is named or by a damping that differs."""
-        axes = {one.axis for one in self.discrepancies if is_of_damping(one)}
-        said = {
-            one.cause
-            for one in causes.values()
-            if one.axis and (one.axis in axes or one.cause in named)
-        }
-        return spoken_for(cause, said, causes)
+        return self.started_craft.without(model) if self.started_craft else model
 
 
 @dataclass(frozen=True)
@@ -171,62 +158,59 @@ def compared(log: CheckedLog) -> ComparedLog:
         faults = (*found.faults, *faults)
         right = in_stretches(repaired(found.log, faults), found.ship.length)
         found = replace(found, faults=faults, repaired=right)
-    return _started_with_crude_model(found) if gross else found
+    return _started_with_craft(found) if gross else found
 
 
-def _started_with_crude_model(log: ComparedLog) -> ComparedLog:
-    """The ship with what is grossly wrong of her: thrust and damping together, or thrust alone."""
-    known = with_crude(log.comparison, log.repaired, log.ship, log.causes)
-    if known.crude is None:
-        return replace(log, comparison=known)
-    return replace(
-        log, comparison=replace(known, is_started_with=True), ship=known.crude.on(log.ship)
-    )
+def _started_with_craft(log: ComparedLog) -> ComparedLog:
+    """The ship as the log teaches her, or with the ratio of thrust to inertia alone."""
+    known = with_learned_craft(log.comparison, log.repaired, log.ship)
+    ratio = log.comparison.ratio
+    craft = known.craft
+    if craft is None and ratio is not None:
+        craft = ratio_alone(log.ship, ratio.ratio, ratio.std)
+    if craft is None:
+        return log
+    known = replace(known, craft=craft, is_started_with=True)
+    return replace(log, comparison=known, ship=craft.on(log.ship))
 
 
-def with_crude(
-    comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel, causes: dict[str, Cause]
+def with_learned_craft(
+    comparison: LogComparison, repaired: xarray.Dataset, ship: ShipModel
 ) -> LogComparison:
-    """The comparison with the crude model where it predicts better; else with the ratio alone, where that is plain."""
-    length = ship.length
-    logged = as_logged(ship, repaired)
-    record = record_of(repaired, logged)
-    felt = felt_by(record, length)
-    logged = with_surrogates(logged, record, first_motion(record, logged))
-    crude = crude_model(record, felt, logged, causes, comparison.errors["horizon_s"])
-    if (
-        crude is not None
-        and crude.differs(PLAIN)
-        and crude.errors is not None
-        and crude.errors.is_better
-    ):
-        return replace(comparison, crude=crude)
-    remarks = (
-        () if crude is None or all(not one.axis for one in crude.numbers) else (_not_better(crude),)
-    )
-    alone = ratio_alone(comparison.ratio, ship, causes)
-    return replace(
-        comparison, crude=alone if alone and alone.differs(PLAIN) else None, remarks=remarks
-    )
+    """The comparison with the craft that a log teaches, where she predicts what was held out better than the file's."""
+    craft = learned_from([(repaired, comparison)], ship)
+    return comparison if craft is None else replace(comparison, craft=craft)
 
 
-def _not_better(crude: CrudeModel) -> str:
-    """Why a damping that differs is not put into the ship."""
-    sizes = ", ".join(f"{one.axis} {one.estimate:.2f}" for one in crude.numbers if one.axis)
-    return (
-        f"The log as a whole asks for another damping ({sizes} of the model's, over inertia). Where rows are held out"
-        " that predicts no better for sure, so it is not in the extended system."
-    )
+def learned_from(
+    logs: Sequence[tuple[xarray.Dataset, LogComparison]], ship: ShipModel
+) -> LearnedCraft | None:
+    """The craft that logs teach, each held out in turn; of a single one parts of it.
 
+    Parameters
+    ----------
+    logs : sequence of tuple of Dataset and LogComparison
+        Repaired, and how the simulation compares.
+    ship : ShipModel
+        As her file has her.
 
-def ratio_alone(
-    ratio: CommonRatio | None, ship: ShipModel, causes: dict[str, Cause]
-) -> CrudeModel | None:
-    """The crude model of a common ratio of thrust to inertia; None without a cause in the catalogue that says so."""
-    thrust = next((one for one in crude_numbers(ship, causes) if not one.axis), None)
-    if ratio is None or thrust is None:
-        return None
-    return CrudeModel((replace(thrust, estimate=ratio.ratio, std=ratio.std),))
+    Returns
+    -------
+    LearnedCraft or None
+        None where logs are too short, or she predicts no better than the file's for sure.
+    """
+    each = [comparison.errors["horizon_s"] for _, comparison in logs]
+    horizons = [float(horizon) for horizon in np.median(each, axis=0)]
+    parts = []
+    for part, (log, _) in enumerate(logs):
+        logged = as_logged(ship, log)
+        record = record_of(log, logged)
+        logged = with_surrogates(logged, record, first_motion(record, logged))
+        parts.append(craft_log(record, logged, horizons, part, whole=len(logs) > 1))
+    usable = [one for one in parts if one is not None]
+    craft = learn(usable) if len(usable) == len(logs) else None
+    is_better = craft is not None and craft.errors is not None and craft.errors.is_better
+    return craft if is_better else None
 
 
 def _unknown_thrusters(repaired: xarray.Dataset, ship: ShipModel) -> tuple[str, ...]:
@@ -259,14 +243,3 @@ def _label(change: LabelError, log: xarray.Dataset):
 def _drives(name: str, log: xarray.Dataset) -> list[str]:
     """Channels of what drives a thruster, its speed or thrust first."""
     return [f"{name}_{kind}" for kind in ("rpm", "thrust", "azimuth") if f"{name}_{kind}" in log]
-
-
-def ratio_finding(ratio: CommonRatio, causes: dict[str, Cause]) -> tuple[Finding, ...]:
-    """The finding of a common ratio, by the cause that says so; none without one in the catalogue."""
-    cause = next(
-        (one for one in causes.values() if one.sought_in == "comparison" and not one.axis), None
-    )
-    if cause is None:
-        return ()
-    number = CrudeNumber(cause.cause, next(iter(cause.parameters)), "", (), ratio.ratio, ratio.std)
-    return CrudeModel((number,)).findings

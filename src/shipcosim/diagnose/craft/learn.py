@@ -1,0 +1,200 @@
+"""Learning a craft: which numbers her logs teach, by what they gain on parts that were held out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shipcosim.diagnose.craft.fit import Normal, fitted
+from shipcosim.diagnose.craft.learned import (
+    HeldOutErrors,
+    LearnedCraft,
+    LearnedNumber,
+    learned_craft,
+)
+from shipcosim.diagnose.craft.logged import CraftLog
+from shipcosim.diagnose.craft.numbers import CraftNumber, numbers_of, with_numbers
+from shipcosim.diagnose.craft.thresholds import DRIVING, LEAST_GAIN, MOST_NUMBERS, SURE
+from shipcosim.diagnose.inference.thresholds import DRAWS
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.ship.hull import hull_loads
+
+
+@dataclass(frozen=True)
+class _HeldOut:
+    """Mean squares of prediction errors by part, of several crafts: (k, c, parts) array, and predictions in each."""
+
+    squares: np.ndarray
+    counts: np.ndarray
+
+    def gain(self, one: int, other: int) -> tuple[float, float]:
+        """Natural logarithm by which the error of one craft is above another's, and its standard error."""
+        without = _logs(self.squares, self.counts)
+        each = without[one] - without[other]
+        parts = each.size - 1
+        std = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean()) ** 2).sum())
+        return float(each[-1]), float(std)
+
+
+def _logs(squares: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Logarithm of the error, mean over position and heading and horizons: without each part, and of all parts."""
+    sums = squares * counts
+    total = sums.sum(-1, keepdims=True)
+    without = np.concatenate([total - sums, total], axis=-1)
+    return 0.5 * np.log(np.maximum(without, 1e-18)).mean(1)
+
+
+def learn(logs: Sequence[CraftLog]) -> LearnedCraft | None:
+    """What logs teach of a craft; None where no ship has the numbers that suit them best.
+
+    Numbers that the file has are free from the start. One by one those are added that lower the error most on parts
+    that were held out, then those given back to the file without which the error is no larger.
+    """
+    model = logs[0].model
+    typical = _typical(logs)
+    numbers = numbers_of(model, typical)
+    free = [i for i, one in enumerate(numbers) if one.is_of_file]
+    near = None
+    while True:
+        normal = fitted(logs, numbers, free, near)
+        near = normal.solved(free)[-1]
+        tries = [free, *_with_one_more(numbers, free)]
+        found = _held_out(logs, normal, tries)
+        best = _best(found, tries, normal, logs)
+        if best is None or len(free) >= MOST_NUMBERS:
+            break
+        free = best
+    free = _without_idle(logs, normal, free)
+    normal = fitted(logs, numbers, free, near)
+    return None if _drives(logs, normal, free) else _stated(logs, normal, free)
+
+
+def _typical(logs: Sequence[CraftLog]) -> dict[str, np.ndarray]:
+    each = [log.typical() for log in logs]
+    return {
+        name: np.sqrt(np.mean([np.square(one[name]) for one in each], axis=0))
+        for name in each[0]
+        if all(name in one for one in each)
+    }
+
+
+def _with_one_more(numbers: Sequence[CraftNumber], free: list[int]) -> list[list[int]]:
+    """Sets with one more number."""
+    return [[*free, i] for i in range(len(numbers)) if i not in free]
+
+
+def _held_out(logs: Sequence[CraftLog], normal: Normal, tries: Sequence[Sequence[int]]) -> _HeldOut:
+    """Errors on parts that were held out, of the craft with each set of numbers."""
+    values = normal.values(np.stack([normal.solved(free) for free in tries]))
+    return _errors(logs, normal.numbers, values)
+
+
+def _errors(
+    logs: Sequence[CraftLog], numbers: Sequence[CraftNumber], values: np.ndarray
+) -> _HeldOut:
+    """Errors by part with the values without each, (k, parts + 1, p) array."""
+    squares, counts = [], []
+    for log in logs:
+        part = log.part_of_start
+        off = log.missed(numbers, np.moveaxis(values[:, part], -1, 0))[:, :, -2:]
+        position = (off[:, :2] ** 2).sum(1)
+        each = np.concatenate([position, off[:, 2] ** 2], axis=1)
+        for number in np.unique(part):
+            squares.append(each[..., part == number].mean(-1))
+            counts.append((part == number).sum())
+    # Each part counts as much as it has predictions, at most as much as a usual one.
+    weights = np.minimum(np.array(counts, float), np.median(counts))
+    return _HeldOut(np.stack(squares, axis=-1), weights)
+
+
+def _best(found: _HeldOut, tries, normal: Normal, logs) -> list[int] | None:
+    """The set with one more number that surely lowers the error most; None where none does."""
+    gains = [found.gain(0, k) for k in range(1, len(tries))]
+    order = sorted(range(len(gains)), key=lambda k: -gains[k][0])
+    for k in order:
+        gain, std = gains[k]
+        if gain < LEAST_GAIN:
+            return None
+        if gain > SURE * std and not _drives(logs, normal, tries[k + 1]):
+            return tries[k + 1]
+    return None
+
+
+def _drives(logs: Sequence[CraftLog], normal: Normal, free: Sequence[int]) -> bool:
+    """Whether these numbers are no ship's: the water would drive her, or her mass matrix is not positive."""
+    values = normal.values(normal.solved(free)[-1])
+    model = with_numbers(logs[0].model, normal.numbers, values)
+    mass = model.mass_matrix
+    if np.linalg.eigvalsh(0.5 * (mass + mass.T)).min() <= 0.0:
+        return True
+    return _driving_share(logs, model) > max(DRIVING, _driving_share(logs, logs[0].model))
+
+
+def _driving_share(logs: Sequence[CraftLog], model: ShipModel) -> float:
+    """Energy that the water gives a ship over what it takes, at the speeds of logs and at twice as much."""
+    given = 0.0
+    taken = 1e-12
+    for log in logs:
+        for factor in (1.0, 2.0):
+            u, v, r = (factor * one[log.felt.usable] for one in log.seen[3:])
+            X, Y, N = hull_loads(u, v, r, hull=model.parts["hull"])
+            power = X * u + Y * v + N * r
+            given += float(np.maximum(power, 0.0).sum())
+            taken += float(np.maximum(-power, 0.0).sum())
+    return given / taken
+
+
+def _without_idle(logs: Sequence[CraftLog], normal: Normal, full: list[int]) -> list[int]:
+    """A set without numbers that gain next to nothing on parts that were held out: they are the file's."""
+    free = full
+    while len(free) > 1:
+        tries = [full, *([i for i in free if i != one] for one in free)]
+        found = _held_out(logs, normal, tries)
+        losses = [found.gain(k, 0)[0] for k in range(1, len(tries))]
+        least = int(np.argmin(losses))
+        if losses[least] > LEAST_GAIN:
+            break
+        free = tries[least + 1]
+    return free
+
+
+def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> LearnedCraft:
+    """What was learned, with what each number and all of them gain on parts that were held out."""
+    numbers = [normal.numbers[i] for i in free]
+    tries = [free, *([i for i in free if i != one] for one in free), []]
+    values = normal.values(np.stack([normal.solved(one) for one in tries]))
+    each = values[0]
+    found = _errors(logs, normal.numbers, values)
+    parts = len(each) - 1
+    spread = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean(0)) ** 2).sum(0))
+    gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
+
+    def craft(values: np.ndarray) -> LearnedCraft:
+        learned = [
+            LearnedNumber(one, float(values[i]), float(spread[i]), gain)
+            for one, i, gain in zip(numbers, free, gains, strict=True)
+            if values[i] != one.given
+        ]
+        return learned_craft(logs[0].model, learned, _of_all(found, logs), len(logs))
+
+    if len(logs) == 1:
+        return craft(each[-1])
+    return replace(craft(each[-1]), each_without=tuple(map(craft, each[:-1])))
+
+
+def _of_all(found: _HeldOut, logs: Sequence[CraftLog]) -> HeldOutErrors:
+    """Errors of the given ship, the last, and of the learned one, the first, on parts that were held out."""
+    weights = found.counts
+    draws = np.random.default_rng(1).multinomial(
+        weights.size, np.full(weights.size, 1.0 / weights.size), size=DRAWS
+    )
+    sums = found.squares[[-1, 0]][:, [1, 3]] * weights
+    errors = np.sqrt(sums.sum(-1) / weights.sum())
+    drawn = np.sqrt(np.maximum(sums @ draws.T, 1e-30))
+    low, high = np.quantile(drawn[1, 0] / drawn[0, 0], (0.025, 0.975))
+    (before, before_turn), (after, after_turn) = errors
+    horizon = logs[0].counts[-1] * logs[0].record.step
+    turned = float(np.degrees(before_turn)), float(np.degrees(after_turn))
+    return HeldOutErrors(horizon, float(before), float(after), *turned, (float(low), float(high)))

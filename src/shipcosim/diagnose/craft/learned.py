@@ -1,0 +1,210 @@
+"""What logs taught of a craft: her numbers in words, and what they gain on parts that were held out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.gains import is_beyond
+from shipcosim.diagnose.comparison.thresholds import PLAIN, SURE_OF_RATIO
+from shipcosim.diagnose.craft.numbers import CraftNumber, thrust_of, with_numbers
+from shipcosim.diagnose.craft.thresholds import NOT_WORSE
+from shipcosim.diagnose.finding import Finding, ParameterEstimate
+from shipcosim.diagnose.hypotheses.cause import Cause
+from shipcosim.diagnose.ship.model import ShipModel
+
+_ONLY_RATIO = "Thrust and inertia cannot be told apart: only their ratio is known."
+
+
+@dataclass(frozen=True)
+class LearnedNumber:
+    """A number of a craft as learned.
+
+    Attributes
+    ----------
+    number : CraftNumber
+    value, std : float
+        The standard deviation by leaving out each part of the logs in turn.
+    gain : float
+        Error on held-out parts with the file's number instead, over that with this one.
+    """
+
+    number: CraftNumber
+    value: float
+    std: float
+    gain: float = 1.0
+
+    def as_json(self) -> dict[str, Any]:
+        """Its entry in diagnosis.json."""
+        number = self.number
+        return {
+            "name": number.name,
+            "numbers": list(number.paths),
+            "is_factor": number.is_factor,
+            "unit": number.unit,
+            "given": number.given,
+            "estimate": self.value,
+            "std": self.std,
+            "error_without": self.gain,
+        }
+
+    def __str__(self) -> str:
+        number = self.number
+        unit = (
+            " of the file's"
+            if number.is_factor
+            else f" {number.unit}, by the file {number.given:.3g}"
+        )
+        larger = 100.0 * (self.gain - 1.0)
+        gain = f"; without it the error is {larger:.0f} % larger" if larger >= 1.0 else ""
+        return f"{number.name} {self.value:.3g} ± {self.std:.2g}{unit}{gain}"
+
+
+@dataclass(frozen=True)
+class HeldOutErrors:
+    """Errors of predictions over a craft's own horizon, on parts of logs that were not learned from.
+
+    Attributes
+    ----------
+    horizon : float
+        [s]
+    before, after : float
+        Root mean square position error with the given ship, and with the learned one. [m]
+    before_deg, after_deg : float
+        The same of the heading. [deg]
+    ratio_ci95 : tuple of two floats
+        95 % interval of after over before, in position, by a bootstrap over the parts.
+    """
+
+    horizon: float
+    before: float
+    after: float
+    before_deg: float
+    after_deg: float
+    ratio_ci95: tuple[float, float]
+
+    @property
+    def is_better(self) -> bool:
+        """Whether the learned craft predicts positions better beyond doubt, and headings no worse."""
+        return self.ratio_ci95[1] < 1.0 and self.after_deg < NOT_WORSE * self.before_deg
+
+    def as_gain(self) -> dict[str, Any]:
+        """The entry ``gain`` of diagnosis.json; what is only known beside a fit of fine causes is None."""
+        unknown = ("bias_observer_m", "noise_floor_m", "share_of_explainable", "ci95")
+        return {
+            "horizon_s": float(f"{self.horizon:.4g}"),
+            "before_m": self.before,
+            "after_m": self.after,
+            "error_ratio": self.after / self.before,
+            "error_ratio_ci95": list(self.ratio_ci95),
+        } | dict.fromkeys(unknown)
+
+
+@dataclass(frozen=True)
+class LearnedCraft:
+    """A craft as logs taught her.
+
+    Attributes
+    ----------
+    numbers : tuple of LearnedNumber
+    before, after : dict of str to float
+        Numbers of the ship that differ, by the file and as learned.
+    std : dict of str to float
+        Of those as learned.
+    errors : HeldOutErrors or None
+        None of a ratio of thrust to inertia alone, which the comparison of forces tells.
+    logs : int
+        How many she was learned from.
+    each_without : tuple of LearnedCraft
+        Of several logs: the same numbers as learned without each of them.
+    """
+
+    numbers: tuple[LearnedNumber, ...]
+    before: dict[str, float]
+    after: dict[str, float]
+    std: dict[str, float]
+    errors: HeldOutErrors | None = None
+    logs: int = 1
+    each_without: tuple[LearnedCraft, ...] = ()
+
+    def on(self, model: ShipModel) -> ShipModel:
+        """The ship with these numbers, known as well as their standard deviations say."""
+        known = {
+            path: float(np.hypot(model.tolerances.get(path, 0.0), std))
+            for path, std in self.std.items()
+        }
+        return model.with_values(self.after).with_tolerances(known)
+
+    def without(self, model: ShipModel) -> ShipModel:
+        """A ship with these numbers as her file has her."""
+        return model.with_values(self.before)
+
+    @property
+    def thrust(self) -> LearnedNumber | None:
+        """Thrust over inertia, where it is learned and differs from the file's for sure."""
+        found = next((one for one in self.numbers if one.number.name == "thrust"), None)
+        if found is None or not is_beyond(found.value, found.std, PLAIN, SURE_OF_RATIO):
+            return None
+        return found
+
+    def as_json(self) -> dict[str, Any]:
+        """The entry ``craft`` of diagnosis.json."""
+        errors = asdict(self.errors) if self.errors else None
+        return {
+            "numbers": [one.as_json() for one in self.numbers],
+            "logs": self.logs,
+            "held_out": errors,
+        }
+
+
+def learned_craft(
+    model: ShipModel,
+    numbers: Sequence[LearnedNumber],
+    errors: HeldOutErrors | None = None,
+    logs: int = 1,
+) -> LearnedCraft:
+    """A craft with some numbers learned.
+
+    Parameters
+    ----------
+    model : ShipModel
+        As her file has her.
+    numbers : sequence of LearnedNumber
+    errors : HeldOutErrors, optional
+    logs : int
+    """
+    paths = dict.fromkeys(path for one in numbers for path in one.number.paths)
+    values = [one.value for one in numbers]
+
+    def numbers_at(values: Sequence[float]) -> dict[str, float]:
+        ship = with_numbers(model, [one.number for one in numbers], values)
+        return {path: float(ship.get(path)) for path in paths}
+
+    after = numbers_at(values)
+    squares = dict.fromkeys(paths, 0.0)
+    for i, one in enumerate(numbers):
+        moved = numbers_at([*values[:i], one.value + one.std, *values[i + 1 :]])
+        squares = {
+            path: square + (moved[path] - after[path]) ** 2 for path, square in squares.items()
+        }
+    before = {path: float(model.get(path)) for path in paths}
+    std = {path: float(np.sqrt(square)) for path, square in squares.items()}
+    return LearnedCraft(tuple(numbers), before, after, std, errors, logs)
+
+
+def ratio_alone(model: ShipModel, ratio: float, std: float) -> LearnedCraft | None:
+    """A craft of which only the ratio of thrust to inertia is known; None where no thruster has a number for it."""
+    thrust = thrust_of(model)
+    return learned_craft(model, [LearnedNumber(thrust, ratio, std)]) if thrust else None
+
+
+def ratio_findings(ratio: float, std: float, causes: Mapping[str, Cause]) -> tuple[Finding, ...]:
+    """Thrust over inertia as a finding, by the cause that says so; none without one in the catalogue."""
+    cause = next((one for one in causes.values() if one.sought_in == "comparison"), None)
+    if cause is None:
+        return ()
+    parameters = {next(iter(cause.parameters)): ParameterEstimate(ratio, std, "1")}
+    return (Finding(cause.cause, None, "physics", 0.95, parameters, note=_ONLY_RATIO),)

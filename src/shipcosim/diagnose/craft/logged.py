@@ -1,0 +1,164 @@
+"""A log as a craft is learned from it: the accelerations that it shows, and open-loop predictions along it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shipcosim.diagnose.comparison.commanded import commanded_by
+from shipcosim.diagnose.comparison.errors import starts_of
+from shipcosim.diagnose.comparison.measured_force import Felt, felt_by
+from shipcosim.diagnose.craft.numbers import CraftNumber, with_numbers
+from shipcosim.diagnose.craft.thresholds import FEWEST_PARTS, MOST_PARTS, MOST_STARTS, PART
+from shipcosim.diagnose.inference.predictions import predicted, replayable
+from shipcosim.diagnose.ship.dynamics import motion_rates
+from shipcosim.diagnose.ship.inputs import Inputs, Record
+from shipcosim.diagnose.ship.measured_motion import readings, true_motion
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.models.core.motion import Motion
+
+_DIFFERENCE = 1e-3  # of a number's coordinate, for slopes
+
+
+@dataclass(frozen=True)
+class CraftLog:
+    """A log that a craft is learned from, in parts of which each is held out in turn.
+
+    Attributes
+    ----------
+    record, model : Record and ShipModel
+        As from `replayable`: the ship as her file has her.
+    felt : Felt
+    seen : Motion
+        What the instruments show, smoothed, (n,) arrays.
+    inputs : Inputs
+        What drives her at each row.
+    parts : (n,) int array
+        Number of the part that a row is in.
+    rows, counts : (s,) int array, list of int
+        Where predictions start, each within one part; their horizons in rows.
+    """
+
+    record: Record
+    model: ShipModel
+    felt: Felt
+    seen: Motion
+    inputs: Inputs
+    parts: np.ndarray
+    rows: np.ndarray
+    counts: list[int]
+
+    @property
+    def part_of_start(self) -> np.ndarray:
+        """Part that each prediction is in."""
+        return self.parts[self.rows]
+
+    def trained_without(self, part: int) -> np.ndarray:
+        """Rows that are learned from where a part is held out: none whose smoothing touches it."""
+        held_out = self.parts == part
+        near = np.convolve(held_out, np.ones(2 * self.felt.kernel.reach + 1), "same") > 0.5
+        return self.felt.usable & ~near
+
+    def left(self, model: ShipModel) -> np.ndarray:
+        """Acceleration that a ship does not explain, smoothed, (..., 3, n) array."""
+        rates = motion_rates(self.felt.motion, self.inputs, model)
+        told = np.stack(np.broadcast_arrays(rates.u, rates.v, rates.r), axis=-2)
+        return self.felt.rates - self.felt.kernel.smooth(told)
+
+    def slopes(
+        self, numbers: Sequence[CraftNumber], at: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Unexplained acceleration at some coordinates of the numbers, (3, n), and what one of each explains, (p, 3, n)."""
+        tries = at + np.concatenate([np.zeros((1, at.size)), _DIFFERENCE * np.eye(at.size)])
+        values = [one.value(column)[:, None] for one, column in zip(numbers, tries.T, strict=True)]
+        found = self.left(with_numbers(self.model, numbers, values))
+        return found[0], (found[0] - found[1:]) / _DIFFERENCE
+
+    def missed(self, numbers: Sequence[CraftNumber], values: np.ndarray) -> np.ndarray:
+        """Errors of predictions, each with the values learned without its part.
+
+        Parameters
+        ----------
+        numbers : sequence of p CraftNumber
+        values : (p, k, s) array
+            Of k crafts.
+
+        Returns
+        -------
+        (k, 3, h, s) array
+            North, east [m], heading [rad] after each horizon.
+        """
+        model = with_numbers(self.model, numbers, values)
+        rows = self.rows
+        start = true_motion(Motion(*(value[rows] for value in self.seen)), self.model)
+        start = Motion(*(value + np.zeros((values.shape[1], 1)) for value in start))
+        found = readings(predicted(start, rows, self.record, model, self.counts), model)
+        ends = (rows + np.array(self.counts)[:, None])[:, None]
+        turned = np.angle(np.exp(1j * (found.psi - self.seen.psi[ends])))
+        off = np.stack([found.x - self.seen.x[ends], found.y - self.seen.y[ends], turned])
+        return np.moveaxis(off, 2, 0)
+
+    def typical(self) -> dict[str, np.ndarray]:
+        """Root mean squares of the velocities and of what is commanded, and of the wind where it is logged."""
+        usable = self.felt.usable
+        motion = np.stack([self.felt.motion.u, self.felt.motion.v, self.felt.motion.r])[:, usable]
+        told = commanded_by(self.record, self.felt, self.model)
+        total = sum(told.thrusters.values(), np.zeros((3, usable.size)))[:, usable]
+        needed = np.diag(self.model.mass_matrix)[:, None] * self.felt.rates[:, usable]
+        loads = np.sqrt((np.maximum(np.abs(total), np.abs(needed)) ** 2).mean(1))
+        found = {"motion": np.sqrt((motion**2).mean(1)), "loads": loads}
+        return found if told.wind is None else found | {"wind": np.sqrt((told.wind**2).mean(1))}
+
+
+def craft_log(
+    record: Record,
+    model: ShipModel,
+    horizons: Sequence[float],
+    first_part: int = 0,
+    *,
+    whole: bool = False,
+) -> CraftLog | None:
+    """A log to learn a craft from; None where it is too short to hold parts of it out.
+
+    Parameters
+    ----------
+    record : Record
+    model : ShipModel
+        As her file has her, with surrogates.
+    horizons : sequence of float
+        Of predictions, increasing. [s]
+    first_part : int
+        Number of its first part.
+    whole : bool
+        All of it is one part, as where there are other logs to learn from.
+    """
+    felt = felt_by(record, model.length)
+    seen = Motion(*(felt.kernel.smooth(value) for value in felt.motion))
+    counts = [max(1, round(horizon / record.step)) for horizon in horizons]
+    size = record.time.size
+    count = int(min(MOST_PARTS, size // (PART * counts[-1])))
+    if whole:
+        count = 1
+    elif count < FEWEST_PARTS:
+        return None
+    parts = first_part + np.arange(size) * count // size
+    # Predictions that stay within one part.
+    rows = starts_of(record, felt, horizons[-1])
+    rows = rows[parts[rows] == parts[rows + counts[-1]]]
+    rows = rows[:: max(1, -(-rows.size // MOST_STARTS))]
+    if np.unique(parts[rows]).size < count:
+        return None
+    logged, neutral = replayable(record, model, seen)
+    inputs = logged.inputs(neutral)
+    units = {name: (_one_more(one), _one_more(two)) for name, (one, two) in inputs.units.items()}
+    wind = (
+        None if one is None else _one_more(one) for one in (inputs.wind_speed, inputs.wind_from)
+    )
+    inputs = Inputs(record.time, units, *wind)
+    return CraftLog(logged, neutral, felt, seen, inputs, parts, rows, counts)
+
+
+def _one_more(series: np.ndarray) -> np.ndarray:
+    return np.concatenate([series, series[-1:]])

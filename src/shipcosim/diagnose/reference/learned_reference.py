@@ -1,0 +1,93 @@
+"""A reference of a craft that is not the file's: her numbers as several logs teach them, and their spread."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shipcosim.diagnose.craft.learned import LearnedCraft
+from shipcosim.diagnose.reference.reference import (
+    SCHEMA,
+    KnownNumber,
+    Reference,
+    ReferenceLog,
+    fingerprint,
+)
+from shipcosim.diagnose.reference.remaining_errors import RemainingErrors
+from shipcosim.diagnose.reference.thresholds import USUAL_FORM
+from shipcosim.diagnose.ship.inputs import Record
+from shipcosim.diagnose.ship.model import ShipModel
+from shipcosim.diagnose.validation.tracks import errors_of, fitting_horizon, tracks_by_models
+from shipcosim.errors import ShipcosimError
+
+_LEAST_SPREAD = (
+    0.05  # of a number's size: what logs agree upon by chance is no better known. Assumed
+)
+
+
+def learned_reference(
+    craft: LearnedCraft, ship: ShipModel, logs: Sequence[ReferenceLog], system: str, version: str
+) -> Reference:
+    """What logs teach of a craft, as a reference.
+
+    Parameters
+    ----------
+    craft : LearnedCraft
+    ship : ShipModel
+        With the system's own numbers.
+    logs : sequence of ReferenceLog
+    system, version : str
+        Name of the system; version of this program.
+    """
+    numbers = []
+    for name, estimate in craft.after.items():
+        size = max(abs(estimate), abs(craft.before[name]))
+        std = max(craft.std[name], _LEAST_SPREAD * size, 1e-9)
+        unit = ship.about(name)["unit"]
+        nominal = craft.before[name]
+        numbers.append(
+            KnownNumber(
+                name=name, unit=unit, nominal=nominal, tolerance=std, estimate=estimate, std=std
+            )
+        )
+    return Reference(
+        schema=SCHEMA,
+        form_scale=USUAL_FORM,
+        shipcosim=version,
+        system=system,
+        system_sha256=fingerprint(ship, list(craft.after)),
+        tolerance_scale=1.0,
+        logs=tuple(logs),
+        dispersion=1.0,
+        ordinary_errors={},
+        numbers=tuple(numbers),
+        correlation=tuple(tuple(map(float, row)) for row in np.eye(len(numbers))),
+    )
+
+
+def learned_errors(
+    record: Record, ship: ShipModel, others: LearnedCraft, craft: LearnedCraft, names: Sequence[str]
+) -> RemainingErrors | None:
+    """Errors of a log by the system, by the craft as the other logs teach her, and as all do.
+
+    Parameters
+    ----------
+    record : Record
+    ship : ShipModel
+        As the system has her, with surrogates.
+    others, craft : LearnedCraft
+    names : sequence of str
+        Of the other logs.
+
+    Returns
+    -------
+    RemainingErrors or None
+        None where no stretch of the log is whole.
+    """
+    models = {"before": ship, "after": others.on(ship), "floor": craft.on(ship)}
+    try:
+        errors = errors_of(tracks_by_models(record, models, fitting_horizon(record, ship)))
+    except ShipcosimError:
+        return None
+    of = {one: tuple(map(float, errors["position"].sel(simulation=one).values)) for one in models}
+    times = tuple(map(float, errors["after"].values))
+    return RemainingErrors(times, of["before"], of["after"], of["floor"], tuple(names))
