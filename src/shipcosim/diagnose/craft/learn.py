@@ -15,7 +15,7 @@ from shipcosim.diagnose.craft.learned import (
     learned_craft,
 )
 from shipcosim.diagnose.craft.logged import CraftLog
-from shipcosim.diagnose.craft.numbers import CraftNumber, numbers_of, with_numbers
+from shipcosim.diagnose.craft.numbers import CraftNumber, current_numbers, numbers_of, with_numbers
 from shipcosim.diagnose.craft.thresholds import DRIVING, LEAST_GAIN, MOST_NUMBERS, SURE
 from shipcosim.diagnose.inference.thresholds import DRAWS
 from shipcosim.diagnose.ship.model import ShipModel
@@ -146,16 +146,15 @@ def _driving_share(logs: Sequence[CraftLog], model: ShipModel) -> float:
     return given / taken
 
 
-def _without_idle(logs: Sequence[CraftLog], normal: Normal, full: list[int]) -> list[int]:
-    """A set without numbers that gain next to nothing on parts that were held out: they are the file's."""
-    free = full
+def _without_idle(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> list[int]:
+    """A set without numbers that gain nothing on parts that were held out: they are the file's."""
     while len(free) > 1:
-        tries = [full, *([i for i in free if i != one] for one in free)]
+        tries = [free, *([i for i in free if i != one] for one in free)]
         found = _held_out(logs, normal, tries)
         losses = [found.gain(k, 0)[0] for k in range(1, len(tries))]
         least = int(np.argmin(losses))
-        if losses[least] > LEAST_GAIN:
-            break
+        if losses[least] > 0.0:
+            return free
         free = tries[least + 1]
     return free
 
@@ -167,6 +166,11 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
     values = normal.values(np.stack([normal.solved(one) for one in tries]))
     each = values[0]
     found = _errors(logs, normal.numbers, values)
+    # Her rival: the file's ship in a steady current, learned alike.
+    current = current_numbers()
+    rival = fitted(logs, current, range(len(current)))
+    in_current = rival.values(rival.solved(range(len(current)))[None])
+    alike = _errors(logs, current, in_current)
     parts = len(each) - 1
     spread = np.sqrt((parts - 1) / parts * ((each[:-1] - each[:-1].mean(0)) ** 2).sum(0))
     gains = [float(np.exp(found.gain(k, 0)[0])) for k in range(1, len(tries) - 1)]
@@ -177,24 +181,27 @@ def _stated(logs: Sequence[CraftLog], normal: Normal, free: list[int]) -> Learne
             for one, i, gain in zip(numbers, free, gains, strict=True)
             if values[i] != one.given
         ]
-        return learned_craft(logs[0].model, learned, _of_all(found, logs), len(logs))
+        return learned_craft(logs[0].model, learned, _of_all(found, alike, logs), len(logs))
 
     if len(logs) == 1:
         return craft(each[-1])
     return replace(craft(each[-1]), each_without=tuple(map(craft, each[:-1])))
 
 
-def _of_all(found: _HeldOut, logs: Sequence[CraftLog]) -> HeldOutErrors:
-    """Errors of the given ship, the last, and of the learned one, the first, on parts that were held out."""
+def _of_all(found: _HeldOut, rival: _HeldOut, logs: Sequence[CraftLog]) -> HeldOutErrors:
+    """Errors on held-out parts: of the learned craft, the first; of the given ship, the last; and in a current."""
     weights = found.counts
     draws = np.random.default_rng(1).multinomial(
         weights.size, np.full(weights.size, 1.0 / weights.size), size=DRAWS
     )
-    sums = found.squares[[-1, 0]][:, [1, 3]] * weights
+    squares = np.concatenate([found.squares[[-1, 0]], rival.squares])
+    sums = squares[:, [1, 3]] * weights
     errors = np.sqrt(sums.sum(-1) / weights.sum())
-    drawn = np.sqrt(np.maximum(sums @ draws.T, 1e-30))
-    low, high = np.quantile(drawn[1, 0] / drawn[0, 0], (0.025, 0.975))
-    (before, before_turn), (after, after_turn) = errors
+    drawn = np.sqrt(np.maximum(sums[:, 0] @ draws.T, 1e-30))
+    over_given, over_current = (
+        tuple(map(float, np.quantile(drawn[1] / one, (0.025, 0.975)))) for one in drawn[[0, 2]]
+    )
+    (before, before_turn), (after, after_turn), _ = errors
     horizon = logs[0].counts[-1] * logs[0].record.step
     turned = float(np.degrees(before_turn)), float(np.degrees(after_turn))
-    return HeldOutErrors(horizon, float(before), float(after), *turned, (float(low), float(high)))
+    return HeldOutErrors(horizon, float(before), float(after), *turned, over_given, over_current)

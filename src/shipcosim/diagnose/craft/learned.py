@@ -77,6 +77,8 @@ class HeldOutErrors:
         The same of the heading. [deg]
     ratio_ci95 : tuple of two floats
         95 % interval of after over before, in position, by a bootstrap over the parts.
+    current_ci95 : tuple of two floats
+        The same over the error of the given ship in a steady current, learned from the same rows.
     """
 
     horizon: float
@@ -84,12 +86,14 @@ class HeldOutErrors:
     after: float
     before_deg: float
     after_deg: float
-    ratio_ci95: tuple[float, float]
+    ratio_ci95: tuple[float, ...]
+    current_ci95: tuple[float, ...]
 
     @property
     def is_better(self) -> bool:
-        """Whether the learned craft predicts positions better beyond doubt, and headings no worse."""
-        return self.ratio_ci95[1] < 1.0 and self.after_deg < NOT_WORSE * self.before_deg
+        """Whether the learned craft predicts positions better beyond doubt, in a current too; headings no worse."""
+        is_nearer = max(self.ratio_ci95[1], self.current_ci95[1]) < 1.0
+        return is_nearer and self.after_deg < NOT_WORSE * self.before_deg
 
     def as_gain(self) -> dict[str, Any]:
         """The entry ``gain`` of diagnosis.json; what is only known beside a fit of fine causes is None."""

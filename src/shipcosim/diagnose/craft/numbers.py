@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from shipcosim.diagnose.craft.thresholds import FACTOR_E, MOST
+from shipcosim.diagnose.craft.thresholds import FACTOR_E, MOST, TYPICAL_CURRENT
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.diagnose.ship.thrusters import astern_numbers, thrust_numbers
 
@@ -154,6 +154,15 @@ def numbers_of(model: ShipModel, typical: dict[str, np.ndarray]) -> list[CraftNu
     if astern:
         found.append(_factor("thrust astern", "", astern, is_of_file=False))
     return sorted(found, key=lambda one: not one.is_of_file)
+
+
+def current_numbers() -> list[CraftNumber]:
+    """A steady current of usual size: what may look like another craft."""
+    paths = {way: f"water.current_{way}" for way in ("north", "east")}
+    return [
+        CraftNumber(f"water towards {way}", "", (path,), 0.0, TYPICAL_CURRENT, 0)
+        for way, path in paths.items()
+    ]
 
 
 def thrust_of(model: ShipModel) -> CraftNumber | None:

@@ -25,3 +25,5 @@ DRIVING = 0.05
 """Energy that the water may give a craft over what it takes: couplings are learned with noise."""
 LARGEST_STEP = 0.7
 """Change of a logarithm in one step at most: a factor of two."""
+TYPICAL_CURRENT = 0.25
+"""Current in each direction that may take the place of another craft, standard deviation. [m/s] As of sea trials."""
