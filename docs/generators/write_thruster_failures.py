@@ -8,10 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from shipcosim.cosim import simulate
-from shipcosim.library import build_stale
+from shipcosim.cosim import simulate, system_of
 from shipcosim.scenario import judge, read_scenario
-from shipcosim.ssp import read_system
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "generated" / "thruster-failures.md"
@@ -39,8 +37,7 @@ LATE = 100.0  # s before the end
 def row(path):
     """A scenario's row of the table."""
     scenario = read_scenario(path)
-    system = read_system(scenario.system_path, scenario.parameter_paths, fmus=[build_stale(ROOT)])
-    table = simulate(system, scenario)
+    table = simulate(system_of(scenario), scenario)
     verdicts = judge(table, scenario)
     failed_at = scenario.events[0].time
     after = table.sel(time=slice(failed_at, None))

@@ -26,7 +26,7 @@ def vessel_of(
     parameters : sequence of path or name
         Parameter sets, or names of sets in the system's resources.
     ship : str, optional
-        Folder of the ship, or its name in ssp/ships; the one whose name the last parameter set has without.
+        Folder of the ship, or its name in ships or ssp/ships; the one whose name the last parameter set has without.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     Parameters
     ----------
     ship : str or None
-        A path, or a name in ssp/ships.
+        A path, or a name in ships or ssp/ships.
     system : str
         Path of the system.
     sets : sequence of Path
@@ -65,22 +65,17 @@ def ship_folder(ship: str | None, system: str, sets: Sequence[Path]) -> Path:
     else:
         bound = [] if osp_file(system) is not None else read(system).parameter_sets
         names = [Path(one).stem for one in reversed([*bound, *map(str, sets)])]
-    for folder in (
-        (Path(ship), *(ships / name for name in names))
-        if ship
-        else (ships / name for name in names)
-    ):
+    given = [Path(ship)] if ship else []
+    for folder in (*given, *(place / name for name in names for place in ships)):
         if (folder / "ship.toml").is_file():
             return folder
-    known = [file.parent.name for file in sorted(ships.glob("*/ship.toml"))]
+    known = [file.parent.name for place in ships for file in sorted(place.glob("*/ship.toml"))]
     found = f"There is no ship '{ship}'." if ship else "Nothing says which ship this is."
     raise error_at("--ship", found, f"Give her folder. {suggestion(ship or '', known)}".strip())
 
 
-def _ships(system: Path) -> Path:
-    """Nearest folder of ships above a system, else above the working folder."""
+def _ships(system: Path) -> list[Path]:
+    """Folders of ships above a system, then above the working folder: `ships` of a project, and `ssp/ships`."""
     above = [*system.resolve().parents, Path.cwd(), *Path.cwd().parents]
-    return next(
-        (folder / "ssp" / "ships" for folder in above if (folder / "ssp" / "ships").is_dir()),
-        Path("ssp/ships"),
-    )
+    places = [folder / name for folder in above for name in ("ships", "ssp/ships")]
+    return list(dict.fromkeys(place for place in places if place.is_dir()))

@@ -43,7 +43,7 @@ class Hull(HullParticulars):
 
 @dataclass(frozen=True, kw_only=True)
 class ThrusterParticulars:
-    """Particulars of a thruster, `capability-NAME.toml`; position and power are parameters."""
+    """Particulars of a thruster, `capability-NAME.toml`; its position is a parameter."""
 
     shaft_height: float = required("m", "propeller's shaft above the base line")
     diameter: float = quantity(
@@ -52,6 +52,23 @@ class ThrusterParticulars:
         "of the propeller; 0 where the parameter set of the ship has it",
         "neutral",
         minimum=0.0,
+    )
+    power: float = quantity(
+        0.0,
+        "W",
+        "of the motor; 0 where the parameter set of the ship has it",
+        "neutral",
+        minimum=0.0,
+    )
+    thrust_ahead: float = quantity(
+        0.0,
+        "N",
+        "most thrust ahead in a run; 0 where the parameter set has it",
+        "neutral",
+        minimum=0.0,
+    )
+    thrust_astern: float = quantity(
+        0.0, "N", "most thrust astern, positive; 0 where there is none", "neutral", minimum=0.0
     )
     propeller: str = quantity(
         "open", "1", "open, ducted, contra-rotating or cycloidal; not of a tunnel", "neutral"

@@ -29,6 +29,8 @@ Kind = TypeVar("Kind")
 HULL_FILE = "capability"
 _VESSEL = {"wind_table", "drift_table", "length", "breadth", "draught"}
 _THRUSTER = {"x", "power_max", "thrust_min", "thrust_max"}
+_PLAIN = {"x", "y", "direction"}
+"""Parameters of a thruster that does not turn and has no limits: fixed_thruster, mapped_thruster."""
 
 
 @dataclass(frozen=True)
@@ -123,12 +125,15 @@ def read_vessel(system: System, ship: Ship) -> Vessel:
     # Shape and areas come from the ship's file, main dimensions from the system's parameter set.
     hull = Hull(**values[HULL_FILE], **known)
     # Nominal thrust follows from diameter, power and kind of each thruster.
-    made = [
-        _thruster(unit, ThrusterParticulars(**values[_file(name)]), hull)
-        for name, unit in units.items()
-    ]
+    own = {name: ThrusterParticulars(**values[_file(name)]) for name in units}
+    made = [_thruster(unit, own[name], hull) for name, unit in units.items()]
     # The second method needs the simulator's own models and limits.
-    limits = {n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min")) for n, u in units.items()}
+    limits = {
+        n: Limits(_real(u, "thrust_max"), -_real(u, "thrust_min"))
+        if "thrust_max" in u.variables
+        else Limits(own[n].thrust_ahead, own[n].thrust_astern)
+        for n, u in units.items()
+    }
     simulated = Simulated(
         _filled(HullParameters, body),
         _filled(WindParameters, body),
@@ -165,13 +170,17 @@ def _vessel_of(system: System) -> Component:
 
 
 def _thrusters_of(system: System, vessel: str) -> dict[str, Component]:
-    # Thrusters are the components with limits of power and thrust that feed this vessel.
+    # Thrusters are the components with limits of thrust, or with a fixed direction, that feed this vessel.
     parts = {
         source: system.components[source] for source, target in _forces(system) if target == vessel
     }
-    found = {name: part for name, part in parts.items() if part.variables.keys() >= _THRUSTER}
+    found = {
+        name: part
+        for name, part in parts.items()
+        if part.variables.keys() >= _THRUSTER or part.variables.keys() >= _PLAIN
+    }
     if not found:
-        remedy = "It needs components with the parameters of fmus/azimuth_thruster or fmus/tunnel_thruster."
+        remedy = "It needs components with the parameters of azimuth_thruster, tunnel_thruster or fixed_thruster."
         raise error_at(system.file, f"no thruster is connected to {vessel}.", remedy)
     return found
 
@@ -212,8 +221,12 @@ def _problems(
             yield Problem(
                 f"{where}: {key}", f"found {values[key]!r}.", suggestion(str(values[key]), allowed)
             )
-    if not values["diameter"] and "diameter" not in unit.variables:
-        yield Problem(where, "nothing says diameter [m].", f"The parameter set has none of {name}.")
+    needed = {"diameter": ("diameter", "m"), "power_max": ("power", "W")}
+    needed["thrust_max"] = ("thrust_ahead", "N")
+    for parameter, (key, of) in needed.items():
+        if not values[key] and parameter not in unit.variables:
+            found = f"nothing says {key} [{of}]."
+            yield Problem(where, found, f"The parameter set has none of {name}.")
 
 
 def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster:
@@ -222,14 +235,16 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
     # fixed.
     has = unit.variables
     kind = (
-        "tunnel"
+        "fixed"
+        if has.keys() >= _PLAIN
+        else "tunnel"
         if "azimuth" not in has
         else "azimuth"
         if unit.start_value("azimuth_rate")
         else "fixed"
     )
     diameter = own.diameter or _real(unit, "diameter")
-    power = _real(unit, "power_max")
+    power = own.power or _real(unit, "power_max")
     ducted = own.propeller == "ducted" and kind != "tunnel"
     # Factors of Level 1: by propeller (eta 1), by inlet or running astern (eta 2), by transmission
     # (eta M).
@@ -243,8 +258,9 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
     ahead, astern = (
         nominal_thrust(diameter, power, eta_1, eta, ETA_M[own.transmission]) for eta in eta_2
     )
-    # A fixed thruster points where its azimuth input starts.
+    # A fixed thruster points along its direction, or where its azimuth input starts.
     angles = {"tunnel": 0.5 * math.pi, "azimuth": 0.0}
+    ahead_of = "direction" if has.keys() >= _PLAIN else "azimuth_in"
     return Thruster(
         name=unit.name,
         kind=kind,
@@ -256,7 +272,7 @@ def _thruster(unit: Component, own: ThrusterParticulars, hull: Hull) -> Thruster
         ducted=ducted,
         ahead=ahead,
         astern=astern,
-        angle=angles[kind] if kind in angles else _real(unit, "azimuth_in"),
+        angle=angles[kind] if kind in angles else _real(unit, ahead_of),
     )
 
 

@@ -149,6 +149,9 @@ def make(name: str, origin: Path | None, answers: Answers | None, force: bool) -
             _scenario(named or ship, len(systems) > 1), encoding="utf-8"
         )
         files[f"scenarios/{name}.toml"] = stage / "scenario.toml"
+        if len(systems) > 1:
+            (stage / "study.toml").write_text(_study(named or ship), encoding="utf-8")
+            files[f"studies/{name}_failures.toml"] = stage / "study.toml"
         again = source.resolve() == target.resolve() and origin is not None
         if not again:
             (stage / "ship.toml").write_text(text, encoding="utf-8")
@@ -209,6 +212,24 @@ def _scenario(ship: Described, has_dp: bool) -> str:
     return GOES.format(name=ship.name, inputs="\n".join(ahead))
 
 
+def _study(ship: Described) -> str:
+    """A study of failures: each thruster stops, in wind from all sides."""
+    from shipcosim.ships.control import units_for_dp
+
+    # A thruster without a drive cannot fail by itself; the allocator is told that it is lost.
+    events = {
+        unit.name: f'"allocator.available_{number}" = false'
+        if unit.fmu == "fixed_thruster"
+        else f'"{unit.name}.failed" = true'
+        for number, unit in enumerate(units_for_dp(ship), 1)
+    }
+    cases = [
+        f'    {{ label = "{name} stops", events = [{{ time = 200.0, override = {{ {event} }} }}] }},'
+        for name, event in events.items()
+    ]
+    return FAILURES.format(name=ship.name, cases="\n".join(cases))
+
+
 def _half_ahead(ship: Described) -> list[tuple[str, float]]:
     """Inputs that make her go ahead, where something says how much her thrusters take."""
     from shipcosim.ships.file import number
@@ -230,6 +251,14 @@ def _say(written: list[Path], remarks: list[Problem], name: str, has_dp: bool) -
     steps = [
         f"shipcosim run {name}                      {'she holds her place in wind' if has_dp else 'she goes ahead'}",
         f"shipcosim check ships/{name}/ship.toml    what is estimated, what cannot be",
+        *(
+            (
+                f"shipcosim capability {name}_dp            the weather that her thrusters balance",
+                f"shipcosim sweep studies/{name}_failures.toml    each thruster lost, wind from all sides",
+            )
+            if has_dp
+            else ()
+        ),
         f"shipcosim new ship {name} --from ships/{name}/ship.toml    the systems again, after a change",
     ]
     say("\nGo on with:\n" + "\n".join(f"  {step}" for step in steps))
@@ -251,6 +280,40 @@ signal = ["vessel.x", "vessel.y"]
 near   = [0.0, 0.0]
 within = 3.0                       # m
 during = [200.0, 300.0]
+"""
+FAILURES = """\
+description = "{name} loses each thruster, in wind from all sides"
+scenario    = "{name}"
+stop_time   = "500 s"                     # the failure is at 200 s
+
+[[factor]]
+name = "failure"
+case = [
+{cases}
+]
+
+[[factor]]
+name   = "wind_from"
+signal = "environment.wind_from"
+from   = "0 deg"
+to     = "330 deg"
+count  = 12
+
+[[quantity]]
+name        = "excursion"
+description = "largest distance from her place"
+signal      = ["vessel.x", "vessel.y"]
+near        = [0.0, 0.0]
+reduce      = "maximum"
+during      = ["200 s", "500 s"]
+
+[[quantity]]
+name        = "turned"
+description = "largest turn off her heading"
+signal      = "vessel.psi"
+near        = 0.0
+reduce      = "maximum"
+during      = ["200 s", "500 s"]
 """
 GOES = """\
 description = "{name} goes ahead"

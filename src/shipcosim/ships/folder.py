@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from shipcosim.errors import Problem, ShipcosimError, suggestion
+from shipcosim.ships.capability_numbers import capability_entries
 from shipcosim.ships.described import describe
 from shipcosim.ships.entries import Quantity, table_entry
 from shipcosim.ships.file import ShipFile
@@ -181,10 +182,11 @@ def _described(folder: Path, problems: list[Problem]) -> dict[str, dict[str, Qua
     if not {"particulars", "thrusters"} & set(_toml(file, []) if file.is_file() else ()):
         return {}
     try:
-        return describe(folder).entries
+        ship = describe(folder)
     except ShipcosimError as error:
         problems += error.problems
         return {}
+    return ship.entries | capability_entries(ship)
 
 
 def _layers(folder: Path, above: tuple[Path, ...], problems: list[Problem]) -> list[Path]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from shipcosim.models.allocation.fixed_angles import FixedAngleParameters
+from shipcosim.models.allocation.optimal import OptimalUnitsParameters
 from shipcosim.models.control.observer import DpShip, ObserverParameters
 from shipcosim.models.control.pid import ControlParameters
 from shipcosim.models.control.reference import ReferenceParameters
@@ -37,7 +37,7 @@ PARAMETERS: dict[str, tuple[type, ...]] = {
         MastParameters,
         VotingParameters,
     ),
-    "fixed_angle_allocator": (FixedAngleParameters,),
+    "optimal_units_allocator": (OptimalUnitsParameters,),
 }
 """FMU: its classes of parameters."""
 FMU_OF = {

@@ -76,6 +76,11 @@ class ShipThruster:
         s = sin(self.direction)
         return c, s, self.x * s - self.y * c
 
+    @property
+    def azimuth_rate(self) -> float:
+        """Quickest turning; 0 where it keeps its direction. [rad/s]"""
+        return float(self.entries["azimuth_rate"].value) if self.kind == "azimuth" else 0.0
+
 
 def units_of_ship(
     thrusters: list[Thruster],

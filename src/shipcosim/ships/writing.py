@@ -1,12 +1,12 @@
 """A new ship file from a few particulars: its text, and usual values for the rest."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import sqrt
 
 from shipcosim.errors import error_at, suggestion
-from shipcosim.ships.estimates.hull import HullDimensions
+from shipcosim.ships.estimates.hull import HullDimensions, cross_flow_drag, inertia_yaw
 from shipcosim.ships.estimates.resistance import resistance
-from shipcosim.ships.estimates.weather import USUAL_KIND
+from shipcosim.ships.estimates.weather import USUAL_KIND, front_area, side_area
 from shipcosim.ships.given import number_in
 
 LAYOUTS = {
@@ -75,29 +75,29 @@ def usual(answers: Answers, key: str) -> str:
     """
     if not answers.length:
         return Usual("30 m") if key == "length" else ""
-    # Usual proportions: breadth from length, draught from breadth.
+    form = _form(answers)
+    if key in ("breadth", "draught"):
+        return Usual(f"{getattr(form, key):.2g} m")
+    if key == "displacement":
+        return Usual(f"{_round(form.mass / 1000.0)} t")
+    if key == "speed":
+        return Usual(f"{form.speed * 3600.0 / 1852.0:.2g} kn")
+    # Power from the resistance at service speed and a usual efficiency.
+    return Usual(f"{_round(resistance(form) * form.speed / EFFICIENCY / 1000.0)} kW")
+
+
+def _form(answers: Answers) -> HullDimensions:
+    """Hull of usual proportions, as far as nothing is given."""
     L = number_in(answers.length, "m")
     B = number_in(answers.breadth, "m") if answers.breadth else 1.55 * L**0.54
     T = number_in(answers.draught, "m") if answers.draught else B / 3.0
-    if key in ("breadth", "draught"):
-        return Usual(f"{B if key == 'breadth' else T:.2g} m")
     # Displacement by a usual block coefficient, speed by Froude number 0.25.
-    mass = (
-        number_in(answers.displacement, "kg")
-        if answers.displacement
-        else 1025.0 * USUAL_BLOCK * L * B * T
-    )
+    given = number_in(answers.displacement, "kg") if answers.displacement else 0.0
+    block = min(max(given / (1025.0 * L * B * T), 0.2), 1.0) if given else USUAL_BLOCK
     speed = number_in(answers.speed, "m/s") if answers.speed else 0.25 * sqrt(GRAVITY * L)
-    if key == "displacement":
-        return Usual(f"{_round(mass / 1000.0)} t")
-    if key == "speed":
-        return Usual(f"{speed * 3600.0 / 1852.0:.2g} kn")
-    # Power from the resistance at service speed and a usual efficiency.
-    block = min(max(mass / 1025.0 / (L * B * T), 0.2), 1.0)
-    form = HullDimensions(
+    return HullDimensions(
         length=L, breadth=B, draught=T, block=block, hulls=1, density=1025.0, speed=speed
     )
-    return Usual(f"{_round(resistance(form) * speed / EFFICIENCY / 1000.0)} kW")
 
 
 def ship_text(answers: Answers) -> str:
@@ -132,13 +132,28 @@ def ship_text(answers: Answers) -> str:
     shown = "\n\n".join(
         "[[thrusters]]\n" + "\n".join(_line(k, v) for k, v in one.items()) for one in thrusters
     )
+    # Numbers that are estimated stand in comments, ready to be replaced.
+    weight = answers.displacement or usual(answers, "displacement")
+    speed = answers.speed or usual(answers, "speed")
+    form = _form(replace(answers, displacement=weight, speed=speed))
+    estimates = {
+        "mass": weight,
+        "gyradius": _m(sqrt(float(inertia_yaw(1.0, form.length, form.breadth, 0.0).value))),
+        "trial": speed,
+        "resistance": f"{_round(resistance(form) / 1000.0)} kN",
+        "front": f"{_round(float(front_area(form.breadth).value))} m2",
+        "side": f"{_round(float(side_area(form.length).value))} m2",
+    }
+    quoted = {name: f"{_quoted(value):<12}" for name, value in estimates.items()}
     return _TEXT.format(
+        **quoted,
+        cross_flow=f"{float(cross_flow_drag(form).value):<12.3g}",
         description=_quoted(answers.description),
         length=_line("length", answers.length),
         breadth=_line("breadth", answers.breadth),
         draught=_line("draught", answers.draught),
-        weight=_line("displacement", answers.displacement or usual(answers, "displacement")),
-        speed=_line("service_speed", answers.speed or usual(answers, "speed")),
+        weight=_line("displacement", weight),
+        speed=_line("service_speed", speed),
         kind=_quoted(answers.kind),
         thrusters=shown,
     )
@@ -233,20 +248,20 @@ source = "given to `shipcosim new ship`"       # of every number that does not s
 {speed}
 
 [mass]
-# mass = "2650 t"                              # if it is not the displacement
-# yaw_gyradius = "15 m"                        # estimated: a quarter of the length
+# mass = {mass}                          # if it is not the displacement
+# yaw_gyradius = {gyradius}                  # estimated: a quarter of the length
 
 [resistance]
-# speed = "12 kn"                              # one point of the speed trial; estimated: Holtrop and Mennen
-# resistance = "85 kN"
+# speed = {trial}                         # one point of the speed trial; estimated: Holtrop and Mennen
+# resistance = {resistance}                    # at that speed
 
 [drag]
-# cross_flow = 0.8                             # estimated: Hoerner's curve
+# cross_flow = {cross_flow}                    # estimated: Hoerner's curve
 
 [wind]
 kind = {kind}
-# front_area = "170 m2"                        # estimated from breadth and length
-# side_area = "620 m2"
+# front_area = {front}                    # estimated from the breadth
+# side_area = {side}                     # estimated from the length
 
 {thrusters}
 """

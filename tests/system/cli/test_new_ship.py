@@ -3,7 +3,11 @@
 import pytest
 from typer.testing import CliRunner
 
+import shipcosim as sc
+from shipcosim.capability.result import LEVEL_1
 from shipcosim.cli.app import app
+from shipcosim.ships.described import describe, file_from
+from shipcosim.ships.writing import Answers, ship_text
 
 ASKED = ["--length", "60 m", "--breadth", "14 m", "--draught", "4.5 m"]
 
@@ -71,8 +75,54 @@ def test_thrusters_are_told_one_by_one(project):
     bow = "name=bow, kind=tunnel, x=24 m, diameter=1.5 m, power=300 kW"
     aft = "name=pod, kind=azimuth, x=-27 m, y=0 m, diameter=2.4 m, power=1 MW"
     made = told("new", "ship", "tern", *ASKED, "--thruster", bow, "--thruster", aft, "--yes")
-    assert made.exit_code == 0 and "no DP system" in made.output, made.output
-    assert (project / "ssp/tern_open").is_dir() and not (project / "ssp/tern_dp").exists()
+    assert made.exit_code == 0 and (project / "ssp/tern_dp").is_dir(), made.output
+    stiff = told("new", "ship", "gull", *ASKED, "--thruster", bow, "--yes")
+    assert stiff.exit_code == 0 and "no DP system" in stiff.output, stiff.output
+    assert (project / "ssp/gull_open").is_dir() and not (project / "ssp/gull_dp").exists()
+
+
+@pytest.mark.parametrize("propulsion", ["azimuths", "screws"])
+def test_a_new_ship_has_a_capability_and_a_study_of_failures(project, propulsion):
+    assert told("new", "ship", "tern", *ASKED, "--propulsion", propulsion, "--yes").exit_code == 0
+    assert told("check", "studies/tern_failures.toml").exit_code == 0
+    numbers = sc.capability("tern_dp", failures=[("port", "starboard")]).numbers(LEVEL_1)
+    intact, lost = numbers[0], numbers[-1]
+    assert intact.min() >= 1 and intact[0] >= 4  # from ahead the propellers push
+    assert (lost <= intact).all() and lost[0] == 0
+
+
+def test_a_file_beside_the_ship_file_replaces_an_estimate_of_the_capability(project):
+    assert told("new", "ship", "tern", *ASKED, "--yes").exit_code == 0
+    before = sc.capability("tern_dp")
+    (project / "ships/tern/capability.toml").write_text(
+        'wind_area_side = { value = 2000.0, unit = "m2", origin = "drawing" }'
+    )
+    after = sc.capability("tern_dp")
+    assert after.vessel.hull.wind_area_side == 2000.0
+    assert after.vessel.hull.bow_angle == before.vessel.hull.bow_angle
+    assert (after.numbers(LEVEL_1)[0] <= before.numbers(LEVEL_1)[0]).all()
+
+
+@pytest.mark.parametrize(("length", "breadth"), [("24 m", "8 m"), ("82 m", "20 m")])
+def test_numbers_in_the_comments_are_those_that_are_estimated(length, breadth, tmp_path):
+    answers = Answers(length=length, breadth=breadth, draught="3 m")
+    text = ship_text(answers)
+    given = "\n".join(
+        line.removeprefix("# ") if " = " in line and line.startswith("# ") else line
+        for line in text.splitlines()
+        if "{{" not in line and "Where one comes" not in line and "well it is known" not in line
+    )
+    estimated, written = (
+        describe(tmp_path / "ship.toml", file_from(one, tmp_path / "ship.toml"))
+        for one in (text, given)
+    )
+    assert written.file.wind.side_area is not None and estimated.file.wind.side_area is None
+    assert written.file.wind.side_area.value == pytest.approx(
+        0.18 * written.form.length**2, rel=0.01
+    )
+    for name in ("mass", "inertia_yaw", "X_uu", "cross_flow_drag"):
+        value = written.vessel[name].value
+        assert value == pytest.approx(estimated.vessel[name].value, rel=0.02), name
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ import re
 from shipcosim.ships.check import check_ship
 
 
-def test_ship_file_of_the_page_has_no_mistake_but_is_short_of_a_thruster(root, tmp_path):
-    """It has one azimuth and a tunnel, to be short, so there is no DP."""
+def test_ship_file_of_the_page_has_no_mistake_and_holds_with_one_azimuth(root, tmp_path):
+    """It has one azimuth and a tunnel, to be short: the azimuth turns, so there is a DP."""
     text = (root / "docs" / "your-own-ship.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```toml\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
     (tmp_path / "ship.toml").write_text(
@@ -14,7 +14,7 @@ def test_ship_file_of_the_page_has_no_mistake_but_is_short_of_a_thruster(root, t
     )
     found = check_ship(str(tmp_path))
     assert found and {problem.severity for problem in found} == {"remark"}
-    assert any("no DP system" in problem.found for problem in found)
+    assert not any("no DP system" in problem.found for problem in found)
 
 
 def test_page_lists_every_key_of_a_ship_file(root):

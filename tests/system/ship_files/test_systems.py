@@ -40,7 +40,10 @@ def test_a_ship_with_azimuths_and_a_tunnel_holds_her_place(written, fmus, tmp_pa
     late = settled(made[1], fmus)
     assert np.hypot(late["vessel.x"], late["vessel.y"]).max() < 2.0
     assert np.abs(np.degrees(late["vessel.psi"])).max() < 2.0
-    assert not late["allocator.saturated"].any() and np.abs(late["bow.thrust"]).min() > 1e3
+    # The law meets the request to rounding; thrust is asked for in tens of kN.
+    assert np.abs(late["allocator.slack_Y"]).max() < 10.0
+    assert np.abs(late["bow.thrust"]).min() > 1e3
+    assert float(late["port.azimuth"].std()) > 1e-3  # it turns
 
 
 def test_two_screws_and_two_mapped_tunnels_hold_a_boat(written, fmus, tmp_path):
