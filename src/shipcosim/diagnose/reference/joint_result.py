@@ -153,7 +153,7 @@ class JointDiagnosis:
             entry["put_right_in"] = list(one.put_right)
         if own := self.sizes.get(one.what.label):
             entry["by_log"] = {
-                name: {key: asdict(value) for key, value in parameters.items()}
+                name: {key: value.as_json() for key, value in parameters.items()}
                 for name, parameters in own.items()
             }
         return entry

@@ -5,7 +5,7 @@ import pytest
 from diagnose import twin
 from diagnose.reference import ships
 
-from shipcosim.diagnose.explanation.null_distribution import _drawn
+from shipcosim.diagnose.explanation.null_distribution import drawn_within_tolerances
 from shipcosim.diagnose.explanation.search import explain
 from shipcosim.diagnose.explanation.unmodelled import unmodelled_gains
 from shipcosim.diagnose.explanation.verdict import judge
@@ -83,7 +83,7 @@ def test_directions_have_the_covariance_of_the_reference_and_what_days_differ_by
 
 
 def test_healthy_ships_are_drawn_as_the_reference_leaves_them_uncertain(known):
-    drawn = _drawn(known, 4000, np.random.default_rng(0))
+    drawn = drawn_within_tolerances(known, (4000,), np.random.default_rng(0))
     variance = sum(direction["vessel.cross_flow_drag"] ** 2 for direction in known.directions)
     assert np.std(drawn.get("vessel.cross_flow_drag")) == pytest.approx(np.sqrt(variance), rel=0.05)
     assert np.ndim(drawn.get("instruments.wind_lag")) == 0
