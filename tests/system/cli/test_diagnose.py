@@ -124,6 +124,7 @@ class Schema(Strict):
     discrepancies: list[Discrepancy]
     form: LoadForm | None
     craft: dict | None = None
+    healthy_errors: dict | None = None
     candidates: list[Candidate]
     indistinguishable: list[Candidate]
     not_testable: list[str]

@@ -14,7 +14,7 @@ from shipcosim.diagnose.finding import label_of
 from shipcosim.diagnose.hypotheses.cause import Cause, CauseParameter, Fault
 from shipcosim.diagnose.ship.model import ShipModel
 from shipcosim.errors import Problem, ShipcosimError, error_at
-from shipcosim.models.propulsion.tunnel import TunnelParameters
+from shipcosim.models.propulsion.azimuth import AzimuthParameters
 from shipcosim.series import conversion
 from shipcosim.ssp import AnyPath
 
@@ -229,9 +229,11 @@ def _paths(pattern: str, component: str | None, model: ShipModel) -> list[str]:
         else pattern
     )
     if "{azimuths}" in pattern:
-        turning = (
-            name for name in model.thrusters if not isinstance(model.parts[name], TunnelParameters)
-        )
+        turning = [
+            name
+            for name in model.thrusters
+            if name in model.azimuths or isinstance(model.parts[name], AzimuthParameters)
+        ]
         found = (pattern.replace("{azimuths}", name) for name in turning)
         return [path for path in found if model.has(path)]
     return [pattern.replace("{thruster}", component or "")]

@@ -7,7 +7,7 @@ for which it has coefficients; a new effect is one more function here, with coef
 from dataclasses import dataclass
 from functools import cached_property
 
-from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum
+from shipcosim.models.core.maths import Arithmetic, exp, hypot, maximum, minimum, where
 from shipcosim.models.core.motion import Load
 from shipcosim.models.core.parameters import acts, quantity, required
 
@@ -317,9 +317,12 @@ def linear_damping(u: Arithmetic, v: Arithmetic, r: Arithmetic, *, hull: HullPar
     forceSurgeDamping.m of his MSS toolbox, where it blends linear into quadratic damping in surge.
     """
     X_u, Y_v, Y_r, N_v, N_r = hull.linear
-    if acts(hull.linear_damping_speed):
-        # Damping of a ship that hardly makes way; with speed the other contributions take over.
-        share = exp(-(u * u + v * v) / (hull.linear_damping_speed * hull.linear_damping_speed))
+    fading = hull.linear_damping_speed
+    if acts(fading):
+        # Damping of a ship that hardly makes way; with speed the other contributions take over. Compiled code comes
+        # here with a speed of 0 too, where nothing fades.
+        share = exp(-(u * u + v * v) / where(fading > 0.0, fading * fading, 1.0))
+        share = where(fading > 0.0, share, 1.0)
         u = share * u
         v = share * v
         r = share * r
