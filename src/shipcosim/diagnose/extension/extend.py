@@ -15,6 +15,7 @@ from shipcosim.diagnose.hypotheses.cause import Cause, ExtensionRule, OnConnecti
 from shipcosim.diagnose.ship.ship_of_system import ship_model_of
 from shipcosim.errors import error_at
 from shipcosim.ssp import AnyPath, SystemStructure, read, write_ssv
+from shipcosim.ssp.read.parameters import ParameterValue
 
 _SHOWN = {"north": "x", "east": "y", "heading": "psi", "surge": "u", "sway": "v", "yaw_rate": "r"}
 
@@ -98,11 +99,7 @@ def extend(
             findings = [one for one in findings if catalogue[one.cause].sought_in != "comparison"]
         for finding in findings:
             _carry(draft, finding, catalogue)
-    ssp = Path(folder) / "extended.ssp"
-    ssv = Path(folder) / "extended.ssv"
-    write_ssv(ssv, "extended", draft.values.values())
-    structure.bind(ssv)
-    structure.write(ssp)
+    ssp, ssv = written(structure, draft.values.values(), folder)
     return Extension(
         ssp,
         ssv,
@@ -113,6 +110,18 @@ def extend(
         draft.lag,
         tuple(draft.remarks),
     )
+
+
+def written(
+    structure: SystemStructure, values: Iterable[ParameterValue], folder: AnyPath
+) -> tuple[Path, Path]:
+    """Write a system with a set of values bound: paths of extended.ssp and extended.ssv in a folder."""
+    ssp = Path(folder) / "extended.ssp"
+    ssv = Path(folder) / "extended.ssv"
+    write_ssv(ssv, "extended", values)
+    structure.bind(ssv)
+    structure.write(ssp)
+    return ssp, ssv
 
 
 def signals_of(component: str, suffix: str = "") -> dict[str, str]:

@@ -1,6 +1,6 @@
 """The system extended by the findings of a diagnosis, with every number that differs from the given one."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -112,10 +112,18 @@ def extended_by(
     findings = [finding for finding in findings if finding.kind == "physics"]
     if not findings and craft is None:
         return given
-    try:
-        extension = extend(
+    return with_extension(
+        given,
+        lambda: extend(
             given.source, findings, folder, craft, log_attributes=about, catalogue=causes
-        )
+        ),
+    )
+
+
+def with_extension(given: ExtendedSystem, extend_it: Callable[[], Extension]) -> ExtendedSystem:
+    """A system with an extension, once that is made; with a remark where it cannot be."""
+    try:
+        extension = extend_it()
         system = read_system(str(extension.ssp))
     except ShipcosimError as error:
         said = (f"{p.where}: {p.found} {p.remedy}".rstrip() for p in error.problems)
@@ -123,13 +131,12 @@ def extended_by(
             given, remarks=tuple(f"The system was not extended: {text}" for text in said)
         )
     changes = (
-        change_of(name, value, given.given, system) for name, value in extension.values.items()
+        _change(name, value, given.given, system) for name, value in extension.values.items()
     )
     return replace(given, extension=extension, system=system, changes=tuple(changes))
 
 
-def change_of(name: str, value: float, given: System, extended: System) -> NumberChange:
-    """A number that the extended system has otherwise than the given one."""
+def _change(name, value, given, extended):
     component, _, variable = name.rpartition(".")
     start = (
         given.components[component].start_value(variable) if component in given.components else None

@@ -1,18 +1,17 @@
 """The numbers of another form that the system has parameters for: as a log would have them, and written as its set."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from shipcosim.diagnose.explanation.identification import Identification
-from shipcosim.diagnose.extension.extend import Extension, signals_of
-from shipcosim.diagnose.extension.extended_system import ExtendedSystem, change_of
+from shipcosim.diagnose.extension.extend import Extension, signals_of, written
+from shipcosim.diagnose.extension.extended_system import ExtendedSystem, with_extension
 from shipcosim.diagnose.finding import ParameterEstimate
 from shipcosim.diagnose.inference.fitting import Fit
 from shipcosim.diagnose.ship.model import ShipModel
-from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read, read_system, write_ssv
+from shipcosim.ssp import AnyPath, System, SystemStructure, parameter, read
 
 
 def form_numbers(fit: Fit, system: System) -> dict[str, ParameterEstimate]:
@@ -44,14 +43,9 @@ def form_numbers(fit: Fit, system: System) -> dict[str, ParameterEstimate]:
     columns = [column for column, is_in in zip(fit.columns, carried, strict=True) if is_in]
     for column, share, deviation in zip(columns, mean, std, strict=True):
         for path, size in column.changes.items():
-            about = fit.model.about(path)
-            value = np.clip(
-                fit.model.get(path) + size * share,
-                -np.inf if about["minimum"] is None else about["minimum"],
-                np.inf if about["maximum"] is None else about["maximum"],
-            )
-            deviation_of = float(abs(size) * deviation)
-            found[path] = ParameterEstimate(float(value), deviation_of, about["unit"])
+            value = fit.model.within_bounds(path, float(fit.model.get(path) + size * share))
+            unit = fit.model.about(path)["unit"]
+            found[path] = ParameterEstimate(value, float(abs(size) * deviation), unit)
     return found
 
 
@@ -88,7 +82,12 @@ def with_form_numbers(
     Returns
     -------
     ExtendedSystem
+        With a remark where the system cannot be extended.
     """
+    return with_extension(given, lambda: _extension(given, numbers, log, folder))
+
+
+def _extension(given, numbers, log, folder) -> Extension:
     source = given.source
     structure = source.copy() if isinstance(source, SystemStructure) else read(source)
     name = Path(log.log.encoding.get("source", "log")).name
@@ -97,13 +96,6 @@ def with_form_numbers(
         text = f"as {name} would have it, beside the others of this set; {log.ship.get(path):.6g} before"
         unit = None if of.unit == "1" else of.unit
         values[path] = parameter(path, of.estimate, unit, text, tolerance=of.std)
-    ssv = Path(folder) / "extended.ssv"
-    ssp = Path(folder) / "extended.ssp"
-    write_ssv(ssv, "extended", values.values())
-    structure.bind(ssv)
-    structure.write(ssp)
-    system = read_system(str(ssp))
+    ssp, ssv = written(structure, values.values(), folder)
     sizes = {path: value.value for path, value in values.items()}
-    changes = tuple(change_of(path, size, given.given, system) for path, size in sizes.items())
-    extension = Extension(ssp, ssv, sizes, signals=signals_of(log.ship.vessel))
-    return replace(given, extension=extension, system=system, changes=changes)
+    return Extension(ssp, ssv, sizes, signals=signals_of(log.ship.vessel))

@@ -252,7 +252,7 @@ def reference_of(
             unit=ship.about(name)["unit"],
             nominal=float(ship.get(name)),
             tolerance=float(tolerance),
-            estimate=_within_bounds(ship, name, float(ship.get(name) + by)),
+            estimate=ship.within_bounds(name, float(ship.get(name) + by)),
             std=float(deviation),
         )
         for name, tolerance, by, deviation in zip(names, tolerances, moved, std, strict=True)
@@ -271,11 +271,3 @@ def reference_of(
         numbers=tuple(numbers),
         correlation=tuple(tuple(map(float, row)) for row in correlation),
     )
-
-
-def _within_bounds(ship: ShipModel, name: str, value: float) -> float:
-    """A number's value, brought to what it can be."""
-    about = ship.about(name)
-    low = -np.inf if about["minimum"] is None else about["minimum"]
-    high = about["maximum"]
-    return float(np.clip(value, low, np.inf if high is None else high))

@@ -160,6 +160,13 @@ class ShipModel:
         part, name = self._where(path)
         return next(item for item in fields(self.parts[part]) if item.name == name).metadata
 
+    def within_bounds(self, path: str, value: float) -> float:
+        """The value of a number, brought to what it can be."""
+        about = self.about(path)
+        low = -np.inf if about["minimum"] is None else about["minimum"]
+        high = np.inf if about["maximum"] is None else about["maximum"]
+        return float(np.clip(value, low, high))
+
     def has(self, path: str) -> bool:
         """Whether there is such a number."""
         try:

@@ -292,13 +292,31 @@ def error_with(comparison: Comparison, numbers: Mapping[str, float]) -> float:
         By ``place.name``, in the units of the ship's numbers.
     """
     predictor = comparison.predictors["plain"]
+    ends = comparison.rows + in_rows(predictor.record)[-1]
+    off = missing(sailed(comparison, predictor.model.with_values(numbers)), comparison.seen, ends)
+    return float(np.sqrt((off["position"] ** 2).mean()))
+
+
+def sailed(comparison: Comparison, model: ShipModel) -> Motion:
+    """Where a ship is after the longest horizon of each held-out stretch, from what the plain model knew at its start.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    model : ShipModel
+        Or several, their numbers (m, 1) arrays.
+
+    Returns
+    -------
+    Motion
+        As instruments show it, (s,) arrays; (m, s) of several ships.
+    """
+    predictor = comparison.predictors["plain"]
     rows = comparison.rows
     start = Motion(*(value[rows] for value in predictor.motion))
-    model = predictor.model.with_values(numbers)
-    horizon = in_rows(predictor.record)[-1]
-    there = readings(predicted(start, rows, predictor.record, model, [horizon]), model)
-    off = missing(Motion(*(value[0] for value in there)), comparison.seen, rows + horizon)
-    return float(np.sqrt((off["position"] ** 2).mean()))
+    horizon = in_rows(predictor.record)[-1:]
+    there = readings(predicted(start, rows, predictor.record, model, horizon), model)
+    return Motion(*(value[0] for value in there))
 
 
 def baseline(errors: xarray.Dataset) -> dict[str, list[float]]:

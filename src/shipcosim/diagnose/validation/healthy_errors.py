@@ -5,12 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shipcosim.diagnose.explanation.null_distribution import drawn_within_tolerances
-from shipcosim.diagnose.inference.predictions import missing, predicted
-from shipcosim.diagnose.ship.measured_motion import readings
-from shipcosim.diagnose.validation.gain import Comparison, rms
-from shipcosim.diagnose.validation.split import HORIZONS, in_rows
+from shipcosim.diagnose.inference.predictions import missing
+from shipcosim.diagnose.validation.gain import Comparison, rms, sailed
+from shipcosim.diagnose.validation.split import HORIZONS
 from shipcosim.diagnose.validation.thresholds import FLOOR_VARIES, HEALTHY_SHIPS
-from shipcosim.models.core.motion import Motion
 
 
 @dataclass(frozen=True)
@@ -57,19 +55,10 @@ def healthy_errors(comparison: Comparison, seed: int = 0) -> HealthyErrors:
     -------
     HealthyErrors
     """
-    predictor = comparison.predictors["plain"]
-    rows = comparison.rows
-    horizon = in_rows(predictor.record)[-1:]
-    start = Motion(*(value[rows] for value in predictor.motion))
-    # What the plain model says of each stretch, and what the healthy ships do there.
-    plain = predicted(start, rows, predictor.record, predictor.model, horizon)
-    several = Motion(*(np.broadcast_to(value, (HEALTHY_SHIPS, rows.size)) for value in start))
-    ships = drawn_within_tolerances(
-        predictor.model, (HEALTHY_SHIPS, 1), np.random.default_rng(seed)
-    )
-    sailed = readings(predicted(several, rows, predictor.record, ships, horizon), ships)
-    said = Motion(*(value[0] for value in readings(plain, predictor.model)))
-    off = missing(Motion(*(value[0] for value in sailed)), said, np.arange(rows.size))
+    plain = comparison.predictors["plain"].model
+    ships = drawn_within_tolerances(plain, (HEALTHY_SHIPS, 1), np.random.default_rng(seed))
+    said = sailed(comparison, plain)
+    off = missing(sailed(comparison, ships), said, np.arange(comparison.rows.size))
     # Errors beside the noise that no model is without.
     measured = {}
     largest = {}
