@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+import xarray
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as some
 
@@ -259,3 +260,17 @@ def test_a_column_that_is_there_twice_is_an_error(tmp_path):
     (tmp_path / "t.csv").write_text("time,x,x\n0,1,2\n")
     with pytest.raises(ShipcosimError, match="column 'x': is there twice"):
         read_columns(tmp_path / "t.csv")
+
+
+def test_netcdf_is_what_xarray_writes_and_reads(table, tmp_path):
+    """The file is written by h5py for speed; a reader of NetCDF must see no difference."""
+    table["logical"] = ("time", table["time"].values > 0.5, {"units": "1", "long_name": "a truth"})
+    table["said"] = ("time", np.array(["no"] * table.sizes["time"]), {"units": "", "long_name": ""})
+    write_table(table, tmp_path / "ours.nc")
+    table.to_netcdf(tmp_path / "theirs.nc", engine="h5netcdf")
+    with (
+        xarray.open_dataset(tmp_path / "ours.nc", engine="h5netcdf") as ours,
+        xarray.open_dataset(tmp_path / "theirs.nc", engine="h5netcdf") as theirs,
+    ):
+        xarray.testing.assert_identical(ours.load(), theirs.load())
+        assert {n: v.dtype for n, v in ours.items()} == {n: v.dtype for n, v in theirs.items()}

@@ -15,7 +15,7 @@ from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.errors import Problem
 from shipcosim.results.shown import HtmlPage, Picture, Result, SavedResult
-from shipcosim.series import write_file, write_table
+from shipcosim.series import write_file
 
 if TYPE_CHECKING:
     import pandas
@@ -149,7 +149,7 @@ class CapabilityOfShip(SavedResult, Capability):
     def write(self, stage: Path) -> None:
         """Write report.html, capability.csv and capability.nc into a folder that is there."""
         write_file(stage / "capability.csv", numbers_table(self).encode())
-        write_table(self.table, stage / "capability.nc")
+        write_file(stage / "capability.nc", bytes(self.table.to_netcdf(engine="h5netcdf")))
         super().write(stage)
 
     def _card(self) -> Card:

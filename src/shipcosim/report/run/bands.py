@@ -61,7 +61,10 @@ def bands_of(
         # An expectation whose window has no row is not drawn.
         rows = window(shown["time"].values, verdict.expect)
         if signal in verdict.expect.signal and len(rows):
-            found.append(_band_of(shown.isel(time=rows), signal, verdict, minus))
+            # Of the table only what the band is made of: cutting all of its signals takes long.
+            targets = [one for one in verdict.expect.near or () if isinstance(one, str)]
+            needed = shown[list({signal, *targets, *([minus] if minus else [])})]
+            found.append(_band_of(needed.isel(time=rows), signal, verdict, minus))
     return found
 
 

@@ -1,7 +1,7 @@
 """The page of a run: its contents, and functions that write or summarise it."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from xarray import Dataset
@@ -255,8 +255,8 @@ def drawn_data(
             for name, v in drawn.data_vars.items()
         },
         "choice": list(choice),
-        "scene": [asdict(run) for run in runs],
-        "panels": [asdict(panel) for section in sections for panel in section.panels],
+        "scene": list(runs),
+        "panels": [panel for section in sections for panel in section.panels],
         "events": sorted(set(events)),
         "colours": {"passed": palette.PASSED, "failed": palette.FAILED, "cycle": palette.CYCLE},
     }

@@ -28,12 +28,13 @@ def packed_text(text: str) -> str:
     >>> gzip.decompress(base64.b64decode(packed_text("ship"))).decode()
     'ship'
     """
-    return base64.b64encode(gzip.compress(text.encode(), 9, mtime=0)).decode()
+    # Level 9 takes three times as long as 6 and saves one percent.
+    return base64.b64encode(gzip.compress(text.encode(), 6, mtime=0)).decode()
 
 
 def packed_data(data: Any) -> str:
-    """Data of a page as compressed JSON; NaN and infinity are an error."""
-    return packed_text(json.dumps(data, separators=(",", ":"), allow_nan=False))
+    """Data of a page as compressed JSON, records by their fields; NaN and infinity are an error."""
+    return packed_text(json.dumps(data, separators=(",", ":"), allow_nan=False, default=vars))
 
 
 def packed_series(values: ArrayLike, levels: float = LEVELS) -> dict[str, Any] | list[float | None]:
