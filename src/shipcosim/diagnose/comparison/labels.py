@@ -4,6 +4,8 @@ Three measures tell. The *fit* holds commanded against felt force, smoothed, eac
 whether commands come before what they do. The *likelihood* takes all axes at once, with errors that are autocorrelated
 and one gain. Each is misled by something: the fit by what thrusters answer, the foresight by a steady command, the
 likelihood by noise that the controller does not see. A reading is believed that two of them prefer beyond doubt.
+
+Beside them stands the power: thrusters that sail a craft cannot take energy out of her surge and yaw.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ from shipcosim.diagnose.comparison.measured_force import Felt
 from shipcosim.diagnose.comparison.thresholds import (
     AGREED,
     ALIKE,
+    BRAKES,
     CHANGE_COST,
     CONTRADICTED,
     LAG_COST,
@@ -87,12 +90,16 @@ class Labels:
 
 @dataclass(frozen=True)
 class _Weighed:
-    """A reading with what each measure says for it, less what its changes cost. [nats]"""
+    """A reading with what each measure says for it, less what its changes cost. [nats]
+
+    `drives`: the correlation of what the thrusters are commanded with how the craft moves, the lesser of surge and yaw.
+    """
 
     reading: LabelHypothesis
     fit: float
     foresight: float
     likelihood: float
+    drives: float
 
     def over(self, other: _Weighed) -> np.ndarray:
         """By how much it is better, (3,) array, the least first."""
@@ -166,8 +173,23 @@ def _weighed(
         commanded = commanded_by(*driven(one.units, record, smooth, model))
         cost = CHANGE_COST * len(one.changes)
         likelihood = max(_likelihoods(log, commanded, one, unit))
-        weighed.append(_Weighed(one, one.score, float(seen) - cost, likelihood - cost))
+        drives = _drives(one.commanded, felt)
+        weighed.append(_Weighed(one, one.score, float(seen) - cost, likelihood - cost, drives))
     return weighed
+
+
+def _drives(commanded: Commanded, felt: Felt) -> float:
+    """Correlation, about zero, of commanded load and speed, the lesser of surge and yaw; 0 on an axis at rest.
+
+    Sway does not count: a rudder pushes against the drift of a turning ship.
+    """
+    loads = sum(commanded.thrusters.values(), np.zeros_like(commanded.hull))[:, felt.usable]
+    found = []
+    for load, speed in ((loads[0], felt.motion.u), (loads[2], felt.motion.r)):
+        speed = np.asarray(speed)[felt.usable]
+        most = np.sqrt((load @ load) * (speed @ speed))
+        found.append(float(load @ speed / most) if most > 0.0 else 0.0)
+    return min(found)
 
 
 def _likelihoods(
@@ -184,15 +206,27 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     first, ranked = weighed[0], sorted(weighed, key=lambda one: -one.fit)
     best = ranked[0]
     logged = first.reading
-    rivals = tuple(one.reading for one in ranked[1:] if one.fit > best.fit - RIVAL)
+    # By the labels as logged the thrusters would brake the craft: readings by which they do, too, are no rivals.
+    brakes = first.drives < -BRAKES < BRAKES < best.drives
+    rivals = tuple(
+        one.reading
+        for one in ranked[1:]
+        if one.fit > best.fit - RIVAL and not (brakes and one.drives < 0.0)
+    )
     gained = best.fit - first.fit
     plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
     least = (
-        SURELY_CAUSED if _explained(best.reading, logged, axes) <= TOLD else 0.0 if plain else RIVAL
+        SURELY_CAUSED
+        if _explained(best.reading, logged, axes) <= TOLD
+        else -UNLIKELIER
+        if brakes
+        else 0.0
+        if plain
+        else RIVAL
     )
     changes = CHANGE_COST * len(best.reading.changes)
     is_wrong = (
-        gained > SURELY_WRONG
+        gained > (RIVAL if brakes else SURELY_WRONG)
         and logged not in rivals
         and best.foresight - first.foresight + changes > least
     )

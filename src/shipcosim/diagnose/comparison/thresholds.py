@@ -89,6 +89,9 @@ MOST_WEIGHED = 15
 """Readings beside the logged one of which foresight and likelihood are computed: those that fit best."""
 UNLIKELIER = 5.0
 """The same for the likelihood where the fit alone decides. [nats] Seeds 236 and 300, right labels."""
+BRAKES = 0.1
+"""Correlation of commanded loads with the motion below which, by the labels, the thrusters brake the craft. As labelled
+all of eleven logs of a boat with exchanged sides lie below 0, nine of them below -0.1."""
 OPPOSITE = 4.0
 """Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
 LEAST_GAIN = 0.1

@@ -24,6 +24,8 @@ from shipcosim.diagnose.log.thresholds import (
     RELATION_WINDOWS,
     ROBUST_ROUNDS,
     ROBUST_SHARE,
+    THROUGHOUT,
+    UNLABELLED,
     UNSURE_NOISE,
 )
 
@@ -45,22 +47,23 @@ class Relation:
         Of both parts.
     evidence : float
         How much likelier what is seen is with what is told than by itself. [nats]
-    throughout : float
-        Share of the log, by how much is explained in its parts or left beyond noise, in which the relation holds.
+    throughout : bool
+        Whether it holds in all of the log, not in the larger part of it.
     """
 
     factor: complex
     std: tuple[float, float]
     evidence: float
-    throughout: float
+    throughout: bool
 
 
 @dataclass(frozen=True)
 class RowsFit:
     """A relation with what is needed to weigh it against others: white rows, and how likely what is left is.
 
-    `wander` and `rows_noise` are the variance that noise of what is told adds from row to row, whitened and over both
-    axes: by what is left, and by how much neighbouring rows of what is told differ.
+    `as_labelled` is what the labels leave of the same rows. `wander` and `rows_noise` are the variance that noise of
+    what is told adds from row to row, whitened and over both axes: by what is left, and by how much neighbouring rows
+    of what is told differ.
     """
 
     seen: np.ndarray
@@ -68,6 +71,7 @@ class RowsFit:
     factor: complex
     variance: float
     likelihood: float
+    as_labelled: np.ndarray | None = None
     wander: float = 0.0
     rows_noise: float = 0.0
 
@@ -77,7 +81,10 @@ class RowsFit:
 
 
 def fitted(
-    time: np.ndarray, pairs: dict[_Key, tuple[np.ndarray, np.ndarray]], axes: int = 2
+    time: np.ndarray,
+    pairs: dict[_Key, tuple[np.ndarray, np.ndarray]],
+    labelled: _Key,
+    axes: int = 2,
 ) -> dict[_Key, Relation]:
     """The relation of each pair of what is seen and told; none where no pair tells anything.
 
@@ -85,6 +92,8 @@ def fitted(
     ----------
     time : (n,) array
     pairs : dict of two (n,) complex arrays
+    labelled : key
+        Of the pair that is equal by the labels of the log.
     axes : int
         2, or 1 where both are real.
     """
@@ -102,7 +111,7 @@ def fitted(
     starts = after_gaps(time)
     if (~starts).sum() < FEWEST_FITTED:
         return {}
-    fits, alone = _fits(filters(time, starts), pairs, axes)
+    fits, alone = _fits(filters(time, starts), pairs, labelled, axes)
     best = max(fits, key=lambda key: fits[key].likelihood - alone[key])
     rough = whiteness(np.column_stack([fits[best].rest.real, fits[best].rest.imag][:axes]))
     found = {
@@ -123,7 +132,7 @@ def _rows(count, series):
     return slice(None, None, stride)
 
 
-def _fits(drafts: list[Filter], pairs, axes):
+def _fits(drafts: list[Filter], pairs, labelled, axes):
     """Of each pair the fit under the noise that suits it best, and how likely what is seen is by itself."""
     columns = {id(one): one for pair in pairs.values() for one in pair}
     stacked = np.stack(list(columns.values()), axis=1)
@@ -136,6 +145,7 @@ def _fits(drafts: list[Filter], pairs, axes):
         scale = draft.scale[known]
         white = whitened(draft, stacked)
         offset = -axes * float(np.sum(np.log(scale)))
+        own = [white[:, place[id(one)]] for one in pairs.get(labelled, ())]
         for name in alone:
             alone[name] = max(alone[name], _likelihood(white[:, place[name]], axes)[0] + offset)
         for key, (seen, told) in pairs.items():
@@ -146,8 +156,13 @@ def _fits(drafts: list[Filter], pairs, axes):
                     gain * (2.0 - gain) * np.median(scale) ** 2
                 )  # white noise that adds up, whitened
                 rows_noise = axes * adds_up * abs(fit.factor) ** 2 * noises[id(told)]
+                # What the labels leave can be held against it where both tell of the same rows.
+                is_same = bool(own) and seen is pairs[labelled][0]
                 fits[key] = replace(
-                    fit, wander=axes * adds_up * ratio * fit.variance, rows_noise=rows_noise
+                    fit,
+                    as_labelled=own[0] - own[1] if is_same else None,
+                    wander=axes * adds_up * ratio * fit.variance,
+                    rows_noise=rows_noise,
                 )
     return fits, {key: alone[id(seen)] for key, (seen, _) in pairs.items()}
 
@@ -235,15 +250,23 @@ def _jackknife(fit, windows):
 
 
 def _throughout(fit, windows):
-    """Share of what is explained and what is left beyond noise that is explained; no window counts for many."""
+    """Whether a relation holds in all of a log."""
     clip = FIT_CLIP**2 * fit.variance
     seen, rest = (np.minimum(np.abs(one) ** 2, clip) for one in (fit.seen, fit.rest))
     noise = float(np.quantile([rest[w].mean() for w in windows], CALM_SHARE))
-    told = np.array([seen[w].sum() - rest[w].sum() for w in windows])
-    left = np.array([rest[w].sum() - NOISIER * noise * len(w) for w in windows])
+    usual = np.array([NOISIER * noise * len(w) for w in windows])
+    left = np.array([rest[w].sum() for w in windows])
+    if fit.as_labelled is not None:
+        # The labels are right in a part in which they leave less than the relation does: a ratio of likelihoods.
+        otherwise = np.minimum(np.abs(fit.as_labelled) ** 2, clip)
+        kept = np.maximum([otherwise[w].sum() for w in windows], usual)
+        apart = np.log(kept / np.maximum(left, usual))
+        return bool(np.maximum(apart, 0.0).sum() > UNLABELLED * np.abs(apart).sum())
+    # Units of what is seen: what is explained is held against what is left beyond noise; no window counts for many.
+    told = np.array([seen[w].sum() for w in windows]) - left
     most = max(
         float(np.quantile(np.abs(told), ROBUST_SHARE)), 2.0 * FIT_CLIP**2 * noise
     )  # noise itself says less
     explained = np.clip(told, 0.0, most).sum()
-    more = np.clip(left, 0.0, most).sum()
-    return float(explained / max(explained + more, 1e-300))
+    more = np.clip(left - usual, 0.0, most).sum()
+    return bool(explained > THROUGHOUT * (explained + more))

@@ -5,7 +5,13 @@ from dataclasses import replace
 import numpy as np
 
 from shipcosim.diagnose.finding import Finding, ParameterEstimate
-from shipcosim.diagnose.log.mislabels import POSITION_IN_DEGREES, finding_of, turned_grid
+from shipcosim.diagnose.log.mislabels import (
+    POSITION,
+    POSITION_IN_DEGREES,
+    VELOCITY,
+    finding_of,
+    turned_grid,
+)
 from shipcosim.diagnose.log.readings.changes import CLOCK, LogMistake, changes
 from shipcosim.diagnose.log.readings.judgement import (
     Evidence,
@@ -22,7 +28,6 @@ from shipcosim.diagnose.log.thresholds import (
     MOST_ALTERNATIVES,
     MOST_SURE,
     READING_SURE,
-    THROUGHOUT,
     UNLIKELY_READING,
 )
 from shipcosim.diagnose.numerics import finite, root_mean_square
@@ -149,10 +154,18 @@ def _can_be_degrees(log):
 
 
 def _holds_throughout(best, evidence):
-    """Whether a reading holds in the whole log, not in the larger part of it."""
+    """Whether a reading holds in the whole log, not in the larger part of it, by the relations of what it changes."""
     reading = reading_of(best.changes)
-    relations = [evidence.relation_of(reading), evidence.rate.get(reading.heading_unit)]
-    return all(relation.throughout > THROUGHOUT for relation in relations if relation is not None)
+    changed = {role for change in best.changes for role in change.channels}
+    relations = [
+        (evidence.relation_of(reading), {*POSITION, *VELOCITY, "heading", "time"}),
+        (evidence.rate.get(reading.heading_unit), {"yaw_rate", "heading", "time"}),
+    ]
+    return all(
+        relation.throughout
+        for relation, roles in relations
+        if relation is not None and (roles & changed or not changed)
+    )
 
 
 def _angle(best, evidence):

@@ -53,6 +53,7 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
     if len(rows) < 2 * FEWEST_INCREMENTS:
         return {}
     time = log["time"][rows]
+    known_positions = {position: seen[rows] for position, seen in positions.items()}
     pairs: dict = {}
     for heading, values in headings.items():
         if not _can_be_followed(wrap_series(np.diff(values[rows]))):
@@ -61,10 +62,11 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         ways = {
             form: _integral(time, change(velocity[rows], turn)) for form, change in FORMS.items()
         }
-        for position, seen in positions.items():
-            pairs |= {(heading, position, form): (seen[rows], way) for form, way in ways.items()}
+        for position, seen in known_positions.items():
+            pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
     found: dict = {}
-    for (heading, position, form), relation in fitted(time, pairs).items():
+    labelled = (1.0, False, ("as is", "body"))
+    for (heading, position, form), relation in fitted(time, pairs, labelled).items():
         found.setdefault((heading, position), {})[form] = relation
     return found
 
@@ -99,7 +101,7 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
             if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
             pairs[name] = np.r_[0.0, np.cumsum(change)].astype(complex), told.astype(complex)
-    return fitted(time[rows], pairs, axes=1)
+    return fitted(time[rows], pairs, 1.0, axes=1)
 
 
 def _can_be_followed(turns):

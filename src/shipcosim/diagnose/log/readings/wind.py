@@ -99,7 +99,7 @@ def wind_relations(log: dict, headings: dict[float, np.ndarray]) -> WindRelation
     roles = ("wind_speed", "wind_from", "surge", "sway")
     rows = complete_rows(log, (*roles, "heading"))
     rows = rows[:: max(1, math.ceil(len(rows) / MOST_FITTED))]
-    if len(rows) < FEWEST_WIND_ROWS:
+    if not headings or len(rows) < FEWEST_WIND_ROWS:
         return WindRelations({})
     time = log["time"][rows]
     apparent = log["wind_speed"][rows] * np.exp(1j * np.radians(log["wind_from"][rows]))

@@ -1,0 +1,75 @@
+"""Wrong labels planted in logs of real craft are named, in all rows and in every fifth; right ones are left alone."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas
+import pytest
+from measured.logs import CHANNELS, FOLDERS, as_table
+
+from shipcosim.diagnose.log.checks.examine import examine
+from shipcosim.diagnose.log.reader import read_log
+
+MEASURED = Path(__file__).resolve().parents[4] / "shared" / "measured"
+KNOT = 1852.0 / 3600.0
+# A spin, positions that leap, and a straight way.
+LOGS = [
+    ("blueboat", "run_216.csv.gz"),
+    ("blueboat", "run_223.csv.gz"),
+    ("otter", "2024-04-23_12-22-102.csv.gz"),
+]
+
+
+def _earth(log):
+    way = (log["surge"] + 1j * log["sway"]) * np.exp(1j * np.radians(log["heading"]))
+    return {"surge": way.real, "sway": way.imag}
+
+
+def _negative(role):
+    return lambda log: {role: -log[role]}
+
+
+PLANTED = {
+    ("sign", "surge"): _negative("surge"),
+    ("sign", "sway"): _negative("sway"),
+    ("sign", "yaw_rate"): _negative("yaw_rate"),
+    ("sign", "east"): _negative("east"),
+    ("sign", "heading"): lambda log: {"heading": np.mod(-log["heading"], 360.0)},
+    ("channel_swap", "east", "north"): lambda log: {"north": log["east"], "east": log["north"]},
+    ("channel_swap", "surge", "sway"): lambda log: {"surge": log["sway"], "sway": log["surge"]},
+    ("frame", "surge", "sway"): lambda log: {role: log[role] / KNOT for role in ("surge", "sway")},
+    ("frame", "sway", "surge"): _earth,
+    ("frame", "heading"): lambda log: {"heading": np.mod(90.0 - log["heading"], 360.0)},
+}
+
+
+@pytest.mark.parametrize("stride", [1, 5])
+@pytest.mark.parametrize(("craft", "name"), LOGS)
+def test_planted_labels_are_named_and_nothing_else(craft, name, stride, tmp_path):
+    path = MEASURED / FOLDERS[craft] / name
+    if not path.is_file():
+        pytest.skip("needs the logs in ../shared/measured, which are not here")
+    thinned = tmp_path / "log.csv"
+    pandas.read_csv(as_table(path, tmp_path)).iloc[::stride].to_csv(thinned, index=False)
+    log = read_log(thinned, channels=CHANNELS / f"{craft}.toml")
+    assert not _labels(log)
+    found = {}
+    for planted, change in PLANTED.items():
+        wrong = log.copy(deep=True)
+        for role, values in change({str(n): v.values for n, v in log.data_vars.items()}).items():
+            wrong[role] = (log[role].dims, values, log[role].attrs)
+        found[planted] = _labels(wrong)
+    others = {key: one for key, one in found.items() if one - {(key[0], frozenset(key[1:]), False)}}
+    assert not others
+    # One of ten may be silent: little sway, or a boat that hardly turns.
+    assert sum(bool(one) for one in found.values()) >= len(PLANTED) - 1
+
+
+def _labels(log):
+    """Cause, channels, and whether in a part of the log only, of what is said of labels."""
+    causes = ("sign", "channel_swap", "frame", "clock")
+    return {
+        (one.cause, frozenset(one.channels), bool(one.segments))
+        for one in examine(log)
+        if one.cause in causes
+    }
