@@ -111,7 +111,8 @@ def changes_of(record: Record, model: ShipModel) -> list[tuple[LabelError, ...]]
     list of tuple of LabelError
         Exchanges before signs, one change before several.
     """
-    names = [name for name in model.thrusters if np.any(record.units[name][0])]
+    # Of a command that never changes nothing tells the sign.
+    names = [name for name in model.thrusters if np.ptp(record.units[name][0]) > 0.0]
     pairs = [
         pair for pair in combinations(names, 2) if model.make_of(pair[0]) == model.make_of(pair[1])
     ]

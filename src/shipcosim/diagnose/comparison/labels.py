@@ -112,8 +112,13 @@ class _Weighed:
         return bool(
             middle > least
             and worst > -CONTRADICTED
+            and not self.brakes_more_than(other)
             and np.minimum(over, CONTRADICTED).sum() > 2.0 * least
         )
+
+    def brakes_more_than(self, other: _Weighed) -> bool:
+        """Whether by this reading the thrusters brake the craft, and more than by the other."""
+        return self.drives < min(-BRAKES, other.drives)
 
     def is_as(self, other: _Weighed) -> bool:
         """Whether they do the same but for the number of changes."""
@@ -208,11 +213,8 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     logged = first.reading
     # By the labels as logged the thrusters would brake the craft: readings by which they do, too, are no rivals.
     brakes = first.drives < -BRAKES < BRAKES < best.drives
-    rivals = tuple(
-        one.reading
-        for one in ranked[1:]
-        if one.fit > best.fit - RIVAL and not (brakes and one.drives < 0.0)
-    )
+    others = [one for one in ranked[1:] if not brakes or one.drives > 0.0]
+    rivals = tuple(one.reading for one in others if one.fit > best.fit - RIVAL)
     gained = best.fit - first.fit
     plain = _is_contradicted(best.reading, logged, axes) or gained > PLAINLY_WRONG
     least = (
@@ -228,9 +230,10 @@ def _by_fit(weighed: Sequence[_Weighed], axes: Sequence[Axis]) -> Labels:
     is_wrong = (
         gained > (RIVAL if brakes else SURELY_WRONG)
         and logged not in rivals
+        and not best.brakes_more_than(first)
         and best.foresight - first.foresight + changes > least
     )
-    likeliest = max(one.likelihood for one in weighed)
+    likeliest = max(one.likelihood for one in (best, *others))
     is_wrong &= (
         best.likelihood + changes > first.likelihood - UNLIKELIER
         and best.likelihood > likeliest - UNLIKELIER

@@ -79,7 +79,7 @@ def lifeless(log: dict) -> list[Finding]:
         As in `gaps`.
     """
     constant = [role for role in NAVIGATION if role in log and _is_constant(log[role])]
-    moved = all(role in log and _changes(log[role]) for role in ("north", "east"))
+    moved = any(role in log and _changes(log[role]) for role in ("north", "east"))
     turned = "heading" in log and _changes(
         np.degrees(np.unwrap(np.radians(finite(log["heading"]))))
     )
