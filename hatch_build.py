@@ -1,8 +1,17 @@
-"""What the wheel takes from beside the package: an editable install uses the repository's own folders."""
+"""What the packages have beside the source: an editable install uses the repository's own folders.
+
+The README of the repository has links to files beside it, which a page of a package index does not have. `Readme` turns
+them into absolute ones where pyproject.toml names the address of the repository, and into names of files elsewhere.
+"""
+
+import re
+from pathlib import Path
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 SHIPPED = ("fmus", "ssp", "scenarios", "studies", "docs/examples")
+LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?://|#)([^)\s]+)\)")
 
 
 class Shipped(BuildHookInterface):
@@ -13,3 +22,37 @@ class Shipped(BuildHookInterface):
             build_data["force_include"] |= {
                 folder: f"shipcosim/shipped/{folder}" for folder in SHIPPED
             }
+
+
+class Readme(MetadataHookInterface):
+    """The README as a package index shows it, and the addresses of the project."""
+
+    def update(self, metadata):
+        repository = self.config.get("repository", "").rstrip("/")
+        text = (Path(self.root) / "README.md").read_text(encoding="utf-8")
+        metadata["readme"] = {
+            "content-type": "text/markdown",
+            "text": outside_the_repository(text, repository),
+        }
+        if repository:
+            metadata["urls"] = urls(repository)
+
+
+def urls(repository):
+    """Addresses of the project, by their names on a package index."""
+    pages = {"Documentation": "docs", "Changelog": "CHANGELOG.md", "Security": "SECURITY.md"}
+    return {"Source": repository, "Issues": f"{repository}/issues"} | {
+        name: f"{repository}/blob/main/{path}" for name, path in pages.items()
+    }
+
+
+def outside_the_repository(text, repository):
+    """A page with absolute links and pictures; without an address, with the names of the files."""
+
+    def replaced(match):
+        picture, shown, target = match.groups()
+        if repository:
+            return f"{picture}[{shown}]({repository}/{'raw' if picture else 'blob'}/main/{target})"
+        return f"*{shown}: `{target}` in the source*" if picture else f"{shown} (`{target}`)"
+
+    return LINK.sub(replaced, text)

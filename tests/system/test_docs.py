@@ -11,8 +11,10 @@ from shipcosim.ssp import read_system
 from shipcosim.sweep import plan_of, read_study
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")]
 PAGES += sorted((ROOT / "docs").glob("*.md"))
+PAGES += sorted((ROOT / "docs" / "learn").glob("*.md"))
+PAGES += sorted((ROOT / "docs" / "reports").glob("*.md"))
 PAGES += sorted((ROOT / "docs" / "generated").glob("*.md"))
 PAGES += sorted((ROOT / "fmus").glob("*/README.md"))
 USED = ("build", "docs", "fmus", "scenarios", "ssp", "studies")

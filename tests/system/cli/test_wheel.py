@@ -107,11 +107,20 @@ def follow(commands, folder, run):
     return said
 
 
+def shown_verdict():
+    """Lines that the README shows of a diagnosis."""
+    text = (
+        (ROOT / "README.md").read_text(encoding="utf-8").partition("## From a log to a verdict")[2]
+    )
+    return re.findall(r"```text\n(.*?)```", text, re.DOTALL)[0].splitlines()
+
+
 def check_first(said):
     """What the first commands of the quickstart came to."""
     assert "report.html" in said["shipcosim run four_corner"]
-    found = said["shipcosim diagnose gunnerus_log"]
+    found = " ".join(said["shipcosim diagnose gunnerus_log"].split())
     assert "starboard thruster delivers" in found and "less thrust" in found
+    assert [line for line in shown_verdict() if " ".join(line.split()) not in found] == []
 
 
 def test_what_is_installed_with_the_wheel_is_small(wheel):
