@@ -17,6 +17,7 @@ PAGES += sorted((ROOT / "docs" / "learn").glob("*.md"))
 PAGES += sorted((ROOT / "docs" / "reports").glob("*.md"))
 PAGES += sorted((ROOT / "docs" / "generated").glob("*.md"))
 PAGES += sorted((ROOT / "fmus").glob("*/README.md"))
+TEMPLATES = sorted((ROOT / "docs" / "generators").rglob("*.md"))
 USED = ("build", "docs", "fmus", "scenarios", "ssp", "studies")
 
 
@@ -45,7 +46,9 @@ def like_the_root(fmus, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")], ids=name_of)
-def test_python_of_a_page_runs_from_top_to_bottom(page, like_the_root):
+def test_python_of_a_page_runs_from_top_to_bottom(page, fmus, tmp_path, monkeypatch):
+    """In an empty folder, as for users of pip: no page takes a file of the repository by its path."""
+    monkeypatch.chdir(tmp_path)
     scope = {"__name__": "page"}
     for code in blocks(page, "python"):
         exec(compile(code, str(page), "exec"), scope)
@@ -79,7 +82,7 @@ def test_studies_of_a_page_can_be_laid_out(page, like_the_root):
         assert len(plan_of(read_study(path))) > 1
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name_of)
+@pytest.mark.parametrize("page", PAGES + TEMPLATES, ids=name_of)
 def test_links_of_a_page_lead_to_files(page):
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
     targets = [
