@@ -70,7 +70,7 @@ def test_it_has_no_relative_link_in_a_package_with_an_address(readme, hook):
 def test_it_has_no_link_in_a_package_without_an_address(readme, hook):
     text = hook.outside_the_repository(readme, "")
     assert re.findall(r"\]\(([^)]+)\)", text) == [] and "![" not in text
-    assert "trial (`docs/diagnosis-trial.md`)" in text
+    assert "trial (`docs/reports/diagnosis-trial.md`)" in text
 
 
 def test_every_address_of_the_project_is_a_file_of_it(hook, root):
