@@ -110,3 +110,14 @@ def test_verdicts_are_those_of_a_diagnosis(root):
 def test_exit_codes_of_the_page_are_those_of_the_commands(root):
     page = (root / "docs" / "exit-codes.md").read_text(encoding="utf-8")
     assert re.findall(r"(?m)^\| (\d+) \|", page) == re.findall(r"\b(\d+) [a-z]", EXIT_CODES)
+
+
+def test_each_word_of_the_glossary_has_one_meaning(root):
+    text = (root / "docs" / "glossary.md").read_text(encoding="utf-8")
+    words = [
+        word.strip()
+        for entry in re.findall(r"(?m)^\| \*\*([^*]+)\*\*", text)
+        for word in entry.split(",")
+    ]
+    assert len(words) > 70
+    assert sorted(words) == sorted(set(words))
