@@ -11,7 +11,7 @@ from statistics import median
 
 ROOT = Path(__file__).resolve().parents[2]
 END = re.compile(
-    r"(?<=[.!?])(?<!e\.g\.)(?<!i\.e\.)(?<!ch\.)(?<!ed\.)(?<!\b[A-Z]\.)\*{0,2}\s+(?=[A-Z(`*\"\d])"
+    r"(?<=[.!?])(?<!e\.g\.)(?<!i\.e\.)(?<!\bch\.)(?<!\bed\.)(?<!\b[A-Z]\.)\*{0,2}\s+(?=[A-Z(`*\"\d])"
 )
 PLAIN = {
     r"\b(is|are|was|were) said\b(?! to)": "reported, named, or say who says it",
