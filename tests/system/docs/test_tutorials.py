@@ -1,7 +1,7 @@
 """Each tutorial works by its words alone, from an empty folder.
 
 Its blocks are taken in order. One with a file name as title is written to that file. `sh` blocks are run; those with the
-title "fails" must end with exit code 1. Python without a title is run. Lines of `text` blocks must stand in the output
+title "exit code 1" must end with exit code 1. Python without a title is run. Lines of `text` blocks must stand in the output
 of the commands before; a title says that such a block shows something else.
 """
 
@@ -60,7 +60,7 @@ def test_a_tutorial_works_from_an_empty_folder(page, shell, needs):
     printed, scope = "", {"__name__": "page"}
     for language, title, text in BLOCK.findall(page.read_text(encoding="utf-8")):
         if language == "sh":
-            printed += " ".join(shell(text, code=1 if title == "fails" else 0).split())
+            printed += " ".join(shell(text, code=1 if title == "exit code 1" else 0).split())
         elif language == "text" and not title:
             lines = [" ".join(line.split()) for line in text.splitlines() if line.strip()]
             assert [line for line in lines if line not in printed] == [], printed[-2000:]

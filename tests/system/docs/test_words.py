@@ -1,7 +1,6 @@
 """The pages are written plainly: none of the turns of phrase that readers had to read twice, and short sentences.
 
-`python docs/generators/sentences.py` prints the figures of every page. Reports may be longer, and those that are still
-to be rewritten are listed with the number of turns of phrase that they have: it may only fall.
+`python docs/generators/sentences.py` prints the figures of every page. Reports may have longer sentences.
 """
 
 from statistics import median
@@ -12,22 +11,6 @@ LONGEST = {"median": 14, "percentile": 24, "sentence": 45}
 """Words of a sentence: median and 90th percentile over all guides, and the longest one."""
 WORDS = 47_000
 """Of all pages that people write, without reports: 45,000, and room for pages to come."""
-PENDING = {
-    "docs/reports/allocation.md": 1,
-    "docs/reports/case-gunnerus-2022.md": 3,
-    "docs/reports/dead-reckoning.md": 1,
-    "docs/reports/diagnosis-methods.md": 2,
-    "docs/reports/diagnosis-trial.md": 5,
-    "docs/reports/diagnosis.md": 8,
-    "docs/reports/dp-loop.md": 1,
-    "docs/reports/measured-data.md": 14,
-    "docs/reports/native.md": 2,
-    "docs/reports/performance.md": 2,
-    "docs/reports/prediction.md": 5,
-    "docs/reports/sea-trials.md": 4,
-    "docs/reports/studies.md": 2,
-    "docs/reports/three-craft.md": 1,
-}
 
 
 @pytest.fixture(scope="module")
@@ -67,17 +50,7 @@ def test_sentences_are_told_apart(texts):
 
 def test_pages_have_no_turn_of_phrase_that_must_be_read_twice(texts, pages):
     found = {name: texts.turns(text) for name, text in pages.items()}
-    more = {name: turns for name, turns in found.items() if len(turns) > PENDING.get(name, 0)}
-    assert more == {}
-
-
-def test_reports_that_are_listed_still_have_them(texts, pages):
-    fewer = {
-        name: len(texts.turns(pages.get(name, "")))
-        for name, count in PENDING.items()
-        if len(texts.turns(pages.get(name, ""))) < count
-    }
-    assert fewer == {}, "lower their numbers in PENDING"
+    assert {name: turns for name, turns in found.items() if turns} == {}
 
 
 def test_sentences_of_the_guides_are_short(texts, guides):
