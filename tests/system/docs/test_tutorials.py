@@ -1,8 +1,8 @@
 """Each tutorial works by its words alone, from an empty folder.
 
-Its blocks are taken in order. One with a file name as title is written to that file. `sh` blocks are run; those with the
-title "exit code 1" must end with exit code 1. Python without a title is run. Lines of `text` blocks must stand in the output
-of the commands before; a title says that such a block shows something else.
+Its blocks are taken in order. One with a file name as title is written to that file. `sh` blocks are run; those with
+the title "exit code 1" must end so. Python without a title is run. Lines of `text` blocks must stand in the output of
+the commands before; a title says that such a block shows something else.
 """
 
 import importlib.util
