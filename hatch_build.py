@@ -15,12 +15,18 @@ LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?://|#)([^)\s]+)\)")
 
 
 class Shipped(BuildHookInterface):
-    """Puts ships, systems, scenarios, studies, FMUs and examples into the wheel, where `library` finds them."""
+    """Puts ships, systems, scenarios, studies, FMUs and examples into the wheel, where `library` finds them.
+
+    The guides come along as text, since messages name them; reports and pictures do not.
+    """
 
     def initialize(self, version, build_data):
         if version != "editable":
+            docs = Path(self.root) / "docs"
+            pages = [*docs.glob("*.md"), *docs.glob("learn/*.md")]
+            guides = [page.relative_to(self.root).as_posix() for page in pages]
             build_data["force_include"] |= {
-                folder: f"shipcosim/shipped/{folder}" for folder in SHIPPED
+                path: f"shipcosim/shipped/{path}" for path in (*SHIPPED, *guides)
             }
 
 

@@ -138,6 +138,21 @@ def test_what_is_installed_with_the_wheel_is_small(wheel):
     assert sum(sizes.values()) < LARGEST - BESIDE, sorted(sizes.items(), key=lambda item: -item[1])
 
 
+def test_pages_that_messages_name_come_with_the_wheel(wheel):
+    """Whoever has installed the package can open what a message or a generated file names."""
+    sources = [
+        file.read_text(encoding="utf-8")
+        for kind in ("py", "html", "txt", "toml")
+        for file in (ROOT / "src").rglob(f"*.{kind}")
+    ]
+    named = {page for text in sources for page in re.findall(r"docs/[a-z-]+\.md", text)}
+    (file,) = wheel.glob("*.whl")
+    with zipfile.ZipFile(file) as archive:
+        there = set(archive.namelist())
+    assert {"docs/add-a-cause.md", "docs/your-own-ship.md"} <= named
+    assert {page for page in named if f"shipcosim/shipped/{page}" not in there} == set()
+
+
 def test_quickstart_runs_from_the_wheel_in_an_empty_folder(fresh, wheel):
     venv, folder, run = fresh
     run([sys.executable, "-m", "venv", "--without-pip", str(venv)], folder)
