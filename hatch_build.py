@@ -46,9 +46,12 @@ class Readme(MetadataHookInterface):
 
 def urls(repository):
     """Addresses of the project, by their names on a package index."""
-    pages = {"Documentation": "docs", "Changelog": "CHANGELOG.md", "Security": "SECURITY.md"}
-    return {"Source": repository, "Issues": f"{repository}/issues"} | {
-        name: f"{repository}/blob/main/{path}" for name, path in pages.items()
+    return {
+        "Source": repository,
+        "Issues": f"{repository}/issues",
+        "Documentation": f"{repository}/tree/main/docs",
+        "Changelog": f"{repository}/blob/main/CHANGELOG.md",
+        "Security": f"{repository}/blob/main/SECURITY.md",
     }
 
 

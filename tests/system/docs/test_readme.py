@@ -48,6 +48,12 @@ def test_its_first_block_is_what_a_fresh_machine_needs(readme, root):
     assert set(re.findall(r"`make (\w+)`", readme)) <= set(targets)
 
 
+def test_the_demo_shows_the_lines_that_it_promises(readme, root):
+    scenario = tomllib.loads((root / "scenarios" / "four_corner.toml").read_text("utf-8"))
+    assert "You see ten lines that begin with `pass`" in readme and len(scenario["expect"]) == 10
+    assert "run scenarios/four_corner.toml" in (root / "Makefile").read_text("utf-8")
+
+
 def test_every_command_that_it_names_exists(readme, generator):
     look_up = generator("look_up")
     known = {name for name, _ in look_up.all_commands(look_up.command_group())}
@@ -76,7 +82,7 @@ def test_it_has_no_link_in_a_package_without_an_address(readme, hook):
 def test_every_address_of_the_project_is_a_file_of_it(hook, root):
     """Those that lead into the repository, so that an address set later has no dead link."""
     for name, address in hook.urls("https://host/owner/shipcosim").items():
-        path = address.partition("/blob/main/")[2]
+        path = address.partition("/main/")[2]
         assert not path or (root / path).exists(), name
 
 
