@@ -6,7 +6,7 @@ else
   BIN := .venv/bin
 endif
 
-.PHONY: demo quick test nightly durations clean
+.PHONY: demo quick test nightly docs durations clean
 
 demo: .venv/installed
 	$(BIN)/shipcosim build
@@ -25,6 +25,11 @@ nightly: .venv/installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[allocators]"
 	$(BIN)/python .ci/checks.py nightly
 
+# the documentation as a site with search: build/site/index.html
+docs: .venv/installed-docs
+	$(BIN)/python -m mkdocs build --strict
+	@echo "Page: build/site/index.html"
+
 # after `make test`: how long its files of tests took decides their order from now on
 durations: .venv/installed-test
 	$(BIN)/python .ci/durations.py
@@ -33,6 +38,10 @@ durations: .venv/installed-test
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --editable .
 	$(BIN)/python -c "open('.venv/installed', 'w')"
+
+.venv/installed-docs: .venv/installed
+	$(BIN)/python -m pip install --quiet --editable ".[docs]"
+	$(BIN)/python -c "open('.venv/installed-docs', 'w')"
 
 # torch by its exact version: where a CPU build is at hand pip takes that one, a range would fetch gigabytes of GPU packages
 .venv/installed-test: .venv/installed

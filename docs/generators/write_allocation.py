@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/allocation.md: runs with several allocators, after figures 6 to 12 of paper V.
+"""Draws the pictures of docs/reports/allocation.md: runs with several allocators, after figures 6 to 12 of paper V.
 
 Run `python docs/generators/write_allocation.py`, with names of pictures or for all of them, after an allocator, the
 loop or a scenario has changed; a run takes half a minute alone on a core.

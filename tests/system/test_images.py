@@ -29,7 +29,7 @@ def images(root, needs):
 
 
 def test_every_picture_is_listed_with_the_command_that_makes_it(root):
-    folders = ("docs/*.md", "docs/generated/*.md", "fmus/*/README.md", "tests/bench/*/README.md")
+    folders = ("docs/*.md", "docs/*/*.md", "fmus/*/README.md", "tests/bench/*/README.md")
     pages = [root / "README.md", *(page for folder in folders for page in root.glob(folder))]
     shown = {
         (page.parent / path).resolve().relative_to(root).as_posix()

@@ -39,6 +39,11 @@ plt.rcParams.update(
 )
 
 
+def from_generated(text):
+    """A template with its links as they are from docs/generated."""
+    return text.replace("](../../generated/", "](").replace("](../../", "](../")
+
+
 def parameters(kind, ship, component):
     """Parameters of a ship's component, as the class of parameters `kind`."""
     return read_ship(SHIPS / ship).parameters(kind, component)

@@ -14,7 +14,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
-from common import MODEL, REFERENCE, SHIPS, THIRD, save, table
+from common import MODEL, REFERENCE, SHIPS, THIRD, from_generated, save, table
 
 from shipcosim.angles import wrap
 from shipcosim.cosim import simulate
@@ -176,7 +176,7 @@ def page(found: dict) -> str:
     """The page of `numbers`."""
     load = -hull_loads(0.0, 0.5, 0.0, hull=SHIP.parameters(HullParameters, "vessel"))[1] / 1e3
     plain, low = found["as it is", 0.0], found["cross_flow_drag", 0.6]
-    text = (HERE / "sensitivity.md").read_text(encoding="utf-8")
+    text = from_generated((HERE / "sensitivity.md").read_text(encoding="utf-8"))
     return text.format(
         doubts=table(
             ["number", "model", "sources", "unit", "where from"], rows_of_doubts()

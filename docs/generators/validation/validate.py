@@ -56,8 +56,10 @@ def numbers(shared, names=QUICK + SLOW, progress=lambda name: None):
 
 
 def template():
-    """Text with the places of the numbers, in the form of `str.format`."""
-    return (HERE / "template.md").read_text(encoding="utf-8")
+    """Text with the places of the numbers, in the form of `str.format`, as the page in docs/generated has it."""
+    from common import from_generated
+
+    return from_generated((HERE / "template.md").read_text(encoding="utf-8"))
 
 
 def unmet():

@@ -18,7 +18,7 @@ in sway and in waves: where "limits and rates allow" a request, one step from th
 Violations are counted whatever their size; a unit in the forbidden sector counts where it pushes by more than 1 N. Time
 is the shortest of three of each allocation, `-` where it was not measured on a quiet machine. The network of
 `paper_v_allocator` is for the ship of 28.9 m, and runs here on that of 33.9 m as all others do: [on its own ship it
-does better](../allocation.md#neural-as-paper-v-prints-it).
+does better](../reports/allocation.md#neural-as-paper-v-prints-it).
 
 """
 RIVAL_HEAD = """

@@ -1,7 +1,7 @@
 """One-step training of paper IV's networks beside training over whole predictions: the same but for the loss.
 
 `python tests/bench/prediction/rollouts.py` trains both on the same worlds and prints errors 60 s ahead in worlds 300 to
-311, over the first 5 and 20 starts: `docs/prediction.md` has them. It takes some ten minutes, records included.
+311, over the first 5 and 20 starts: `docs/reports/prediction.md` has them. It takes some ten minutes, records included.
 """
 
 import sys

@@ -1,7 +1,7 @@
 """The whole trial of the diagnosis, a part each time: results are kept, and the rates so far held to what is wanted.
 
 ``SHIPCOSIM_TRIAL_MINUTES`` (default 30) is the time for this part, ``SHIPCOSIM_TRIAL_JOBS`` (default 2) the processes.
-The results are in results/trial.jsonl; `python tests/bench/trial table --write` makes docs/diagnosis-trial.md of
+The results are in results/trial.jsonl; `python tests/bench/trial table --write` makes docs/reports/diagnosis-trial.md of
 them.
 """
 

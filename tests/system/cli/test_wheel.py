@@ -107,11 +107,20 @@ def follow(commands, folder, run):
     return said
 
 
+def shown_verdict():
+    """Lines that the README shows of a diagnosis."""
+    text = (
+        (ROOT / "README.md").read_text(encoding="utf-8").partition("## From a log to a verdict")[2]
+    )
+    return re.findall(r"```text\n(.*?)```", text, re.DOTALL)[0].splitlines()
+
+
 def check_first(said):
     """What the first commands of the quickstart came to."""
     assert "report.html" in said["shipcosim run four_corner"]
-    found = said["shipcosim diagnose gunnerus_log"]
+    found = " ".join(said["shipcosim diagnose gunnerus_log"].split())
     assert "starboard thruster delivers" in found and "less thrust" in found
+    assert [line for line in shown_verdict() if " ".join(line.split()) not in found] == []
 
 
 def test_what_is_installed_with_the_wheel_is_small(wheel):
@@ -127,6 +136,21 @@ def test_what_is_installed_with_the_wheel_is_small(wheel):
         sizes["shipcosim"] = sum(entry.file_size for entry in archive.infolist()) / 2**20
     assert not {"cmake", "scipy", "torch", "pyarrow", "plotly"} & names
     assert sum(sizes.values()) < LARGEST - BESIDE, sorted(sizes.items(), key=lambda item: -item[1])
+
+
+def test_pages_that_messages_name_come_with_the_wheel(wheel):
+    """Whoever has installed the package can open what a message or a generated file names."""
+    sources = [
+        file.read_text(encoding="utf-8")
+        for kind in ("py", "html", "txt", "toml")
+        for file in (ROOT / "src").rglob(f"*.{kind}")
+    ]
+    named = {page for text in sources for page in re.findall(r"docs/[a-z-]+\.md", text)}
+    (file,) = wheel.glob("*.whl")
+    with zipfile.ZipFile(file) as archive:
+        there = set(archive.namelist())
+    assert {"docs/add-a-cause.md", "docs/your-own-ship.md"} <= named
+    assert {page for page in named if f"shipcosim/shipped/{page}" not in there} == set()
 
 
 def test_quickstart_runs_from_the_wheel_in_an_empty_folder(fresh, wheel):

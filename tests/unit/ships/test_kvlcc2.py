@@ -1,6 +1,6 @@
 """KVLCC2 beside the free-running models of SIMMAN 2008: self-propulsion, turning circles, zig-zags.
 
-Measured: MARIN's and HSVA's models of 7 m; the page "Bring your own ship" states what is measured and simulated.
+Measured: MARIN's and HSVA's models of 7 m; the report of three craft states what is measured and simulated.
 Nothing is fitted: hull, propeller and rudder are those of captive tests by others.
 """
 
@@ -79,7 +79,7 @@ def overshoots(angle, side):
 @pytest.fixture(scope="module")
 def stated():
     """Rows of the page: manoeuvre, measured two numbers, simulated two numbers."""
-    page = FOLDER.parents[1] / "docs" / "your-own-ship.md"
+    page = FOLDER.parents[1] / "docs" / "reports" / "three-craft.md"
     rows = [
         [cell.strip() for cell in line.split("|")[1:-1]]
         for line in page.read_text(encoding="utf-8").splitlines()

@@ -1,6 +1,6 @@
 """What the file of a cause holds, and that of a fault of the log: the only place where either is described.
 
-`docs/add-a-cause.md` explains every key with examples.
+`docs/add-a-cause.md` explains the main keys with examples; the reference of file formats lists all, from here.
 """
 
 from string import Formatter

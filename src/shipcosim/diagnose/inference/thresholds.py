@@ -1,7 +1,7 @@
 """Thresholds by which causes are judged, each with its unit and what it was set on.
 
 Those of the verdict were chosen on developing logs of the independent truth (tests/bench/truth, seeds below 1000), and
-are measured on other seeds by the trial (docs/diagnosis-trial.md). "Assumed" is what nobody has measured.
+are measured on other seeds by the trial (docs/reports/diagnosis-trial.md). "Assumed" is what nobody has measured.
 """
 
 import numpy as np

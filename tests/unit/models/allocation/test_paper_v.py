@@ -88,7 +88,7 @@ def test_a_lack_of_power_limits_the_thrust(design):
 
 @pytest.mark.parametrize("variant", sorted(file.stem for file in WEIGHTS.glob("*.npz")))
 def test_the_azimuths_push_against_each_other_where_nothing_is_asked_for(variant):
-    """Why it saves no power (docs/allocation.md): each gives more than 1.5 kN, together next to nothing."""
+    """Why it saves no power (docs/reports/allocation.md): each gives more than 1.5 kN, together next to nothing."""
     state = after(
         60.0, paper_v.design(read_arrays(WEIGHTS / f"{variant}.npz")), 1.0, (0.0, 0.0, 0.0)
     )

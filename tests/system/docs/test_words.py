@@ -1,0 +1,70 @@
+"""The pages are written plainly: none of the turns of phrase that readers had to read twice, and short sentences.
+
+`python docs/generators/sentences.py` prints the figures of every page. Reports may have longer sentences.
+"""
+
+from statistics import median
+
+import pytest
+
+LONGEST = {"median": 14, "percentile": 24, "sentence": 45}
+"""Words of a sentence: median and 90th percentile over all guides, and the longest one."""
+WORDS = 48_000
+"""Of all pages that people write, without reports: 45,000, and room for pages to come."""
+
+
+@pytest.fixture(scope="module")
+def texts(generator):
+    return generator("sentences")
+
+
+@pytest.fixture(scope="module")
+def pages(texts):
+    """Text of each page, by its path."""
+    return {
+        page.relative_to(texts.ROOT).as_posix(): page.read_text(encoding="utf-8")
+        for page in texts.pages()
+    }
+
+
+@pytest.fixture(scope="module")
+def guides(pages):
+    """Pages of docs without the reports."""
+    return {
+        name: text
+        for name, text in pages.items()
+        if name.startswith("docs/") and not name.startswith("docs/reports/")
+    }
+
+
+def test_a_turn_of_phrase_is_found(texts):
+    """In prose and in tables, and not in code."""
+    assert len(texts.turns("What is wrong is said.\n\n| a | it is told |\n")) == 2
+    assert texts.turns("```\nis said\n```\n") == []
+
+
+def test_sentences_are_told_apart(texts):
+    text = "One. Two has `a b` words, see ch. 4 of R. Smith. **Three.** Four\n\n- five\n- six\n"
+    assert [texts.length(one) for one in texts.sentences(text)] == [1, 10, 1, 1, 1, 1]
+
+
+def test_pages_have_no_turn_of_phrase_that_must_be_read_twice(texts, pages):
+    found = {name: texts.turns(text) for name, text in pages.items()}
+    assert {name: turns for name, turns in found.items() if turns} == {}
+
+
+def test_sentences_of_the_guides_are_short(texts, guides):
+    lengths = [texts.length(one) for text in guides.values() for one in texts.sentences(text)]
+    assert median(lengths) <= LONGEST["median"]
+    assert texts.percentile(lengths, 0.9) <= LONGEST["percentile"]
+    long = {
+        name: one
+        for name, text in guides.items()
+        for one in texts.sentences(text)
+        if texts.length(one) > LONGEST["sentence"]
+    }
+    assert long == {}
+
+
+def test_what_people_write_beside_reports_is_short(texts, guides):
+    assert sum(map(texts.words, guides.values())) <= WORDS
