@@ -15,9 +15,12 @@ from measured.logs import CHANNELS, FOLDERS, as_table
 
 import shipcosim as sc
 from shipcosim.diagnose.calibration_pipeline import calibrate
+from shipcosim.diagnose.checked_log import checked
+from shipcosim.diagnose.compared_log import compared
 from shipcosim.diagnose.joint_pipeline import diagnose_jointly
 from shipcosim.diagnose.log.checks.wind_jumps import jumping_wind
 from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.pipeline import read_measurements
 from shipcosim.diagnose.replays import replay_log
 from shipcosim.diagnose.validation.tracks import errors_of
 from shipcosim.library import build_stale
@@ -144,3 +147,28 @@ def test_gusts_in_a_pond_are_no_wrong_labels_of_the_wind(every):
         arrays = {name: log[name].values.astype(float) for name in (*log.data_vars, "time")}
         arrays["heading"] = np.degrees(np.unwrap(np.radians(arrays["heading"])))
         assert jumping_wind(arrays) == [], path.name
+
+
+@pytest.mark.parametrize("name", ["run_218.csv.gz", "run_223.csv.gz", "run_232.csv.gz"])
+@pytest.mark.parametrize("stride", [1, 2])
+def test_thrusters_that_would_brake_the_craft_are_found_exchanged(
+    name, stride, log, fmus, tmp_path
+):
+    """By the labels of these logs the two thrusters turn the boat against her rate of turn."""
+    table, channels, system = log("blueboat", name)
+    thinned = tmp_path / "thinned.csv"
+    pandas.read_csv(table).iloc[::stride].to_csv(thinned, index=False)
+    found = compared(
+        checked(read_measurements(thinned, read_system(system, fmus=[fmus]), channels))
+    )
+    assert ("channel_swap", ("left_thrust", "right_thrust")) in [
+        (fault.cause, fault.channels) for fault in found.faults
+    ]
+
+
+def test_of_a_thruster_whose_log_is_dead_the_other_one_gets_no_wrong_sign(log, fmus, tmp_path):
+    table, channels, system = log("blueboat", "run_224.csv.gz")
+    dead = tmp_path / "dead.csv"
+    pandas.read_csv(table).assign(left_force=0.0).to_csv(dead, index=False)
+    found = compared(checked(read_measurements(dead, read_system(system, fmus=[fmus]), channels)))
+    assert not found.faults
