@@ -6,6 +6,7 @@ from diagnose.logs import measured, table
 
 from shipcosim.diagnose.log.checks.examine import examine
 from shipcosim.diagnose.log.reader import read_log
+from shipcosim.diagnose.log.readings.reading import misread
 from shipcosim.diagnose.log.repair import repaired
 
 
@@ -226,3 +227,21 @@ def test_two_mistakes_throughout_are_not_said_of_two_parts_of_the_log():
         ("north has the other sign", ()),
         ("surge and sway are swapped", ()),
     }
+
+
+def test_nothing_is_said_where_the_heading_cannot_be_followed():
+    """A compass that jumps at random from row to row leaves no relation, whatever the wind is."""
+    rng = np.random.default_rng(4)
+    time = np.arange(300.0)
+    log = {
+        "time": time,
+        "heading": rng.uniform(0.0, 360.0, time.size),
+        "yaw_rate": rng.normal(0.0, 1.0, time.size),
+        "north": 2.0 * time,
+        "east": 0.0 * time,
+        "surge": 2.0 + 0.5 * np.sin(time / 20.0),
+        "sway": 0.1 * np.cos(time / 30.0),
+        "wind_speed": 8.0 + rng.normal(0.0, 0.3, time.size),
+        "wind_from": rng.uniform(0.0, 360.0, time.size),
+    }
+    assert misread(log, {}) == []
