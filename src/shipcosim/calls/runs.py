@@ -153,18 +153,18 @@ class PreparedRun:
         is_whole = first == 0.0 and last >= planned - 1e-9
         return {} if is_whole else {"judged_on": f"{first:g} to {last:g} s of {planned:g} s"}
 
-    def part(self, table: xarray.Dataset) -> Run:
+    def part(self, stop: Interrupted | RunError) -> Run:
         """The part of a run that did not get to its end; nothing is judged."""
-        return Run(
-            table.assign_attrs(changed=json.dumps(list(self.changed))), self.scenario, self.system
-        )
+        table = stop.table.assign_attrs(changed=json.dumps(list(self.changed)))
+        errors = stop.problems if isinstance(stop, RunError) else ()
+        return Run(table, self.scenario, self.system, remarks=self.remarks, errors=tuple(errors))
 
     def _save_part(self, stop: Interrupted | RunError, out: AnyPath, force: bool) -> None:
         """Save the rows so far, unless there are none."""
         if not stop.table.sizes["time"]:
             return
         try:
-            self.part(stop.table).save_part(out, force=force)
+            self.part(stop).save_part(out, force=force)
         except ShipcosimError as error:
             if not isinstance(stop, RunError):
                 raise
@@ -210,7 +210,7 @@ def run(
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only.
     out : path, optional
-        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
+        Folder that gets result.nc, result.csv, report.html, verdict.json, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
     engine, inputs, progress, order, until, resume, store, isolate, timeout
@@ -342,7 +342,7 @@ def simulate(
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only.
     out : path, optional
-        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
+        Folder that gets result.nc, result.csv, report.html, verdict.json, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
     engine, inputs, progress, order, until, resume, store, isolate, timeout

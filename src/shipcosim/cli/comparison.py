@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from rich.table import Table
 from rich.text import Text
 
-from shipcosim.cli.console import WIDTH
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.console import WIDTH, say_outcome
+from shipcosim.cli.terminal import make_console
 from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.results.studies import EngineComparison
@@ -24,11 +24,8 @@ def not_compared() -> list[str]:
     return said
 
 
-def print_comparison(comparison: EngineComparison, as_json: bool) -> None:
-    """Table of signals, then what did not run, what explains differences, and the verdict; or all of it as JSON."""
-    if as_json:
-        say_json(comparison.as_json())
-        return
+def print_comparison(comparison: EngineComparison) -> None:
+    """Table of signals, then what did not run, what explains differences, and the verdict."""
     console = make_console(soft_wrap=True)
     console.width = max(console.width, WIDTH)
     console.print(_table(comparison))
@@ -44,7 +41,7 @@ def print_comparison(comparison: EngineComparison, as_json: bool) -> None:
     for name, remarks in comparison.remarks.items():
         for remark in remarks:
             console.print(Text(f"{name}: {remark}", style="yellow"))
-    console.print(*_verdict(comparison))
+    say_outcome(console, comparison.outcome)
 
 
 def _table(comparison: Comparison) -> Table:
@@ -97,20 +94,3 @@ def _row(signal: Signal, others: Sequence[str]) -> list[str]:
     step = signal.step
     by_half = ["not tried", ""] if step is None else [f"{step.largest:.1e}", f"{step.relative:.1e}"]
     return [*cells, *by_half, groups]
-
-
-def _verdict(comparison: Comparison) -> tuple[Text, Text]:
-    others = [name for name in comparison.seconds if name != OURS]
-    if not others and not comparison.failed:
-        return Text("alone", style="bold yellow"), Text(
-            "No other engine ran: only the step-size error is known."
-        )
-    differing = sum(signal.worst > comparison.tolerance for signal in comparison.signals)
-    limit = f"{comparison.tolerance:g} of its range"
-    n = len(comparison.signals)
-    if comparison.agree:
-        said = f"{', '.join([OURS, *others])} agree on each of the {n} signals to {limit}."
-        return Text("agree", style="bold green"), Text(said)
-    return Text("differ", style="bold red"), Text(
-        f"{differing} of {n} signals differ by more than {limit}."
-    )

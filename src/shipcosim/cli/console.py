@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.terminal import make_console
 from shipcosim.errors import Problem, worth_showing
 
 if TYPE_CHECKING:
@@ -98,11 +98,10 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
 
 def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
-    from shipcosim.report import digest
     from shipcosim.report.run.predictions import summarise, texts
 
     console = make_console(stderr=to_stderr, soft_wrap=True)
-    outcome, remarks, judged = digest(result.table, result.expectations)
+    outcome, remarks, judged = result.digest
     if judged:
         console.print(_expectations(judged))
     if predicted := texts(summarise(result.predictions)):
@@ -111,7 +110,9 @@ def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     for remark in remarks:
         if remark not in before:
             console.print(Text(remark, style="yellow"))
-    _say_outcome(console, outcome, page)
+    print_problems(result.errors)
+    say_outcome(console, outcome)
+    say_page(console, page)
 
 
 def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: Path) -> None:
@@ -125,13 +126,14 @@ def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: 
             Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, Text(one.sentence)
         )
     console.print(listed)
-    _say_outcome(console, outcome, page)
-
-
-def _say_outcome(console, outcome, page):
-    style = VERDICTS.get(outcome.kind, "bold")
-    console.print(Text(outcome.word, style=style), Text(outcome.sentence))
+    say_outcome(console, outcome)
     say_page(console, page)
+
+
+def say_outcome(console: Console, outcome: Outcome) -> None:
+    """The verdict line."""
+    style = VERDICTS.get(outcome.kind, "bold red" if outcome.kind == "failed" else "bold")
+    console.print(Text(outcome.word, style=style), Text(outcome.sentence))
 
 
 def say_page(console: Console, page: Path) -> None:
@@ -188,11 +190,8 @@ def print_estimates(rows: Iterable[Sequence[str]]) -> None:
         console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
 
 
-def print_report(checked: CheckedFiles, as_json: bool) -> None:
-    """Findings on files."""
-    if as_json:
-        say_json(checked.as_json())
-        return
+def print_report(checked: CheckedFiles) -> None:
+    """Findings on files, variables of FMUs, estimates of ships."""
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
         for problem in worth_showing(problems):
@@ -207,3 +206,7 @@ def print_report(checked: CheckedFiles, as_json: bool) -> None:
             is_fmu = file.lower().endswith(".fmu")
             said = "nothing wrong" + is_fmu * " in its description; its binaries were not loaded"
         console.print(Text(f"{file}: {said}"))
+    for variables in checked.variables.values():
+        print_variables(variables)
+    for estimates in checked.estimates.values():
+        print_estimates(estimates)

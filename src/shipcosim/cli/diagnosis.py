@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -15,16 +15,13 @@ if TYPE_CHECKING:
     from shipcosim.diagnose.result import Diagnosis
 
 
-def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
+def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
     from shipcosim.cli.console import style_of
     from shipcosim.report.diagnosis.words import outcome
 
-    if as_json:
-        say_json(diagnosis.as_json())
-        return
     console = make_console(soft_wrap=True)
     verdict = outcome(diagnosis, diagnosis.causes)
     console.print(Text(verdict.word, style=style_of(diagnosis.verdict)), Text(verdict.sentence))

@@ -6,22 +6,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.diagnosis import say_sections, table
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 
 
-def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
+def print_joint(found: JointDiagnosis, folder: Path) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
     from shipcosim.cli.console import style_of
     from shipcosim.report.joint.words import outcome
 
-    if as_json:
-        say_json(found.as_json())
-        return
     console = make_console(soft_wrap=True)
     verdict = outcome(found)
     console.print(Text(verdict.word, style=style_of(found.verdict)), Text(verdict.sentence))

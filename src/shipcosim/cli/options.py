@@ -143,7 +143,16 @@ Timeout = Annotated[
         "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60.",
     ),
 ]
-ReportAsJson = Annotated[bool, typer.Option("--json", help="Report as JSON.")]
+AsJson = Annotated[
+    bool, typer.Option("--json", help="Print what was found as JSON, and nothing else on stdout.")
+]
+Junit = Annotated[
+    Path | None,
+    typer.Option("--junit", metavar="FILE", help="Write what was checked as JUnit's XML, for CI."),
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Print only the verdict and what is wrong.")
+]
 Strict = Annotated[
     bool,
     typer.Option(

@@ -20,7 +20,7 @@ def overview() -> str:
     project = library.project_of()
     shipped = library.shipped()
     lines = []
-    for kind in library.KINDS:
+    for kind, heading in zip(library.KINDS, LISTED, strict=False):
         paths = library.names(kind)
         own = [
             name
@@ -32,7 +32,7 @@ def overview() -> str:
             if found:
                 first = sorted(found, key=lambda name: "/" in name)[:4]
                 shown = ", ".join(first) + (", ..." if len(found) > 4 else "")
-                lines.append((f"{kind}s", f"{len(found):>3} {where + ':':<11}{shown}"))
+                lines.append((heading, f"{len(found):>3} {where + ':':<11}{shown}"))
     return f"{BEGIN}\nWhat is there:\n" + "\n".join(f"  {kind:<11}{text}" for kind, text in lines)
 
 

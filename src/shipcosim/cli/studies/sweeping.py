@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from shipcosim.cli.console import say_page, shown_path
-from shipcosim.cli.exits import INTERRUPTED
+from shipcosim.cli.outcomes.exits import INTERRUPTED
 from shipcosim.cli.terminal import make_console, say
 from shipcosim.sweep import Plan, Swept
 from shipcosim.sweep.summary import RANGE
@@ -25,8 +25,8 @@ SHOWN = 20  # rows of the summary on the terminal
 MOST_IMPORTANT = 10  # parameters of each quantity on the terminal
 
 
-def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
-    """Run what is not done of a study and say how it went.
+def sweep_with_progress(study: PlannedStudy, **options: Any) -> StudyResult:
+    """Run what is not done of a study, with a progress bar.
 
     Parameters
     ----------
@@ -41,13 +41,11 @@ def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
     """
     with _progress(study.plan) as progress:
         try:
-            swept = study.run(progress=progress, **options)
+            return study.run(progress=progress, **options)
         except KeyboardInterrupt:
             kept = shown_path(study.folder)
             say(f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True)
             raise typer.Exit(INTERRUPTED) from None
-    _say(swept)
-    return swept
 
 
 @contextmanager
@@ -105,7 +103,7 @@ def _time(seconds: float) -> str:
     return f"{seconds:.0f} s"
 
 
-def _say(swept: Swept) -> None:
+def print_study(swept: Swept) -> None:
     """The summary, errors, and where the page is."""
     console = make_console(soft_wrap=True)
     if 0 < len(swept.summary) <= SHOWN:

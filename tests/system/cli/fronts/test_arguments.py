@@ -27,7 +27,7 @@ OTHER_NAMES = {
     "ssp": "system",
     "data": "log",
 }
-OF_THE_TERMINAL = {"debug", "as_json", "number", "serve", "port"}
+OF_THE_TERMINAL = {"debug", "as_json", "number", "serve", "port", "junit", "quiet"}
 """How a command prints, and what it does beside its call: `StudyResult.run(number)` is another call."""
 
 
