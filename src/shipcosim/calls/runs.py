@@ -121,6 +121,15 @@ class PreparedRun:
             write_snapshot(snapshot, state_file)
         return result
 
+    def finish(self, out: AnyPath, *, force: bool = False) -> Run:
+        """The run, or its part with `errors` where a component failed on its way, which is a finding; as `run` else."""
+        try:
+            return self.run(out, force=force)
+        except RunError as error:
+            if not error.table.sizes["time"]:
+                raise
+            return self.part(error)
+
     def judged(self, table: xarray.Dataset) -> Run:
         """The run of a table: what it changed, which expectations lie within it, and whether these hold.
 

@@ -11,7 +11,7 @@ import typer
 
 from shipcosim.cli.console import print_overview, print_problems, print_summary, progress_of
 from shipcosim.cli.outcomes.exits import INTERRUPTED, Conclusion
-from shipcosim.cosim import Interrupted, RunError
+from shipcosim.cosim import Interrupted
 from shipcosim.errors import ShipcosimError
 from shipcosim.results.run import VERDICT
 from shipcosim.staging import set_aside
@@ -121,13 +121,9 @@ def run_with_progress(prepared: PreparedRun, out: Path, force: bool = False) -> 
     try:
         with progress_of(label, prepared.scenario.stop_time) as progress:
             shown = replace(prepared, options=replace(prepared.options, progress=progress))
-            return shown.run(out, force=force)
+            return shown.finish(out, force=force)
     except Interrupted as stop:
         page = out / "result-partial.html"
         if stop.table.sizes["time"] and page.is_file():
             print_summary(prepared.part(stop), page, to_stderr=True)
         raise typer.Exit(INTERRUPTED) from None
-    except RunError as error:
-        if not error.table.sizes["time"]:
-            raise
-        return prepared.part(error)

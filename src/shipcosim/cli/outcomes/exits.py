@@ -96,15 +96,23 @@ class Output:
     ) -> None:
         """Write the file of --junit, and the summary of the step where GitHub asks for one."""
         from shipcosim.cli.console import shown_path
-        from shipcosim.cli.outcomes.junit import junit_xml, markdown
+        from shipcosim.cli.outcomes.junit import junit_xml
         from shipcosim.series import write_file
 
         where = None if folder is None else shown_path(folder)
         if self.junit is not None:
             write_file(self.junit, junit_xml(name, checks, where))
-        if summary := os.environ.get(SUMMARY_OF_STEP):
-            with open(summary, "a", encoding="utf-8") as file:
-                file.write(markdown(f"{name}: {sentence}", checks, where))
+        page = "" if where is None else (where / "report.html").as_posix()
+        add_to_summary(f"{name}: {sentence}", checks, page)
+
+
+def add_to_summary(heading: str, checks: Sequence[Check], page: str = "") -> None:
+    """Add a table to the summary of a step, where GitHub asks for one."""
+    from shipcosim.cli.outcomes.junit import markdown
+
+    if summary := os.environ.get(SUMMARY_OF_STEP):
+        with open(summary, "a", encoding="utf-8") as file:
+            file.write(markdown(heading, checks, page))
 
 
 def guarded(function: Callable[..., Conclusion | None]) -> Callable[..., None]:

@@ -49,8 +49,8 @@ def junit_xml(name: str, checks: Sequence[Check], folder: Path | None = None) ->
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 
 
-def markdown(heading: str, checks: Sequence[Check], folder: Path | None = None) -> str:
-    """A heading, a row for each check, and where the page is; parameters as of `junit_xml`."""
+def markdown(heading: str, checks: Sequence[Check], page: str = "") -> str:
+    """A heading, a row for each check with failed ones first, and where the page is."""
     bad = [check for check in checks if check.status in ("failed", "error")]
     ordered = [*bad, *(check for check in checks if check not in bad)]
     lines = [f"### {heading}", "", "| | checked | result |", "|---|---|---|"]
@@ -60,6 +60,6 @@ def markdown(heading: str, checks: Sequence[Check], folder: Path | None = None) 
         lines.append(f"| {' | '.join(texts)} |")
     if len(ordered) > MOST_ROWS:
         lines.append(f"| | and {len(ordered) - MOST_ROWS} more | |")
-    if folder is not None:
-        lines += ["", f"Page: `{(folder / 'report.html').as_posix()}`"]
+    if page:
+        lines += ["", f"Page: `{page}`"]
     return "\n".join([*lines, "", ""])

@@ -10,7 +10,7 @@ BEGIN = """
 Begin with:
   shipcosim run four_corner         a ship in DP moves in a square of 20 m; makes a page
   shipcosim diagnose gunnerus_log   what a simulation gets wrong of a measured log, and why
-  shipcosim init my-project         a project of your own: system, scenario, test, notebook
+  shipcosim init my-project         a project of your own: system, scenarios, CI, notebook
   shipcosim list                    everything that is there, a line each
 """
 
