@@ -43,14 +43,14 @@ class CheckedFiles(Result):
         return tuple(problem for found in self.files.values() for problem in found)
 
     @property
-    def errors(self) -> tuple[Problem, ...]:
+    def failures(self) -> tuple[Problem, ...]:
         """Those of all problems that are errors."""
         return tuple(problem for problem in self.problems if problem.severity == "error")
 
     @property
     def passed(self) -> bool:
         """Whether no file has an error."""
-        return not self.errors
+        return not self.failures
 
     @property
     def checks(self) -> tuple[Check, ...]:

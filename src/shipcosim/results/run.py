@@ -79,6 +79,11 @@ class Run(LikeTable, Result):
         return self._is_complete and all(verdict.passed for verdict in self.expectations)
 
     @property
+    def failures(self) -> tuple[Problem, ...]:
+        """Why it did not get to its end."""
+        return self.errors
+
+    @property
     def _is_complete(self) -> bool:
         from shipcosim.report.run.expectations import is_complete
 

@@ -48,7 +48,7 @@ class ScenarioRuns(Result):
         return all(run.passed for run in self.runs.values())
 
     @property
-    def errors(self) -> tuple[Problem, ...]:
+    def failures(self) -> tuple[Problem, ...]:
         """Why runs did not get to their end."""
         return tuple(error for run in self.runs.values() for error in run.errors)
 

@@ -164,8 +164,8 @@ class Result(ABC):
         return getattr(self, "verdict", "consistent") == "consistent"
 
     @property
-    def errors(self) -> tuple[Problem, ...]:
-        """What even --quiet says of what is wrong."""
+    def failures(self) -> tuple[Problem, ...]:
+        """Errors that --quiet prints, too."""
         return ()
 
     @property

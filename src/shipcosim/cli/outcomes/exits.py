@@ -78,7 +78,7 @@ class Output:
         from shipcosim.cli.terminal import make_console
 
         if self.as_json or self.quiet:
-            print_problems(found.result.errors)
+            print_problems(found.result.failures)
         if self.as_json:
             say_json(found.result.as_json())  # pyright: ignore[reportAttributeAccessIssue]
         elif self.quiet:

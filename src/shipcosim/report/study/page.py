@@ -135,7 +135,7 @@ def page_of(tables: StudyTables) -> StudyPage:
         figures=drawn,
         undrawn=undrawn,
         quantities=words.quantities_table(runs),
-        summary=_summary(summary),
+        summary=summary_table(summary),
         thinned=(len(rows), len(tables.runs)) if len(rows) < len(tables.runs) else None,
         errors=errors[: words.MOST_ERRORS],
         choices=_choices(runs),
@@ -266,8 +266,8 @@ def _level(column: Column, level: float) -> str:
     return column.text(level) if column.labels else signed(level, 6)
 
 
-def _summary(columns: Columns) -> Table:
-    """The summary as texts; at most its first rows."""
+def summary_table(columns: Columns) -> Table:
+    """Columns as texts in units to read, each interval in the cell of its value; at most the first rows."""
     # Ends of intervals are shown in the cell of their value.
     ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
     shown = [column for name, column in columns.items() if name not in ends]
