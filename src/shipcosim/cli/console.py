@@ -173,8 +173,12 @@ def print_report(checked: CheckedFiles) -> None:
     """Findings on files, variables of FMUs, estimates of ships."""
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
-        for problem in worth_showing(problems):
-            console.print(_block(problem))
+        # What must be mended stands first, what is only to be known takes a line.
+        for problem in sorted(worth_showing(problems), key=lambda one: one.severity != "error"):
+            block = _block(problem)
+            console.print(
+                block if problem.severity == "error" else Text(" ").join(block.split("\n"))
+            )
         errors = sum(problem.severity == "error" for problem in problems)
         remarks = len(problems) - errors
         if errors:
