@@ -112,6 +112,18 @@ Engine = Annotated[
         autocompletion=words_of(*ENGINES),
     ),
 ]
+Record = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--record",
+        metavar="SIGNALS",
+        help="Keep these signals alone: 'vessel.*', a component, a connector; or a LogConfig.xml of libcosim; "
+        "repeatable.",
+    ),
+]
+Every = Annotated[
+    float | None, time_option("--every", "Keep a row each so often; in s, or such as '500 ms'.")
+]
 Force = Annotated[
     bool,
     typer.Option("--force", help="Replace earlier results instead of keeping them in DIR-1, ..."),

@@ -11,6 +11,7 @@ from shipcosim.cli.options import (
     Components,
     Debug,
     Engine,
+    Every,
     Fmus,
     Force,
     From,
@@ -19,6 +20,7 @@ from shipcosim.cli.options import (
     Out,
     Parameters,
     Quiet,
+    Record,
     Settings,
     Store,
     Strict,
@@ -46,6 +48,8 @@ def run(
     components: Components = None,
     fmus: Fmus = None,
     until: Until = None,
+    record: Record = None,
+    every: Every = None,
     store: Store = None,
     resume: From = None,
     isolate: Isolate = False,
@@ -80,17 +84,16 @@ def run(
         "strict": strict,
         "engine": engine,
         "until": until,
-    }
-    asked |= {
+        "resume": resume,
+        "record": record or (),
+        "output_interval": every,
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
-    asked |= {"resume": resume, **isolation(isolate, timeout)}
+    asked |= isolation(isolate, timeout)
     if files := library.scenarios(scenario):
         if store or resume:
-            found = (
-                "This is a folder of scenarios: there is no one state to store or to go on from."
-            )
+            found = "This is a folder of scenarios: it has no one state to store or to go on from."
             raise error_at(scenario, found, "Name one scenario, or leave out --store and --from.")
         name = Path(scenario).resolve().name
         prepared = prepare_folder(files, asked)

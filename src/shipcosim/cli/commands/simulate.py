@@ -10,6 +10,7 @@ from shipcosim.cli.options import (
     Components,
     Debug,
     Engine,
+    Every,
     Force,
     From,
     Isolate,
@@ -18,6 +19,7 @@ from shipcosim.cli.options import (
     Out,
     Parameters,
     Quiet,
+    Record,
     Settings,
     Store,
     Strict,
@@ -80,6 +82,8 @@ def simulate(
     components: Components = None,
     events: OspEvents = None,
     until: Until = None,
+    record: Record = None,
+    every: Every = None,
     store: Store = None,
     resume: From = None,
     isolate: Isolate = False,
@@ -103,22 +107,21 @@ def simulate(
     from shipcosim.cli.runs import concluded
     from shipcosim.series import read_table
 
-    feeding = {
-        "inputs": None if inputs is None else read_table(inputs),
-        "interpolate": interpolate or (),
-        "max_gap": max_gap,
-        "start_time": start_time,
-    }
+    table = None if inputs is None else read_table(inputs)
+    feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap}
     carried_out = {"engine": engine, "until": until, "store": store, "resume": resume}
     prepared = prepare_simulation(
         ssp,
         events,
         stop_time=stop_time,
         step_size=step_size,
+        record=record or (),
+        output_interval=every,
         set=parsed_settings(settings or []),
         parameters=parameters or [],
         components=parsed_components(components or ()),
         strict=strict,
+        start_time=start_time,
         **feeding,
         **carried_out,
         **isolation(isolate, timeout),
