@@ -124,6 +124,14 @@ Record = Annotated[
 Every = Annotated[
     float | None, time_option("--every", "Keep a row each so often; in s, or such as '500 ms'.")
 ]
+Realtime = Annotated[
+    float | None,
+    typer.Option(
+        "--realtime",
+        metavar="FACTOR",
+        help="Wait for the clock: 1.0 runs in real time, 2.0 twice as fast. Default: as fast as possible.",
+    ),
+]
 Force = Annotated[
     bool,
     typer.Option("--force", help="Replace earlier results instead of keeping them in DIR-1, ..."),

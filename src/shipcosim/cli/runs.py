@@ -57,7 +57,7 @@ def prepare_folder(files: Mapping[str, Path], asked: Mapping[str, Any]) -> dict[
 
 
 def run_folder(
-    prepared: Mapping[str, PreparedRun], out: Path, name: str, force: bool = False
+    prepared: Mapping[str, PreparedRun], name: str, out: Path | None = None, force: bool = False
 ) -> Conclusion:
     """Run scenarios one after another, each into a folder of its own, and write the table of all of them.
 
@@ -65,15 +65,16 @@ def run_folder(
     ----------
     prepared : mapping of str to PreparedRun
         By the names of the scenarios in their folder.
-    out : Path
-        Gets the table.
     name : str
         Of the folder of the scenarios.
+    out : Path, optional
+        Gets the table; results/NAME without.
     force : bool
         Replace earlier results.
     """
     from shipcosim.results.scenario_runs import ScenarioRuns
 
+    out = out or Path("results") / name
     set_aside(out, ["report.html", VERDICT, *{key.split("/")[0] for key in prepared}], force=force)
     runs = {}
     for key, planned in prepared.items():

@@ -20,6 +20,7 @@ from shipcosim.cli.options import (
     Out,
     Parameters,
     Quiet,
+    Realtime,
     Record,
     Settings,
     Store,
@@ -54,6 +55,7 @@ def run(
     resume: From = None,
     isolate: Isolate = False,
     timeout: Timeout = None,
+    realtime: Realtime = None,
     strict: Strict = False,
     as_json: AsJson = False,
     junit: Junit = None,
@@ -85,6 +87,7 @@ def run(
         "engine": engine,
         "until": until,
         "resume": resume,
+        "realtime": realtime,
         "record": record or (),
         "output_interval": every,
         "set": parsed_settings(settings or []),
@@ -95,8 +98,6 @@ def run(
         if store or resume:
             found = "This is a folder of scenarios: it has no one state to store or to go on from."
             raise error_at(scenario, found, "Name one scenario, or leave out --store and --from.")
-        name = Path(scenario).resolve().name
-        prepared = prepare_folder(files, asked)
-        return run_folder(prepared, out or Path("results") / name, name, force)
+        return run_folder(prepare_folder(files, asked), Path(scenario).resolve().name, out, force)
     prepared = prepare_run(scenario, store=store, **asked)
     return concluded(prepared, out or Path("results") / prepared.scenario.name, force)

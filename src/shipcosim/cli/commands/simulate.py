@@ -19,6 +19,7 @@ from shipcosim.cli.options import (
     Out,
     Parameters,
     Quiet,
+    Realtime,
     Record,
     Settings,
     Store,
@@ -88,6 +89,7 @@ def simulate(
     resume: From = None,
     isolate: Isolate = False,
     timeout: Timeout = None,
+    realtime: Realtime = None,
     strict: Strict = False,
     as_json: AsJson = False,
     junit: Junit = None,
@@ -110,6 +112,7 @@ def simulate(
     table = None if inputs is None else read_table(inputs)
     feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap}
     carried_out = {"engine": engine, "until": until, "store": store, "resume": resume}
+    carried_out |= {"realtime": realtime, **isolation(isolate, timeout)}
     prepared = prepare_simulation(
         ssp,
         events,
@@ -124,7 +127,6 @@ def simulate(
         start_time=start_time,
         **feeding,
         **carried_out,
-        **isolation(isolate, timeout),
     )
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
     return concluded(prepared, out or default, force)

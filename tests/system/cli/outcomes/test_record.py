@@ -1,6 +1,7 @@
 """What a run keeps: chosen signals and rows, from options, scenarios, and libcosim's LogConfig.xml."""
 
 import json
+import time
 from pathlib import Path
 
 import pytest
@@ -125,3 +126,24 @@ def test_command_and_call_keep_the_same(call, project):
     sc.run("fill", record="lag.*", output_interval=0.5, out="b")
     for name in ("result.nc", "result.csv", "report.html", "verdict.json"):
         assert Path("a", name).read_bytes() == Path("b", name).read_bytes(), name
+
+
+@pytest.mark.parametrize("engine", ["fmpy", "native"])
+def test_a_run_in_real_time_takes_its_time_and_gives_the_same(call, full, engine):
+    began = time.monotonic()
+    paced = sc.run("fill", engine=engine, realtime=4.0)
+    took = time.monotonic() - began
+    # The last of 50 steps of 0.1 s begins at 4.9 s.
+    assert took >= 4.9 / 4.0
+    assert paced["lag.y"].values.tolist() == sc.run("fill", engine=engine)["lag.y"].values.tolist()
+
+
+@pytest.mark.parametrize("pace", ["0", "-1", "nan"])
+def test_a_pace_that_is_none_is_refused(call, project, pace):
+    failed = call("run", "fill", "--realtime", pace)
+    assert failed.code == 2 and "no pace" in failed.err and not Path("results").exists()
+
+
+def test_a_pace_is_refused_by_engines_that_do_not_know_it(call, project):
+    failed = call("run", "fill", "--realtime", "1", "--engine", "libcosim")
+    assert failed.code == 2 and "realtime" in failed.err
