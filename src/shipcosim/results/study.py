@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from shipcosim.report.notebook.card import Card
     from shipcosim.report.study import StudyTables
+    from shipcosim.report.theme.views import Outcome
     from shipcosim.results.run import Run
 
 
@@ -44,6 +45,13 @@ class StudyResult(Result, Swept):
         return self.simulate(number)
 
     @property
+    def outcome(self) -> Outcome:
+        """Verdict in one word and one sentence."""
+        from shipcosim.report.study import outcome_of
+
+        return outcome_of(self._tables())
+
+    @property
     def passed(self) -> bool:
         """Whether every run that was done got to its end."""
         return not self.about["runs"]["failed"]
@@ -67,7 +75,7 @@ class StudyResult(Result, Swept):
                 "verdict": "passed" if self.passed else "failed",
                 "sentence": self.outcome.sentence,
                 "runs": self.about["runs"],
-                "errors": [check.message for check in self.checks if check.status == "error"],
+                "errors": [error for error in self.runs["error"] if error],
                 "summary": self.summary.to_dict("records"),
                 "remarks": self.about.get("remarks", []),
                 "page": "report.html",

@@ -17,7 +17,16 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, Figures, JsonObject, KeyFigure, Link, Page, Table
+from shipcosim.report.theme.views import (
+    Figure,
+    Figures,
+    JsonObject,
+    KeyFigure,
+    Link,
+    Outcome,
+    Page,
+    Table,
+)
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
@@ -99,6 +108,12 @@ class StudyPage(Page):
 def render(tables: StudyTables) -> str:
     """The page of a study as HTML."""
     return render_template("study/templates/study.html.jinja", page_of(tables))
+
+
+def outcome_of(tables: StudyTables) -> Outcome:
+    """Result of a study in one sentence, without its views."""
+    said = tables.about.get("columns", ())
+    return words.outcome(tables, columns_of(tables.runs, said), columns_of(tables.summary, said))
 
 
 def page_of(tables: StudyTables) -> StudyPage:
