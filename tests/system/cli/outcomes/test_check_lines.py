@@ -32,10 +32,10 @@ def test_errors_stand_before_remarks(call, project):
     call("build")
     scenario = project / "scenarios" / "fill.toml"
     text = scenario.read_text().replace('"lag.time_constant" = 0.5', '"lag.time_constant" = -1.0')
-    # Setting an input at the start of a run that is connected is a remark or an error of its own.
+    # An event after the end never acts, which is a remark.
     scenario.write_text(text + '\n[[events]]\ntime = 9.0\noverride = { "lag.fails_at" = 1.0 }\n')
     said = call("check", "fill").out
     kinds = [
         line.partition(":")[0] for line in said.splitlines() if line.startswith(("error", "remark"))
     ]
-    assert kinds == sorted(kinds) and kinds[0] == "error"
+    assert kinds == sorted(kinds) and set(kinds) == {"error", "remark"}
