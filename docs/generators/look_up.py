@@ -16,10 +16,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import typer
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
+from shipcosim.cli.exits import EXIT_CODES
 
 import shipcosim
 from shipcosim import library
-from shipcosim.cli.exits import EXIT_CODES
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.hypotheses.cause import (
     Cause,

@@ -102,16 +102,8 @@ def _is_ship(path: Path) -> bool:
 def kind_of_toml(path: Path) -> str:
     """What a .toml describes, by its keys: ``"ship"``, ``"study"``, ``"cause"``, ``"channels"`` or ``"scenario"``."""
     from shipcosim.diagnose.log.roles import role_of
-    from shipcosim.scenario import toml_of
 
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, ValueError):
-        return "scenario"  # its reader says what is wrong with the file
-    try:
-        keys = set(toml_of(text))
-    except ValueError:
-        keys = _top_keys(text)  # faulty TOML: the reader of its kind says where
+    keys = _keys_of(path)
     for kind, own in (
         ("ship", OF_SHIP),
         ("study", OF_STUDY),
@@ -121,6 +113,25 @@ def kind_of_toml(path: Path) -> str:
         if keys & own:
             return kind
     return "channels" if any(role_of(key) for key in keys) else "scenario"
+
+
+def is_scenario(path: Path) -> bool:
+    """True for a .toml with several keys of a scenario, whatever is wrong with it; files of other tools have none."""
+    return len(_keys_of(path) & OF_SCENARIO) > 1 and kind_of_toml(path) == "scenario"
+
+
+def _keys_of(path: Path) -> set[str]:
+    """Keys of the outermost table; none of a file that is no text, of which its reader says what is wrong."""
+    from shipcosim.scenario import toml_of
+
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, ValueError):
+        return set()
+    try:
+        return set(toml_of(text))
+    except ValueError:
+        return _top_keys(text)  # faulty TOML: the reader of its kind says where
 
 
 def _top_keys(text: str) -> set[str]:

@@ -38,8 +38,8 @@ class RunOptions:
     ----------
     engine : str
         What runs the FMUs: ``"fmpy"`` (our own co-simulation master), ``"native"`` (the same, with models and loop
-        compiled), ``"libcosim"`` or ``"ecos"``. The last two know neither `start_time` nor `until`, `resume`, `store`
-        and `isolate`.
+        compiled), ``"libcosim"`` or ``"ecos"``. The last two know neither `start_time` nor `until`, `resume`, `store`,
+        `isolate` and `realtime`.
     inputs : Dataset, optional
         Feeds inputs of the system, by their names. A variable's attribute ``interpolation`` says what it does between
         its rows: ``"held"``, the default, or ``"linear"``, angles the shorter way round. The table's attribute
@@ -64,11 +64,13 @@ class RunOptions:
         fails.
     timeout : float
         How long an isolated component may take for an answer. [s]
+    realtime : float, optional
+        Seconds of the run that pass in a second of the clock; as fast as the machine allows without.
 
     Raises
     ------
     ShipcosimError
-        If the timeout of isolated components is no positive number.
+        If the timeout of isolated components or the pace is no positive number.
     """
 
     engine: str = "fmpy"
@@ -81,8 +83,14 @@ class RunOptions:
     store: Callable[[Snapshot], object] | str | os.PathLike[str] | None = None
     isolate: bool = False
     timeout: float = TIMEOUT
+    realtime: float | None = None
 
     def __post_init__(self):
+        if self.realtime is not None and not 0.0 < self.realtime < float("inf"):
+            found = f"{self.realtime:g} is no pace."
+            raise error_at(
+                "realtime", found, "Give a positive number: 1.0 is as fast as the clock."
+            )
         if self.isolate and not 0.0 < self.timeout < float("inf"):
             found = f"{self.timeout:g} s is no time limit."
             raise error_at("timeout", found, "Give a positive number.")
@@ -107,3 +115,4 @@ class RunKeywords(TypedDict, total=False):
     store: Callable[[Snapshot], object] | str | os.PathLike[str] | None
     isolate: bool
     timeout: float | str
+    realtime: float | None

@@ -145,6 +145,7 @@ MAY_IMPORT = {
         "results",
         "calls",
     },
+    "pytest_plugin": {"library", "errors", "checks", "scenario", "results", "calls", "cli"},
 }
 ONLY_DOOR = {
     "pythonfmu": {"fmi.export"},
@@ -159,6 +160,7 @@ ONLY_DOOR = {
     "markupsafe": {"report.theme"},
     "matplotlib": {"report.notebook"},
     "typer": {"cli"},
+    "pytest": {"pytest_plugin"},
     "scipy": {"sweep"},  # 143 MB: an extra
     "SALib": {"sweep"},
     "optuna": {"sweep"},

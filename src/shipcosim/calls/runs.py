@@ -35,7 +35,9 @@ from shipcosim.cosim.simulate import clock_start, with_open_snapshot
 from shipcosim.errors import Problem, ShipcosimError, error_at
 from shipcosim.options import RunKeywords, RunOptions
 from shipcosim.results.run import Run
+from shipcosim.results.signals import chosen
 from shipcosim.scenario import (
+    Record,
     Scenario,
     check_scenario,
     check_times,
@@ -44,7 +46,7 @@ from shipcosim.scenario import (
     with_numbers,
     within_run,
 )
-from shipcosim.ssp import System, settings_of_one, step_remarks, with_values
+from shipcosim.ssp import System, read_log_config, settings_of_one, step_remarks, with_values
 from shipcosim.staging import check_targets, set_file_aside
 
 if TYPE_CHECKING:
@@ -121,6 +123,15 @@ class PreparedRun:
             write_snapshot(snapshot, state_file)
         return result
 
+    def finish(self, out: AnyPath, *, force: bool = False) -> Run:
+        """The run, or its part with `errors` where a component failed on its way, which is a finding; as `run` else."""
+        try:
+            return self.run(out, force=force)
+        except RunError as error:
+            if not error.table.sizes["time"]:
+                raise
+            return self.part(error)
+
     def judged(self, table: xarray.Dataset) -> Run:
         """The run of a table: what it changed, which expectations lie within it, and whether these hold.
 
@@ -141,10 +152,20 @@ class PreparedRun:
             self.scenario.model_copy(update={"expect": reached}), units_of(self.system)
         )
         verdicts = judge(table, in_numbers)
+        table = self._recorded(table)
         result = Run(table, self.scenario, self.system, tuple(verdicts), tuple(late), self.remarks)
         return replace(
             result, table=table.assign_attrs(not_reached=json.dumps(result.claims_not_reached()))
         )
+
+    def _recorded(self, table: xarray.Dataset) -> xarray.Dataset:
+        """The signals that the scenario has recorded, and those of its expectations; all where it chooses none."""
+        if not self.scenario.record.signals:
+            return table
+        names = list(map(str, table.data_vars))
+        there = {signal for expect in self.scenario.expect for signal in expect.signals}
+        wanted = {*chosen(names, self.scenario.record.signals), *there}
+        return table[[name for name in names if name in wanted]]
 
     def _part_judged(self, table: xarray.Dataset) -> dict[str, str]:
         """What part of the planned run a table is; nothing of a whole one, which needs no words."""
@@ -153,22 +174,75 @@ class PreparedRun:
         is_whole = first == 0.0 and last >= planned - 1e-9
         return {} if is_whole else {"judged_on": f"{first:g} to {last:g} s of {planned:g} s"}
 
-    def part(self, table: xarray.Dataset) -> Run:
+    def part(self, stop: Interrupted | RunError) -> Run:
         """The part of a run that did not get to its end; nothing is judged."""
-        return Run(
-            table.assign_attrs(changed=json.dumps(list(self.changed))), self.scenario, self.system
-        )
+        table = self._recorded(stop.table).assign_attrs(changed=json.dumps(list(self.changed)))
+        errors = stop.problems if isinstance(stop, RunError) else ()
+        return Run(table, self.scenario, self.system, remarks=self.remarks, errors=tuple(errors))
 
     def _save_part(self, stop: Interrupted | RunError, out: AnyPath, force: bool) -> None:
         """Save the rows so far, unless there are none."""
         if not stop.table.sizes["time"]:
             return
         try:
-            self.part(stop.table).save_part(out, force=force)
+            self.part(stop).save_part(out, force=force)
         except ShipcosimError as error:
             if not isinstance(stop, RunError):
                 raise
             stop.problems += error.problems
+
+
+def with_record(
+    scenario: Scenario, system: System, record: AnyPath | Sequence[AnyPath], has_interval: bool
+) -> Scenario:
+    """The scenario with what is recorded of it.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    system : System
+        Whose signals these are.
+    record : path or sequence of path
+        Signals, components, connectors or patterns, in place of the scenario's; or a LogConfig.xml of libcosim, which
+        gives the interval of rows, too.
+    has_interval : bool
+        Whether the interval is asked for otherwise.
+
+    Raises
+    ------
+    ShipcosimError
+        If the system has no such signal.
+    """
+    signals: list[str] = []
+    for one in [os.fspath(one) for one in listed(record)]:
+        if not one.lower().endswith(".xml"):
+            signals.append(one)
+            continue
+        config = read_log_config(one)
+        signals += config.signals
+        if not has_interval:
+            interval = config.steps * scenario.step_size
+            scenario = scenario.model_copy(update={"output_interval": interval})
+    if signals:
+        scenario = scenario.model_copy(update={"record": Record(signals=signals)})
+
+    # A run records outputs, and inputs that nothing feeds or an event changes: ask for others before it begins.
+    fed = {".".join(filter(None, connection.target)) for connection in system.connections}
+    changed = {
+        name for event in scenario.events for name in (*event.override, *event.bias, *event.reset)
+    }
+    variables = {
+        f"{component.name}.{name}": variable.causality
+        for component in system.components.values()
+        for name, variable in component.variables.items()
+    }
+    recorded = [
+        name
+        for name, causality in variables.items()
+        if causality == "output" or (causality == "input" and (name not in fed or name in changed))
+    ]
+    chosen([*recorded, *system.inputs, *system.outputs], scenario.record.signals)
+    return scenario
 
 
 @with_known_keywords
@@ -183,6 +257,7 @@ def run(
     stop_time: AnyTime = None,
     step_size: AnyTime = None,
     output_interval: AnyTime = None,
+    record: AnyPath | Sequence[AnyPath] = (),
     strict: bool = False,
     out: AnyPath | None = None,
     force: bool = False,
@@ -207,13 +282,16 @@ def run(
         As in a scenario file; added to its own.
     stop_time, step_size, output_interval : float, optional
         In place of the scenario's, in s or such as ``"10 min"``. [s]
+    record : str or path, or a sequence of them
+        What the table keeps: ``"vessel.*"``, a component, a connector, a signal, or a LogConfig.xml of libcosim. All
+        signals without. Signals of expectations are always kept.
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only.
     out : path, optional
-        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
+        Folder that gets result.nc, result.csv, report.html, verdict.json, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
-    engine, inputs, progress, order, until, resume, store, isolate, timeout
+    engine, inputs, progress, order, until, resume, store, isolate, timeout, realtime
         As in `shipcosim.options.RunOptions`.
 
     Returns
@@ -242,6 +320,7 @@ def run(
         stop_time=stop_time,
         step_size=step_size,
         output_interval=output_interval,
+        record=record,
         strict=strict,
         **options,
     )
@@ -259,6 +338,7 @@ def prepare_run(
     stop_time: AnyTime = None,
     step_size: AnyTime = None,
     output_interval: AnyTime = None,
+    record: AnyPath | Sequence[AnyPath] = (),
     strict: bool = False,
     changed: Sequence[str] = (),
     **options: Any,
@@ -283,9 +363,11 @@ def prepare_run(
     happening = scenario_of(
         given, system, times | {"set": fitting | start_values, "events": list(events)}
     )
+    happening = with_record(happening, system, record, output_interval is not None)
     how = options_of(options)
     texts = [
         *changed,
+        *(f"records {Path(one).name}" for one in listed(record)),
         *changes(start_values, parameters, components, fmus, how),
         *times_changed(times, happening),
         *(f"event at {event.time:g} s" for event in happening.events[len(given.events) :]),
@@ -302,6 +384,7 @@ def simulate(
     stop_time: AnyTime = None,
     step_size: AnyTime = None,
     output_interval: AnyTime = None,
+    record: AnyPath | Sequence[AnyPath] = (),
     set: Settings = None,
     parameters: Sequence[AnyPath] = (),
     components: Components = None,
@@ -325,6 +408,9 @@ def simulate(
     stop_time, step_size, output_interval : float, optional
         By default those of the system's default experiment, and every step is a row. In s, or such as
         ``"10 min"``. [s]
+    record : str or path, or a sequence of them
+        What the table keeps: ``"vessel.*"``, a component, a connector, a signal, or a LogConfig.xml of libcosim. All
+        signals without. Signals of expectations are always kept.
     set : mapping of str to value, optional
         Start values by full name, in the FMUs' units.
     parameters : sequence of path
@@ -342,10 +428,10 @@ def simulate(
     strict : bool
         Refuse what breaks a standard, also where it can mean one thing only.
     out : path, optional
-        Folder that gets result.nc, result.csv, report.html, predictions.csv; nothing is written without.
+        Folder that gets result.nc, result.csv, report.html, verdict.json, predictions.csv; nothing is written without.
     force : bool
         Replace files of these names there, instead of keeping them in a numbered folder beside it.
-    engine, inputs, progress, order, until, resume, store, isolate, timeout
+    engine, inputs, progress, order, until, resume, store, isolate, timeout, realtime
         As in `shipcosim.options.RunOptions`: `until` and `store` stop at a time and keep the state of the whole
         system, `resume` continues from there; `isolate` has each component run in a process of its own.
 
@@ -373,6 +459,7 @@ def simulate(
         stop_time=stop_time,
         step_size=step_size,
         output_interval=output_interval,
+        record=record,
         set=set,
         parameters=parameters,
         components=components,
@@ -393,6 +480,7 @@ def prepare_simulation(
     stop_time: AnyTime = None,
     step_size: AnyTime = None,
     output_interval: AnyTime = None,
+    record: AnyPath | Sequence[AnyPath] = (),
     set: Settings = None,
     parameters: Sequence[AnyPath] = (),
     components: Components = None,
@@ -429,6 +517,8 @@ def prepare_simulation(
     since = clock_start(how)
     happening = scenario_of(scenario, ship, keys, since)
     happening, remarks = with_osp_events(happening, osp_events, how.start_time)
+    happening = with_record(happening, ship, record, output_interval is not None)
+    texts += [f"records {Path(one).name}" for one in listed(record)]
     if scenario is None and step_size is None:
         remarks += step_remarks(ship, since, happening.stop_time)
     if scenario is not None:

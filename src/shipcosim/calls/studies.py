@@ -54,7 +54,7 @@ class PlannedStudy:
         result = StudyResult(
             **parts_of(swept), command=self.command, simulate=lambda n: self.prepare(n).run()
         )
-        result.page().save(self.folder / "report.html")
+        result.write()
         return result
 
     def prepare(self, number: int) -> PreparedRun:

@@ -25,12 +25,13 @@ from shipcosim.cli.commands import (
     sweep,
     train,
 )
-from shipcosim.cli.exits import EXIT_CODES, guarded
+from shipcosim.cli.outcomes.exits import EXIT_CODES, guarded
 from shipcosim.cli.terminal import say
 
 app = typer.Typer(
     help="Co-simulation of ships: FMUs, system structures, scenarios.",
     epilog=EXIT_CODES,
+    context_settings={"help_option_names": ["-h", "--help"]},  # commands have it from here
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )

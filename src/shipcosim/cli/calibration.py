@@ -5,22 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.terminal import make_console, say
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 
 
-def print_calibration(ship: CalibratedShip, folder: Path, as_json: bool) -> None:
+def print_calibration(ship: CalibratedShip, folder: Path) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
     from shipcosim.cli.console import say_page
     from shipcosim.report.calibration.words import error_rows, moved_rows, sentence
 
-    if as_json:
-        say(ship.reference.as_json().rstrip("\n"))
-        return
     console = make_console(soft_wrap=True)
     refused = bool(ship.refusals)
     console.print(

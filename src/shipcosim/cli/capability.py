@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from shipcosim.capability import Capability, as_json, notation
+from shipcosim.capability import Capability, notation
 from shipcosim.capability.result import SIMULATOR
 from shipcosim.cli.console import say_page
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.terminal import make_console
 
 
-def print_capability(capability: Capability, folder: Path, as_json_: bool) -> None:
-    """The notation and where the page is, or all numbers as JSON, on stdout."""
+def print_capability(capability: Capability, folder: Path) -> None:
+    """The notation and where the page is, on stdout."""
     from rich.text import Text
 
-    if as_json_:
-        say_json(as_json(capability))
-        return
     console = make_console(soft_wrap=True)
     console.print(
         Text(notation(capability), style="bold"), f"of {capability.vessel.name}, by DNV's formulae"

@@ -89,30 +89,20 @@ def proposed(
 
 def print_channels(proposed: ProposedFile) -> None:
     """What each column is, on stdout."""
-    from rich.table import Table
     from rich.text import Text
 
-    from shipcosim.cli.console import WIDTH
+    from shipcosim.cli.tables import print_table
 
-    console = make_console()
-    console = console if console.is_terminal else make_console(width=WIDTH)
-    listed = Table(box=None, pad_edge=False)
-    for heading in ("column", "is", "", "because"):
-        listed.add_column(heading, overflow="fold")
+    rows = []
     for guess in proposed.proposal.used:
         sure = Text("guess", style="yellow") if guess.is_guess else Text("used", style="green")
         why = "; ".join(filter(None, (guess.why, *guess.said))) or "its name has one meaning"
-        listed.add_row(
-            Text(" + ".join(guess.channel.columns)),
-            Text(guess.role),
-            sure,
-            Text(f"{guess.in_unit}{why}"),
-        )
+        columns = " + ".join(guess.channel.columns)
+        rows.append((columns, guess.role, sure, f"{guess.in_unit}{why}"))
     for guess in proposed.proposal.unused:
-        listed.add_row(
-            Text(guess.column), Text("-"), Text("not used", style="dim"), Text(guess.why)
-        )
-    console.print(listed)
+        rows.append((guess.column, "-", Text("not used", style="dim"), guess.why))
+    console = make_console(soft_wrap=True)
+    print_table(console, rows, ("column", "is", "", "because"))
     for said in proposed.remarks:
         console.print(Text(said, style="yellow"))
 

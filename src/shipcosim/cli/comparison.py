@@ -3,11 +3,11 @@
 import math
 from collections.abc import Sequence
 
-from rich.table import Table
 from rich.text import Text
 
-from shipcosim.cli.console import WIDTH
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.console import say_outcome
+from shipcosim.cli.tables import print_table
+from shipcosim.cli.terminal import make_console
 from shipcosim.cosim.compare import OURS, Comparison, Difference, Signal
 from shipcosim.cosim.engines.registry import ENGINES, OWN, engines_missing
 from shipcosim.results.studies import EngineComparison
@@ -24,14 +24,14 @@ def not_compared() -> list[str]:
     return said
 
 
-def print_comparison(comparison: EngineComparison, as_json: bool) -> None:
-    """Table of signals, then what did not run, what explains differences, and the verdict; or all of it as JSON."""
-    if as_json:
-        say_json(comparison.as_json())
-        return
+def print_comparison(comparison: EngineComparison) -> None:
+    """Table of signals, then what did not run, what explains differences, and the verdict."""
     console = make_console(soft_wrap=True)
-    console.width = max(console.width, WIDTH)
-    console.print(_table(comparison))
+    others = [name for name in comparison.seconds if name != OURS]
+    # What decides stands first: columns that do not fit are left out at the end.
+    head = ["signal", "unit", "of range", "at t [s]", "agree", *others]
+    head += ["half the step", "of range", "range"]
+    print_table(console, _rows(comparison, others), head)
     for name, seconds in comparison.seconds.items():
         console.print(f"{name} ran in {seconds:.1f} s.")
     for name, why in comparison.left_out.items():
@@ -44,33 +44,18 @@ def print_comparison(comparison: EngineComparison, as_json: bool) -> None:
     for name, remarks in comparison.remarks.items():
         for remark in remarks:
             console.print(Text(f"{name}: {remark}", style="yellow"))
-    console.print(*_verdict(comparison))
+    say_outcome(console, comparison.outcome)
 
 
-def _table(comparison: Comparison) -> Table:
-    others = [name for name in comparison.seconds if name != OURS]
-    table = Table(box=None, pad_edge=False)
-    table.add_column("signal", no_wrap=True)
-    headings = [
-        "unit",
-        "range",
-        *others,
-        "of range",
-        "at t [s]",
-        "half the step",
-        "of range",
-        "agree",
+def _rows(comparison: Comparison, others: Sequence[str]) -> list[list[Text]]:
+    """Rows of the table; those of signals that differ are red."""
+    return [
+        [
+            Text(cell, style="red" if signal.worst > comparison.tolerance else "")
+            for cell in _row(signal, others)
+        ]
+        for signal in comparison.signals
     ]
-    for heading in headings:
-        table.add_column(
-            heading, justify="left" if heading in ("unit", "agree") else "right", no_wrap=True
-        )
-    for signal in comparison.signals:
-        table.add_row(
-            *map(Text, _row(signal, others)),
-            style="red" if signal.worst > comparison.tolerance else "",
-        )
-    return table
 
 
 def _row(signal: Signal, others: Sequence[str]) -> list[str]:
@@ -78,12 +63,7 @@ def _row(signal: Signal, others: Sequence[str]) -> list[str]:
     worst = max(
         found, key=lambda d: math.inf if math.isnan(d.relative) else d.relative, default=None
     )
-    cells = [
-        signal.name,
-        signal.unit,
-        f"{signal.range:.4g}",
-        *(f"{difference.largest:.1e}" for difference in found),
-    ]
+    cells = [signal.name, signal.unit]
     cells += (
         ["", ""]
         if worst is None
@@ -96,21 +76,5 @@ def _row(signal: Signal, others: Sequence[str]) -> list[str]:
     )
     step = signal.step
     by_half = ["not tried", ""] if step is None else [f"{step.largest:.1e}", f"{step.relative:.1e}"]
-    return [*cells, *by_half, groups]
-
-
-def _verdict(comparison: Comparison) -> tuple[Text, Text]:
-    others = [name for name in comparison.seconds if name != OURS]
-    if not others and not comparison.failed:
-        return Text("alone", style="bold yellow"), Text(
-            "No other engine ran: only the step-size error is known."
-        )
-    differing = sum(signal.worst > comparison.tolerance for signal in comparison.signals)
-    limit = f"{comparison.tolerance:g} of its range"
-    n = len(comparison.signals)
-    if comparison.agree:
-        said = f"{', '.join([OURS, *others])} agree on each of the {n} signals to {limit}."
-        return Text("agree", style="bold green"), Text(said)
-    return Text("differ", style="bold red"), Text(
-        f"{differing} of {n} signals differ by more than {limit}."
-    )
+    largest = [f"{difference.largest:.1e}" for difference in found]
+    return [*cells, groups, *largest, *by_half, f"{signal.range:.4g}"]

@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.table import Table
 from rich.text import Text
 
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.tables import print_table
+from shipcosim.cli.terminal import make_console
 from shipcosim.errors import Problem, worth_showing
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from shipcosim.results.run import Run
 
 WIDEST = 40  # columns that a cell makes its column; longer ones stand out of it
-WIDTH = 160  # columns of a table that a narrow terminal would make unreadable
 STYLES = {"error": "bold red", "remark": "yellow"}
 VERDICTS = {
     "passed": "bold green",
@@ -62,7 +61,7 @@ def _from_here(text: str) -> str:
 
 @contextmanager
 def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[[int, int], None]]:
-    """Progress bar on stderr; yields a function of (done, in all). `duration` adds how fast time passes. [s]"""
+    """Progress on stderr, a bar or lines; yields a function of (done, in all). `duration` adds its speed. [s]"""
     from rich.progress import (
         BarColumn,
         Progress,
@@ -70,6 +69,8 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
         TextColumn,
         TimeRemainingColumn,
     )
+
+    from shipcosim.cli.progress import tenths
 
     columns = [
         TextColumn("{task.description}"),
@@ -83,6 +84,7 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
         *columns, console=console, transient=True, disable=not console.is_terminal
     ) as bar:
         task = bar.add_task(str(label), total=None, pace="")
+        say_tenth = tenths(console, str(label))
 
         def report(done: int, total: int) -> None:
             elapsed = bar.tasks[0].elapsed or 0.0
@@ -92,46 +94,48 @@ def progress_of(label: str, duration: float | None = None) -> Iterator[Callable[
                 else ""
             )
             bar.update(task, completed=done, total=total, pace=pace)
+            say_tenth(done, total, pace)
 
         yield report
 
 
 def print_summary(result: Run, page: Path, *, to_stderr: bool = False) -> None:
     """How a run went: its expectations, what must not be overlooked, where the page is."""
-    from shipcosim.report import digest
     from shipcosim.report.run.predictions import summarise, texts
 
     console = make_console(stderr=to_stderr, soft_wrap=True)
-    outcome, remarks, judged = digest(result.table, result.expectations)
+    outcome, remarks, judged = result.digest
     if judged:
-        console.print(_expectations(judged))
+        words = {True: Text("pass", style="green"), False: Text("FAIL", style="bold red")}
+        rows = [(words[passed], *cells) for passed, *cells in judged]
+        print_table(console, rows, ("", "expected", "during", "worst", "at"))
     if predicted := texts(summarise(result.predictions)):
-        console.print(_listed(("predicted", "position", "heading", ""), predicted))
+        print_table(console, predicted, ("predicted", "position", "heading", ""))
     before = {str(remark) for remark in result.remarks}  # these were printed before the run
     for remark in remarks:
         if remark not in before:
             console.print(Text(remark, style="yellow"))
-    _say_outcome(console, outcome, page)
+    print_problems(result.errors)
+    say_outcome(console, outcome)
+    say_page(console, page)
 
 
 def print_overview(outcome: Outcome, rows: Iterable[tuple[str, Outcome]], page: Path) -> None:
     """How several scenarios went: one line each, then all together, and where the page is."""
     console = make_console(soft_wrap=True)
-    listed = Table(box=None, pad_edge=False)
-    for heading in ("", "scenario", ""):
-        listed.add_column(heading, no_wrap=True)
-    for name, one in rows:
-        listed.add_row(
-            Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, Text(one.sentence)
-        )
-    console.print(listed)
-    _say_outcome(console, outcome, page)
-
-
-def _say_outcome(console, outcome, page):
-    style = VERDICTS.get(outcome.kind, "bold")
-    console.print(Text(outcome.word, style=style), Text(outcome.sentence))
+    listed = [
+        (Text(one.word, style=VERDICTS.get(one.kind, "bold")), name, one.sentence)
+        for name, one in rows
+    ]
+    print_table(console, listed, ("", "scenario", ""))
+    say_outcome(console, outcome)
     say_page(console, page)
+
+
+def say_outcome(console: Console, outcome: Outcome) -> None:
+    """The verdict line."""
+    style = VERDICTS.get(outcome.kind, "bold red" if outcome.kind == "failed" else "bold")
+    console.print(Text(outcome.word, style=style), Text(outcome.sentence))
 
 
 def say_page(console: Console, page: Path) -> None:
@@ -144,25 +148,6 @@ def shown_path(path: str | os.PathLike[str]) -> Path:
     here = Path.cwd()
     absolute = Path(path).absolute()
     return absolute.relative_to(here) if absolute.is_relative_to(here) else absolute
-
-
-def _expectations(judged):
-    listed = Table(box=None, pad_edge=False)
-    for heading in ("", "expected", "during", "worst", "at"):
-        listed.add_column(heading, no_wrap=True)
-    for passed, *texts in judged:
-        word = Text("pass", style="green") if passed else Text("FAIL", style="bold red")
-        listed.add_row(word, *map(Text, texts))
-    return listed
-
-
-def _listed(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
-    listed = Table(box=None, pad_edge=False)
-    for heading in headings:
-        listed.add_column(heading, no_wrap=True)
-    for row in rows:
-        listed.add_row(*map(Text, row))
-    return listed
 
 
 def print_variables(rows: Iterable[Sequence[str]]) -> None:
@@ -180,23 +165,20 @@ def print_variables(rows: Iterable[Sequence[str]]) -> None:
 
 def print_estimates(rows: Iterable[Sequence[str]]) -> None:
     """Table of what is estimated of a ship."""
-    lines = [("estimated", "value", "tolerance", "source"), *rows]
-    widths = [max(len(line[i]) for line in lines) for i in range(3)]
     console = make_console(soft_wrap=True)
-    for number, line in enumerate(lines):
-        cells = "  ".join(cell.ljust(width) for cell, width in zip(line[:3], widths, strict=True))
-        console.print(Text(f"{cells}  {line[3]}", style="" if number else "bold"))
+    print_table(console, rows, ("estimated", "value", "tolerance", "source"))
 
 
-def print_report(checked: CheckedFiles, as_json: bool) -> None:
-    """Findings on files."""
-    if as_json:
-        say_json(checked.as_json())
-        return
+def print_report(checked: CheckedFiles) -> None:
+    """Findings on files, variables of FMUs, estimates of ships."""
     console = make_console(soft_wrap=True)
     for file, problems in checked.files.items():
-        for problem in worth_showing(problems):
-            console.print(_block(problem))
+        # What must be mended stands first, what is only to be known takes a line.
+        for problem in sorted(worth_showing(problems), key=lambda one: one.severity != "error"):
+            block = _block(problem)
+            console.print(
+                block if problem.severity == "error" else Text(" ").join(block.split("\n"))
+            )
         errors = sum(problem.severity == "error" for problem in problems)
         remarks = len(problems) - errors
         if errors:
@@ -207,3 +189,7 @@ def print_report(checked: CheckedFiles, as_json: bool) -> None:
             is_fmu = file.lower().endswith(".fmu")
             said = "nothing wrong" + is_fmu * " in its description; its binaries were not loaded"
         console.print(Text(f"{file}: {said}"))
+    for variables in checked.variables.values():
+        print_variables(variables)
+    for estimates in checked.estimates.values():
+        print_estimates(estimates)

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.tables import print_table
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from shipcosim.diagnose.finding import Finding
     from shipcosim.diagnose.result import Diagnosis
 
 
-def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
+def print_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
     from shipcosim.cli.console import style_of
     from shipcosim.report.diagnosis.words import outcome
 
-    if as_json:
-        say_json(diagnosis.as_json())
-        return
     console = make_console(soft_wrap=True)
     verdict = outcome(diagnosis, diagnosis.causes)
     console.print(Text(verdict.word, style=style_of(diagnosis.verdict)), Text(verdict.sentence))
@@ -32,29 +29,40 @@ def print_diagnosis(diagnosis: Diagnosis, folder: Path, as_json: bool) -> None:
 
 
 def say_sections(console: Console, sections: Iterable[tuple[str, Any]], folder: Path) -> None:
-    """Sections that have content, below their headings, and where the page is."""
+    """Sections that have content, a text, a table or its rows, below their headings, and where the page is."""
     from rich.text import Text
 
     from shipcosim.cli.console import say_page
+    from shipcosim.report.theme.views import Table
 
     for heading, content in sections:
-        if content is not None:
-            console.print()
-            console.print(Text(heading, style="bold"))
+        content = Table(content) if isinstance(content, list) else content
+        if not content or (isinstance(content, Table) and not content.rows):
+            continue
+        console.print()
+        console.print(Text(heading, style="bold"))
+        if isinstance(content, Text):
             console.print(content)
+        else:
+            print_table(console, content.rows, content.head)
     console.print()
     say_page(console, folder / "report.html")
 
 
 def _sections(diagnosis):
-    """Headings of the summary with their content; None where there is none."""
+    """Headings of the summary with their content: a text, a table or its rows; nothing where there is none."""
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
     from shipcosim.report.diagnosis.gain_section import craft_table
     from shipcosim.report.diagnosis.key_figures import key_figures
     from shipcosim.report.diagnosis.testability import VISIBLE, visible_rows
-    from shipcosim.report.diagnosis.words import discrepancy_rows, next_steps, title
+    from shipcosim.report.diagnosis.words import (
+        discrepancy_rows,
+        finding_rows,
+        next_steps,
+        title,
+    )
 
     alike = [
         (title(c.cause, c.component), f"{100 * c.probability:.0f} %")
@@ -70,31 +78,14 @@ def _sections(diagnosis):
     )
     steps = "\n".join(f"- {step}" for step in next_steps(diagnosis, extended, diagnosis.causes))
     return [
-        ("Wrong, largest first", table(discrepancy_rows(diagnosis))),
-        ("Found", finding_table(diagnosis.findings)),
-        ("Learned of the craft", table(craft_table(diagnosis.craft).rows)),
-        ("This log cannot tell apart", table(alike)),
-        ("Errors", table(key_figures(diagnosis))),
+        ("Wrong, largest first", list(discrepancy_rows(diagnosis))),
+        ("Found", list(finding_rows(diagnosis.findings))),
+        ("Learned of the craft", craft_table(diagnosis.craft).rows),
+        ("This log cannot tell apart", alike),
+        ("Errors", list(key_figures(diagnosis))),
         ("This log could not have shown", Text(silent) if silent else None),
-        (VISIBLE, None if is_found else table(visible_rows(diagnosis.smallest_visible))),
+        (VISIBLE, None if is_found else list(visible_rows(diagnosis.smallest_visible))),
         ("Columns", Text("\n".join(columns)) if columns else None),
         ("Remarks", Text("\n".join(diagnosis.notes), style="yellow") if diagnosis.notes else None),
         ("What to do next", Text(steps)),
     ]
-
-
-def finding_table(findings: Iterable[Finding]) -> Any:
-    """Findings as a table, their parameters row by row; None without one."""
-    from shipcosim.report.diagnosis.words import finding_rows
-
-    return table(finding_rows(findings))
-
-
-def table(rows: Iterable[Sequence[str]]) -> Any:
-    """Rows of texts as a table without a head; None without rows."""
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, show_header=False)
-    for row in rows:
-        table.add_row(*row)
-    return table if table.rows else None

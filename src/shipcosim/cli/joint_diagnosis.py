@@ -5,23 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.diagnosis import say_sections, table
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.diagnosis import say_sections
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 
 
-def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
+def print_joint(found: JointDiagnosis, folder: Path) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
     from shipcosim.cli.console import style_of
     from shipcosim.report.joint.words import outcome
 
-    if as_json:
-        say_json(found.as_json())
-        return
     console = make_console(soft_wrap=True)
     verdict = outcome(found)
     console.print(Text(verdict.word, style=style_of(found.verdict)), Text(verdict.sentence))
@@ -29,7 +26,7 @@ def print_joint(found: JointDiagnosis, folder: Path, as_json: bool) -> None:
 
 
 def _sections(found):
-    """Headings of the summary with their content; None where there is none."""
+    """Headings of the summary with their content; nothing where there is none."""
     from rich.text import Text
 
     from shipcosim.cli.console import shown_path
@@ -44,6 +41,7 @@ def _sections(found):
         log_rows,
         next_steps,
     )
+    from shipcosim.report.theme.views import Table
 
     extension = found.extension
     extended = (
@@ -53,17 +51,17 @@ def _sections(found):
     head = ("log", "after", "position", "with causes", "heading", "with causes", "")
     errors = error_rows(found)
     return [
-        ("Wrong, largest first", table(discrepancy_rows(found))),
-        ("Faults of the data in common", table(fault_rows(found))),
-        ("Causes in common", table(cause_rows(found))),
-        ("Learned of the craft", table(craft_table(found.craft).rows)),
-        ("Errors by log", table([head, *errors] if errors else [])),
+        ("Wrong, largest first", list(discrepancy_rows(found))),
+        ("Faults of the data in common", list(fault_rows(found))),
+        ("Causes in common", list(cause_rows(found))),
+        ("Learned of the craft", craft_table(found.craft).rows),
+        ("Errors by log", Table(errors, head)),
         (
             "Each log by itself: verdict, own faults, causes",
-            table(row[:4] for row in log_rows(found)),
+            [row[:4] for row in log_rows(found)],
         ),
         ("All logs together could not have shown", Text(silent) if silent else None),
-        (VISIBLE, None if found.findings else table(visible_rows(found.smallest_visible))),
+        (VISIBLE, None if found.findings else list(visible_rows(found.smallest_visible))),
         ("Remarks", Text("\n".join(found.remarks), style="yellow") if found.remarks else None),
         ("What to do next", Text("\n".join(f"- {step}" for step in next_steps(found, extended)))),
     ]

@@ -112,6 +112,26 @@ Engine = Annotated[
         autocompletion=words_of(*ENGINES),
     ),
 ]
+Record = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--record",
+        metavar="SIGNALS",
+        help="Keep these signals alone: 'vessel.*', a component, a connector; or a LogConfig.xml of libcosim; "
+        "repeatable.",
+    ),
+]
+Every = Annotated[
+    float | None, time_option("--every", "Keep a row each so often; in s, or such as '500 ms'.")
+]
+Realtime = Annotated[
+    float | None,
+    typer.Option(
+        "--realtime",
+        metavar="FACTOR",
+        help="Wait for the clock: 1.0 runs in real time, 2.0 twice as fast. Default: as fast as possible.",
+    ),
+]
 Force = Annotated[
     bool,
     typer.Option("--force", help="Replace earlier results instead of keeping them in DIR-1, ..."),
@@ -143,7 +163,16 @@ Timeout = Annotated[
         "Longest wait for a component of --isolate; in s, or such as '2 min'. Default: 60.",
     ),
 ]
-ReportAsJson = Annotated[bool, typer.Option("--json", help="Report as JSON.")]
+AsJson = Annotated[
+    bool, typer.Option("--json", help="Print what was found as JSON, and nothing else on stdout.")
+]
+Junit = Annotated[
+    Path | None,
+    typer.Option("--junit", metavar="FILE", help="Write what was checked as JUnit's XML, for CI."),
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Print only the verdict and what is wrong.")
+]
 Strict = Annotated[
     bool,
     typer.Option(

@@ -5,12 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from shipcosim.calls.logs import WRITING as LAST_STEP
 from shipcosim.cli.terminal import make_console
 
+if TYPE_CHECKING:
+    from rich.console import Console
+
 LAST_TIME = 0.5
 """How long the last step typically takes. [s]"""
+SHORT = 5.0
+"""Work that is done within this time needs no lines on how far it is. [s]"""
 CONFIDENCE = 0.1
 """How much of the work has to be done before its pace counts as much as the typical one."""
 
@@ -56,6 +62,40 @@ class Course:
         known = CONFIDENCE * self._whole
         pace = (passed + known) / (self.share * self._whole + known)
         return max((1.0 - self.share) * self._whole * pace - (self._clock() - self._at), 0.0)
+
+
+def tenths(
+    console: Console, label: str, clock: Callable[[], float] = time.monotonic
+) -> Callable[..., None]:
+    """A function of (done, in all, pace) that prints a line each tenth of long work where there is no terminal.
+
+    Parameters
+    ----------
+    console : Console
+        On a terminal nothing is printed: there is a bar.
+    label : str
+        Of the work.
+    clock : callable
+        Gives the time. [s]
+    """
+    start = clock()
+    last = 0
+
+    def report(done: int, total: int, pace: str = "") -> None:
+        nonlocal last
+        tenth = 10 * done // total if total else 0
+        passed = clock() - start
+        is_long = last > 0 or passed * total > SHORT * done
+        if not console.is_terminal and last < tenth < 10 and is_long:
+            last = tenth
+            speed = f", {pace}" if pace else ""
+            console.print(
+                f"{label}: {10 * tenth} % after {passed:.0f} s{speed}",
+                markup=False,
+                highlight=False,
+            )
+
+    return report
 
 
 @contextmanager

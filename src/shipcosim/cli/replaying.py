@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.console import say_page
+from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
@@ -14,17 +15,12 @@ if TYPE_CHECKING:
 
 def print_replay(replay: LogReplay, folder: Path) -> None:
     """The errors, on stdout."""
-    from rich.table import Table
-
     from shipcosim.diagnose.validation.tracks import errors_of
     from shipcosim.report.diagnosis.replay_page import replay_outcome
     from shipcosim.report.diagnosis.track_figures import error_rows
 
     console = make_console(soft_wrap=True)
     errors = error_rows(errors_of(replay.tracks))
-    table = Table(*errors.head, box=None, pad_edge=False)
-    for row in errors.rows:
-        table.add_row(*row)
     console.print(replay_outcome(replay).sentence)
-    console.print(table)
+    print_table(console, errors.rows, errors.head)
     say_page(console, folder / "report.html")

@@ -2,23 +2,100 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from shipcosim.cli.console import print_problems, print_summary, progress_of
-from shipcosim.cli.exits import FAILED, INTERRUPTED
-from shipcosim.cosim import Interrupted, RunError
+from shipcosim.cli.console import print_overview, print_problems, print_summary, progress_of
+from shipcosim.cli.outcomes.exits import INTERRUPTED, Conclusion
+from shipcosim.cosim import Interrupted
+from shipcosim.errors import ShipcosimError
+from shipcosim.results.run import VERDICT
+from shipcosim.staging import set_aside
 
 if TYPE_CHECKING:
     from shipcosim.calls.runs import PreparedRun
     from shipcosim.results.run import Run
 
 
-def run_and_print(prepared: PreparedRun, out: Path, force: bool = False) -> Run:
-    """Run, write the results, and say how it went.
+def concluded(prepared: PreparedRun, out: Path, force: bool = False) -> Conclusion:
+    """Run, write the results, and how it went; parameters and errors as for `run_with_progress`."""
+    result = run_with_progress(prepared, out, force)
+    return Conclusion(result.name, result, lambda: print_run(result, out), out)
+
+
+def prepare_folder(files: Mapping[str, Path], asked: Mapping[str, Any]) -> dict[str, PreparedRun]:
+    """Read and check scenarios, all before the first one runs.
+
+    Parameters
+    ----------
+    files : mapping of str to Path
+        By the names of the scenarios in their folder.
+    asked : mapping of str to object
+        Keywords of `shipcosim.calls.runs.prepare_run`.
+
+    Raises
+    ------
+    ShipcosimError
+        With the problems of all scenarios.
+    """
+    from shipcosim.calls.runs import prepare_run
+
+    prepared = {}
+    problems = []
+    for name, file in files.items():
+        try:
+            prepared[name] = prepare_run(file, **asked)
+        except ShipcosimError as error:
+            problems += error.problems
+    if problems:
+        raise ShipcosimError(problems)
+    return prepared
+
+
+def run_folder(
+    prepared: Mapping[str, PreparedRun], name: str, out: Path | None = None, force: bool = False
+) -> Conclusion:
+    """Run scenarios one after another, each into a folder of its own, and write the table of all of them.
+
+    Parameters
+    ----------
+    prepared : mapping of str to PreparedRun
+        By the names of the scenarios in their folder.
+    name : str
+        Of the folder of the scenarios.
+    out : Path, optional
+        Gets the table; results/NAME without.
+    force : bool
+        Replace earlier results.
+    """
+    from shipcosim.results.scenario_runs import ScenarioRuns
+
+    out = out or Path("results") / name
+    set_aside(out, ["report.html", VERDICT, *{key.split("/")[0] for key in prepared}], force=force)
+    runs = {}
+    for key, planned in prepared.items():
+        runs[key] = run_with_progress(planned, out / key, force)
+        print_run(runs[key], out / key)
+    found = ScenarioRuns(name, runs)
+    found.save(out)
+    rows = [(row.name, row.outcome) for row in found.rows]
+    return Conclusion(
+        name, found, lambda: print_overview(found.outcome, rows, out / "report.html"), out
+    )
+
+
+def print_run(result: Run, out: Path) -> None:
+    """How a run went, and where its page is; what there is of one that failed goes to stderr."""
+    page = out / result.as_json()["page"]
+    print_summary(result, page, to_stderr=bool(result.errors))
+
+
+def run_with_progress(prepared: PreparedRun, out: Path, force: bool = False) -> Run:
+    """Run with a progress bar, and write the results.
 
     Parameters
     ----------
@@ -28,41 +105,26 @@ def run_and_print(prepared: PreparedRun, out: Path, force: bool = False) -> Run:
     force : bool
         Replace earlier results.
 
+    Returns
+    -------
+    Run
+        With `errors` where a component failed on the way, which is a finding and not unusable input.
+
     Raises
     ------
     typer.Exit
-        If a component fails on the way, which is a finding and not unusable input; if the run was interrupted.
+        If the run was interrupted.
     ShipcosimError
-        If the input cannot be used or the results cannot be written.
+        If the input cannot be used, or the results cannot be written.
     """
     print_problems(prepared.remarks)
     label = prepared.scenario.name or prepared.system.name
     try:
         with progress_of(label, prepared.scenario.stop_time) as progress:
             shown = replace(prepared, options=replace(prepared.options, progress=progress))
-            result = shown.run(out, force=force)
+            return shown.finish(out, force=force)
     except Interrupted as stop:
-        _print_part(prepared, stop, out)
+        page = out / "result-partial.html"
+        if stop.table.sizes["time"] and page.is_file():
+            print_summary(prepared.part(stop), page, to_stderr=True)
         raise typer.Exit(INTERRUPTED) from None
-    except RunError as error:
-        _print_part(prepared, error, out)
-        has_started = prepared.options.isolate or error.table.sizes["time"]
-        if not has_started:
-            raise
-        print_problems(error.problems)
-        raise typer.Exit(FAILED) from None
-    print_summary(result, out / "report.html")
-    return result
-
-
-def _print_part(prepared: PreparedRun, stop: Interrupted | RunError, out: Path) -> None:
-    """Say what there is of a run that did not get to its end, unless it did not even start."""
-    page = out / "result-partial.html"
-    if stop.table.sizes["time"] and page.is_file():
-        print_summary(prepared.part(stop.table), page, to_stderr=True)
-
-
-def exit_if_failed(result: Run) -> None:
-    """End with exit code 1 where an expectation does not hold."""
-    if not result.passed:
-        raise typer.Exit(FAILED)

@@ -5,22 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from shipcosim.cli.terminal import make_console, say_json
+from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
     from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 
 
-def print_study(found: SeaTrialStudy, folder: Path, as_json: bool) -> None:
+def print_study(found: SeaTrialStudy, folder: Path) -> None:
     """What was found, on stdout."""
     from rich.text import Text
 
     from shipcosim.cli.console import say_page, shown_path, style_of
     from shipcosim.report.sea_trials.words import outcome, told
 
-    if as_json:
-        say_json(found.as_json())
-        return
     console = make_console(soft_wrap=True)
     kinds = [trial.kind for trial in found.trials]
     console.print(", ".join(f"{kinds.count(kind)} {kind}s" for kind in dict.fromkeys(kinds)))

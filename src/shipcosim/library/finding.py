@@ -92,8 +92,10 @@ def find_any(given: str) -> str:
     raise error_at(given, "There is no such file or folder.", remedy)
 
 
-def scenarios(given: str) -> list[Path]:
-    """Scenario files of a folder: a path, or the name of a folder of scenarios; empty if it is no folder.
+def scenarios(given: str) -> dict[str, Path]:
+    """Scenario files of a folder by their names in it: a path, or the name of a folder of scenarios.
+
+    Of a project's folder those in its `scenarios`, with all folders in there. Empty if it is no folder.
 
     Raises
     ------
@@ -103,11 +105,13 @@ def scenarios(given: str) -> list[Path]:
     folders = (Path(given), *(root / "scenarios" / given for root in roots()))
     folder = next((f for f in folders if f.is_dir()), None)
     if folder is None or given in names("scenario"):
-        return []
-    found = sorted(folder.glob("*.toml"))
+        return {}
+    own = folder / "scenarios"
+    found = sorted(own.rglob("*.toml") if own.is_dir() else folder.glob("*.toml"))
     if not found:
         raise error_at(given, "There is no scenario file in this folder.", "Name a .toml file.")
-    return found
+    inside = own if own.is_dir() else folder
+    return {file.relative_to(inside).with_suffix("").as_posix(): file for file in found}
 
 
 def find_parameters(given: Path, system: StrPath) -> Path:

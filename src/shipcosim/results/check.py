@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.errors import Problem, worth_showing
-from shipcosim.results.shown import Result
+from shipcosim.results.shown import Check, Result, passed_or_failed
 
 if TYPE_CHECKING:
     import pandas
@@ -43,9 +43,26 @@ class CheckedFiles(Result):
         return tuple(problem for found in self.files.values() for problem in found)
 
     @property
+    def failures(self) -> tuple[Problem, ...]:
+        """Those of all problems that are errors."""
+        return tuple(problem for problem in self.problems if problem.severity == "error")
+
+    @property
     def passed(self) -> bool:
         """Whether no file has an error."""
-        return not any(problem.severity == "error" for problem in self.problems)
+        return not self.failures
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """That each file has no error."""
+        return tuple(
+            Check(
+                file,
+                passed_or_failed(not any(problem.severity == "error" for problem in found)),
+                "\n".join(map(str, worth_showing(found))),
+            )
+            for file, found in self.files.items()
+        )
 
     def as_json(self) -> list[dict[str, Any]]:
         """What `shipcosim check --json` prints: an entry a file, with its problems and an FMU's variables."""

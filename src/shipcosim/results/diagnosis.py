@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING
 from shipcosim.diagnose.reference.joint_result import JointDiagnosis
 from shipcosim.diagnose.result import Diagnosis
 from shipcosim.errors import error_at
-from shipcosim.results.shown import HtmlPage, Picture, SavedResult
+from shipcosim.results.shown import Check, HtmlPage, Picture, SavedResult
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from shipcosim.diagnose.finding import Finding
     from shipcosim.report.notebook.card import Card
 
 
@@ -46,6 +49,11 @@ class DiagnosisOfLog(SavedResult, Diagnosis):
         return HtmlPage(f"Diagnosis of {self._name}", render(self))
 
     @property
+    def checks(self) -> tuple[Check, ...]:
+        """That simulation and log agree, and each finding."""
+        return (*super().checks, *_findings(self, self.findings))
+
+    @property
     def _name(self) -> str:
         return self.log.name if self.log is not None else "a log"
 
@@ -68,6 +76,11 @@ class DiagnosisOfLogs(SavedResult, JointDiagnosis):
         return HtmlPage(self._name, render(self))
 
     @property
+    def checks(self) -> tuple[Check, ...]:
+        """That simulation and logs agree, and what they have in common."""
+        return (*super().checks, *_findings(self, (shared.what for shared in self.findings)))
+
+    @property
     def _name(self) -> str:
         return f"Diagnosis of {len(self.logs)} logs"
 
@@ -75,3 +88,14 @@ class DiagnosisOfLogs(SavedResult, JointDiagnosis):
         from shipcosim.report.notebook.diagnosis_card import joint_card
 
         return joint_card(self, self._name)
+
+
+def _findings(
+    diagnosis: DiagnosisOfLog | DiagnosisOfLogs, findings: Iterable[Finding]
+) -> list[Check]:
+    """Each finding with its size, as something that does not hold."""
+    from shipcosim.report.diagnosis.words import told
+
+    if diagnosis.passed:
+        return []
+    return [Check(f"no {one.label}", "failed", told(one, diagnosis.causes)) for one in findings]

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shipcosim.errors import Problem, error_at
-from shipcosim.results.shown import HtmlPage, LikeTable, Picture, Result
+from shipcosim.results.shown import (
+    Check,
+    HtmlPage,
+    LikeTable,
+    Picture,
+    Result,
+    passed_or_failed,
+)
 from shipcosim.results.signals import chosen
+from shipcosim.series import write_json
 from shipcosim.staging import staged
 
 if TYPE_CHECKING:
@@ -16,6 +27,8 @@ if TYPE_CHECKING:
     import xarray
 
     from shipcosim.report.notebook.card import Card
+    from shipcosim.report.run.page import Digest
+    from shipcosim.report.theme.views import Outcome
     from shipcosim.scenario import Expectation, Scenario, Verdict
     from shipcosim.ssp import AnyPath, System
 
@@ -23,6 +36,8 @@ if TYPE_CHECKING:
 PARTIAL = ("result-partial.nc", "result-partial.csv", "result-partial.html")
 """Files of a run that did not get to its end; a complete one takes them away."""
 PREDICTIONS = "predictions.csv"
+VERDICT = "verdict.json"
+SCHEMA = "shipcosim-verdict/1"
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -46,6 +61,8 @@ class Run(LikeTable, Result):
         Those whose times the run did not reach.
     remarks : tuple of Problem
         What does not stop a run and should be known.
+    errors : tuple of Problem
+        Why it did not get to its end.
     """
 
     table: xarray.Dataset
@@ -54,20 +71,111 @@ class Run(LikeTable, Result):
     expectations: tuple[Verdict, ...] = ()
     not_judged: tuple[Expectation, ...] = ()
     remarks: tuple[Problem, ...] = ()
+    errors: tuple[Problem, ...] = ()
 
     @property
     def passed(self) -> bool:
         """Whether the run got to its end and all that was expected of it holds."""
+        return self._is_complete and all(verdict.passed for verdict in self.expectations)
+
+    @property
+    def failures(self) -> tuple[Problem, ...]:
+        """Why it did not get to its end."""
+        return self.errors
+
+    @property
+    def _is_complete(self) -> bool:
         from shipcosim.report.run.expectations import is_complete
 
-        return is_complete(self.table) and all(verdict.passed for verdict in self.expectations)
+        return is_complete(self.table)
+
+    @cached_property
+    def digest(self) -> Digest:
+        """Verdict, remarks and expectations in words, as the page and the terminal show them."""
+        from shipcosim.report import digest
+
+        return digest(self.table, self.expectations)
+
+    @property
+    def outcome(self) -> Outcome:
+        """Verdict in one word and one sentence."""
+        return self.digest.outcome
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """That the run got to its end, each expectation, and each that it did not reach."""
+        page = "report.html" if self._is_complete else PARTIAL[-1]
+        end = Check(
+            "runs to its end",
+            "passed" if self._is_complete else "error",
+            " ".join(map(str, self.errors)) or ("" if self._is_complete else self.outcome.sentence),
+            page=page,
+        )
+        checks = [end]
+        for verdict, words in zip(self.expectations, self.digest.expectations, strict=True):
+            during = verdict.expect.during
+            name = words.expected + (" during {:g} to {:g} s".format(*during) if during else "")
+            signals = ", ".join(verdict.expect.signal)
+            message = f"worst {words.worst} at {words.time} ({signals})"
+            checks.append(Check(name, passed_or_failed(verdict.passed), message, page=page))
+        for claim in json.loads(self.table.attrs.get("not_reached", "[]")):
+            message = f"not reached, the run ended at {self._span[1]:g} s"
+            checks.append(Check(claim, "skipped", message, page=page))
+        return tuple(checks)
+
+    def as_json(self) -> dict[str, Any]:
+        """What verdict.json holds and `shipcosim run --json` prints; numbers are in the units of the signals."""
+        end, *others = self.checks
+        judged = others[: len(self.expectations)]
+        expectations = [
+            {
+                "passed": verdict.passed,
+                **verdict.expect.model_dump(),
+                "unit": self.table[verdict.expect.signal[0]].attrs.get("units", ""),
+                "worst": verdict.worst if math.isfinite(verdict.worst) else None,
+                "time": verdict.time if math.isfinite(verdict.time) else None,
+                "message": str(check),
+            }
+            for verdict, check in zip(self.expectations, judged, strict=True)
+        ]
+        return {
+            "schema": SCHEMA,
+            "name": self.name,
+            "description": self.scenario.description,
+            "verdict": {"plain": "done"}.get(self.outcome.kind, self.outcome.kind),
+            "sentence": self.outcome.sentence,
+            "errors": list(map(str, self.errors)),
+            "expectations": expectations,
+            "not_reached": [check.name for check in others if check.status == "skipped"],
+            "start": self._span[0],
+            "end": self._span[1],
+            "stop_time": self.scenario.stop_time,
+            "changed": json.loads(self.table.attrs.get("changed", "[]")),
+            "remarks": self.digest.remarks,
+            "page": end.page,
+            "files": self.files,
+        }
+
+    @property
+    def _span(self) -> tuple[float, float]:
+        """First and last time of the table. [s]"""
+        first, last = self.table["time"].values[[0, -1]]
+        return float(first), float(last)
+
+    @property
+    def files(self) -> list[str]:
+        """Names of the files that `save` or `save_part` writes."""
+        if not self._is_complete:
+            return sorted([*PARTIAL, VERDICT])
+        predictions = [PREDICTIONS] if len(self.predictions) else []
+        return [*predictions, "report.html", "result.csv", "result.nc", VERDICT]
 
     @property
     def name(self) -> str:
         """Of the scenario, or of the system where there is no scenario file."""
         return self.scenario.name or self.system.name
 
-    @property
+    @cached_property
     def predictions(self) -> pandas.DataFrame:
         """Every prediction of the run's predictors, beside what became of the ship; no rows where nothing predicts.
 
@@ -145,7 +253,9 @@ class Run(LikeTable, Result):
         return HtmlPage(self.name, page)
 
     def save(self, folder: AnyPath, *, force: bool = False) -> Path:
-        """Write result.nc, result.csv, report.html and, where something predicts, predictions.csv; returns the folder.
+        """Write result.nc, result.csv, report.html, verdict.json and, where something predicts, predictions.csv.
+
+        Returns the folder.
 
         Parameters
         ----------
@@ -163,12 +273,14 @@ class Run(LikeTable, Result):
 
         with staged(Path(folder), (*PARTIAL, PREDICTIONS), force=force) as stage:
             self._write(stage, "result", "report.html")
-            if len(predictions := self.predictions):
-                write_predictions(predictions, stage / PREDICTIONS)
+            if PREDICTIONS in self.files:
+                write_predictions(self.predictions, stage / PREDICTIONS)
         return Path(folder)
 
     def save_part(self, folder: AnyPath, *, force: bool = False) -> Path:
-        """Write result-partial.nc, .csv and .html of a run that did not get to its end; returns the folder.
+        """Write result-partial.nc, .csv and .html of a run that did not get to its end, and its verdict.json.
+
+        Returns the folder.
 
         Parameters and errors as for `save`.
         """
@@ -177,12 +289,13 @@ class Run(LikeTable, Result):
         return Path(folder)
 
     def _write(self, stage: Path, stem: str, page: str) -> None:
-        """Write table and page into a folder that is there."""
+        """Write table, page and verdict into a folder that is there."""
         from shipcosim.series import write_table
 
         for suffix in (".nc", ".csv"):
             write_table(self.table, stage / f"{stem}{suffix}")
         self.page().save(stage / page)
+        write_json(self.as_json(), stage / VERDICT)
 
     def claims_not_reached(self) -> list[str]:
         """What was expected later than the run went, each as a sentence with the units that people read."""
@@ -197,12 +310,9 @@ class Run(LikeTable, Result):
         return self.table.to_dataframe()
 
     def __repr__(self) -> str:
-        from shipcosim.report.run.expectations import outcome
-
-        found = outcome(self.table, self.expectations)
         components = {n.rpartition(".")[0] for n in map(str, self.table)}
         size = f"{self.table.sizes['time']} rows of {len(self.table)} signals of {len(components)} components"
-        return f"<Run of {self.name!r}: {found.word}. {found.sentence} {size}>"
+        return f"<Run of {self.name!r}: {self.outcome.word}. {self.outcome.sentence} {size}>"
 
     def _card(self) -> Card:
         from shipcosim.report.notebook.run_card import run_card

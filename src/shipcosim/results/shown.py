@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 import os
 import tempfile
 import webbrowser
@@ -18,7 +19,9 @@ from shipcosim.staging import staged
 if TYPE_CHECKING:
     import xarray
 
+    from shipcosim.errors import Problem
     from shipcosim.report.notebook.card import Card
+    from shipcosim.report.theme.views import Outcome
     from shipcosim.ssp import AnyPath
 
 
@@ -105,12 +108,71 @@ class Picture:
         return self.svg
 
 
+@dataclass(frozen=True)
+class Check:
+    """One thing that was checked: an expectation, a file, a signal, a run of a study.
+
+    Attributes
+    ----------
+    name : str
+        What must hold.
+    status : str
+        ``"passed"``, ``"failed"``, ``"error"`` where it could not be checked, ``"skipped"`` where it was not reached.
+    message : str
+        What was measured, against which limit.
+    group : str
+        Scenario that it belongs to, where there are several.
+    page : str
+        Its page in the folder of the results.
+    """
+
+    name: str
+    status: str
+    message: str = ""
+    group: str = ""
+    page: str = "report.html"
+
+    def __post_init__(self) -> None:
+        # Texts for people have spaces that do not break; whoever searches a log of CI types plain ones.
+        for part in ("name", "message"):
+            object.__setattr__(self, part, getattr(self, part).replace("\u00a0", " "))
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.message}"
+
+
+def passed_or_failed(holds: bool) -> str:
+    """Status of something that was checked."""
+    return "passed" if holds else "failed"
+
+
 class Result(ABC):
-    """What all results have: a line for the console, a card for notebooks."""
+    """What all results have: a line for the console, a card for notebooks, what was checked one by one."""
 
     @abstractmethod
     def _card(self) -> Card:
         """What a notebook shows."""
+
+    @property
+    def outcome(self) -> Outcome:
+        """Verdict in one word and one sentence."""
+        return self._card().outcome
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing is wrong; else the command ends with exit code 1."""
+        return getattr(self, "verdict", "consistent") == "consistent"
+
+    @property
+    def failures(self) -> tuple[Problem, ...]:
+        """Errors that --quiet prints, too."""
+        return ()
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """What was checked, one by one; one of these failed where `passed` is false."""
+        card = self._card()
+        return (Check(card.title, passed_or_failed(self.passed), card.outcome.sentence),)
 
     def __repr__(self) -> str:
         card = self._card()
@@ -179,6 +241,15 @@ class LikeTable:
         if name.startswith("_") or name == "table":  # a copy asks before there is a table
             raise AttributeError(f"'{type(self).__name__}' has no attribute '{name}'")
         return getattr(self.table, name)
+
+
+def finite(value: Any) -> Any:
+    """The same with numbers that JSON does not have, infinity and NaN, as texts."""
+    if isinstance(value, dict):
+        return {name: finite(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(part) for part in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def parts_of(found: Any) -> dict[str, Any]:

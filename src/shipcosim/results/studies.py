@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import io
-import math
+import json
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from shipcosim.capability import Capability, as_json, dataset, notation, numbers_table
-from shipcosim.cosim.compare import Comparison
+from shipcosim.cosim.compare import Comparison, Signal
 from shipcosim.diagnose.calibration_pipeline import CalibratedShip
 from shipcosim.diagnose.replays import LogReplay
 from shipcosim.diagnose.sea_trials.study import SeaTrialStudy
 from shipcosim.errors import Problem
-from shipcosim.results.shown import HtmlPage, Picture, Result, SavedResult
+from shipcosim.results.shown import (
+    Check,
+    HtmlPage,
+    Picture,
+    Result,
+    SavedResult,
+    finite,
+    passed_or_failed,
+)
 from shipcosim.series import write_file
 
 if TYPE_CHECKING:
@@ -33,10 +41,36 @@ class EngineComparison(Result, Comparison):
     flaws: tuple[Problem, ...] = ()
     """Where the system breaks a standard though it can mean one thing only, and remarks on events of OSP."""
 
+    @property
+    def passed(self) -> bool:
+        """Whether all engines agree."""
+        return self.agree
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """That each engine got to its end, and that they agree on each signal."""
+        ran = [Check(f"{name} runs to its end", "passed") for name in self.seconds]
+        for name, why in self.left_out.items():
+            status = "error" if name in self.failed else "skipped"
+            ran.append(Check(f"{name} runs to its end", status, why))
+        return (*ran, *map(self._check_of, self.signals))
+
+    def _check_of(self, signal: Signal) -> Check:
+        """That the engines agree on a signal."""
+        worst = max(signal.engines.items(), key=lambda one: one[1].relative, default=None)
+        message = "only our own engine has it"
+        if worst is not None:
+            engine, found = worst
+            message = (
+                f"{engine} differs from ours by {found.largest:.3g} {signal.unit} at {found.time:g} s, "
+                f"{found.relative:.1e} of its range; limit {self.tolerance:g}"
+            )
+        return Check(signal.name, passed_or_failed(signal.worst <= self.tolerance), message)
+
     def as_json(self) -> dict[str, Any]:
         """The comparison, as `shipcosim compare --json` prints it; numbers that JSON does not know are texts."""
         values = {one.name: getattr(self, one.name) for one in fields(Comparison)}
-        return _plain(asdict(Comparison(**values)) | {"agree": self.agree})
+        return finite(asdict(Comparison(**values)) | {"agree": self.agree})
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row a signal, the largest difference first: of each engine from ours, and of half the step."""
@@ -103,6 +137,15 @@ class Replay(SavedResult, LogReplay):
 @dataclass(frozen=True, repr=False, eq=False)
 class Calibration(SavedResult, CalibratedShip):
     """What `shipcosim.calibrate` gives back. ``.reference`` is what `shipcosim.diagnose` takes."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the logs make a reference."""
+        return not self.refusals
+
+    def as_json(self) -> dict[str, Any]:
+        """The reference, as `shipcosim calibrate --json` prints it."""
+        return json.loads(self.reference.as_json())
 
     def page(self) -> HtmlPage:
         """The page of the calibration, as `shipcosim calibrate` writes it."""
@@ -192,12 +235,3 @@ def series_of(tracks: Tracks) -> xarray.Dataset:
         own = {variable: f"{name}_{variable}" for variable in predicted.data_vars}
         parts.append(predicted.rename(own | {"time": "since_start"}))
     return xarray.merge(parts, compat="no_conflicts", join="outer")
-
-
-def _plain(value: Any) -> Any:
-    """The same with numbers that JSON does not know as texts."""
-    if isinstance(value, dict):
-        return {name: _plain(part) for name, part in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(part) for part in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value

@@ -13,13 +13,14 @@ from shipcosim.scenario.check import (
     time_complaints,
 )
 from shipcosim.scenario.judge import Verdict, judge, within_run
-from shipcosim.scenario.model import Event, Expectation, Scenario
+from shipcosim.scenario.model import Event, Expectation, Record, Scenario
 from shipcosim.scenario.plausible import odd_values
 from shipcosim.scenario.reader import read_scenario, toml_of
 
 __all__ = [
     "Event",
     "Expectation",
+    "Record",
     "Scenario",
     "Verdict",
     "check_files",

@@ -235,6 +235,17 @@ class Expectation(Part):
         ]
 
 
+class Record(Part):
+    """What the table of a run keeps; without it all signals."""
+
+    signals: ListOfNames = Field(
+        default=[], description="signals, components, connectors or patterns such as 'vessel.*'"
+    )
+    every: Seconds | None = Field(
+        default=None, gt=0.0, description="s; another name of output_interval"
+    )
+
+
 def _text(value: float | str) -> str:
     return value if isinstance(value, str) else f"{value:g}"
 
@@ -262,7 +273,21 @@ class Scenario(Part):
     set: dict[str, Value] = Field(default={}, description="start values")
     events: list[Event] = []
     expect: list[Expectation] = []
+    record: Record = Record()
     _path: Path | None = PrivateAttr(None)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_interval_of_rows(cls, content: Any) -> Any:
+        # `every` of [record] becomes the output interval, so that all that runs a scenario knows one name of it.
+        record = content.get("record") if isinstance(content, dict) else None
+        every = record.get("every") if isinstance(record, dict) else None
+        if record is None or every is None:
+            return content
+        if content.get("output_interval", every) != every:
+            raise ValueError("`output_interval` and `every` of [record] are two intervals of rows.")
+        rest = {key: value for key, value in record.items() if key != "every"}
+        return content | {"output_interval": every, "record": rest}
 
     @property
     def path(self) -> Path | None:

@@ -142,7 +142,7 @@ def _problems_of(path: Path, text: str, error: ValidationError) -> list[Problem]
     # Several findings on one key have one cause: keep the first.
     for finding in error.errors():
         keys = finding["loc"]
-        where = line_of(text, keys), keys[: 3 if keys[0] in ("events", "expect") else 2]
+        where = line_of(text, keys), keys[: 3 if keys[:1] in (("events",), ("expect",)) else 2]
         problems.setdefault(
             where, Problem(location_of(path, text, keys), *complaint_of(finding, Scenario))
         )

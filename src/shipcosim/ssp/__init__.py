@@ -10,6 +10,7 @@ from shipcosim.ssp.flatten.system import Component, Signal, System
 from shipcosim.ssp.flatten.with_values import with_values
 from shipcosim.ssp.fmu.description import FmuDescription, Variable
 from shipcosim.ssp.fmu.reader import read_fmu
+from shipcosim.ssp.osp.log_config import read_log_config
 from shipcosim.ssp.osp.reader import osp_file
 from shipcosim.ssp.osp.writer import Simulator, seconds_text, structure_text
 from shipcosim.ssp.single_fmu import default_step_size, settings_of_one, step_remarks
@@ -41,6 +42,7 @@ __all__ = [
     "parameter",
     "read",
     "read_fmu",
+    "read_log_config",
     "read_system",
     "seconds_text",
     "settings_of_one",

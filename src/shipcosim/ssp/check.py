@@ -64,9 +64,27 @@ def problems_of(system: System | None, findings: Findings) -> list[Problem]:
     )
     for fmu in described.values():
         _remark_platform(fmu, fmu.path.name, findings)
-    # Loops can only be found in a system that can be read.
-    loops = [] if system is None or findings.errors else loop_problems(system)
-    return list(dict.fromkeys([*findings.problems, *loops]))
+    # Connections are only there in a system that can be read.
+    if system is None or findings.errors:
+        return list(dict.fromkeys(findings.problems))
+    remarks = [*_unconnected_inputs(system), *loop_problems(system)]
+    return list(dict.fromkeys([*findings.problems, *remarks]))
+
+
+def _unconnected_inputs(system: System) -> list[Problem]:
+    """A remark on the inputs that nothing feeds, one for all; components with the same ones share their names."""
+    fed = {connection.target for connection in system.connections}
+    owners: dict[tuple[str, ...], list[str]] = {}
+    for component in system.components.values():
+        inputs = component.fmu.named("input")
+        free = tuple(name for name in inputs if (component.name, name) not in fed)
+        if free:
+            owners.setdefault(free, []).append(component.name)
+    if not owners:
+        return []
+    listed = "; ".join(f"{', '.join(those)}: {', '.join(free)}" for free, those in owners.items())
+    found = f"Unconnected inputs keep their start values. {listed}."
+    return [Problem(system.name, found, severity="remark")]
 
 
 def check_file(

@@ -37,7 +37,7 @@ LARGEST_PART = 10_000
 GROUP = 10_000
 """Rows of the table that are made and written together."""
 TABLES = ("runs.parquet", "runs.csv", "summary.csv", "indices.csv", "trials.csv", "tracks.parquet")
-FILES = (*TABLES, "study.json", "report.html", "parts")
+FILES = (*TABLES, "study.json", "report.html", "verdict.json", "parts")
 
 
 def check_installed() -> None:

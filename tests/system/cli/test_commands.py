@@ -15,7 +15,7 @@ import pytest
 import shipcosim
 from shipcosim.series import read_table
 
-RESULTS = ["report.html", "result.csv", "result.nc"]
+RESULTS = ["report.html", "result.csv", "result.nc", "verdict.json"]
 
 
 def names(folder):
@@ -208,7 +208,8 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time_and_keeps_th
         for text in ("lag", "ValueError: the pump has run dry", "lag.py", "t = 2")
     )
     results = project / "results" / "fill"
-    assert names(results) == ["result-partial.csv", "result-partial.html", "result-partial.nc"]
+    partial = ["result-partial.csv", "result-partial.html", "result-partial.nc", "verdict.json"]
+    assert names(results) == partial
     table = read_table(results / "result-partial.nc")
     assert table.attrs["complete"] == 0 and table["time"].values[-1] == pytest.approx(2.0)
     assert "PARTIAL" in (results / "result-partial.html").read_text(encoding="utf-8")

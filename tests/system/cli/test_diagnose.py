@@ -249,7 +249,7 @@ def test_named_cause_gains_over_the_plain_model_and_the_bias_observer(lossy):
 
 def test_a_number_has_one_value_in_terminal_page_and_json(lossy, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    command.print_diagnosis(lossy.diagnosis, lossy.folder, False)
+    command.print_diagnosis(lossy.diagnosis, lossy.folder)
     terminal = capsys.readouterr().out
     page = (lossy.folder / "report.html").read_text(encoding="utf-8")
     shown = re.sub(r"<(script|style).*?</\1>|<[^>]+>", " ", page, flags=re.DOTALL)
@@ -302,7 +302,7 @@ def test_healthy_log_is_consistent_with_exit_code_0_and_leaves_no_extended_syste
 
 def test_summary_says_cause_size_gain_and_what_to_do(lossy, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    command.print_diagnosis(lossy.diagnosis, lossy.folder, False)
+    command.print_diagnosis(lossy.diagnosis, lossy.folder)
     said = capsys.readouterr().out
     for text in (
         "NAMED ",

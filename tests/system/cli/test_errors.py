@@ -586,7 +586,8 @@ def test_exception_in_an_fmu_shows_its_traceback_component_and_time(call, gunner
     )
     after = results()
     assert {name: after.pop(name) for name in before} == before
-    assert sorted(after) == ["result-partial.csv", "result-partial.html", "result-partial.nc"]
+    partial = ["result-partial.csv", "result-partial.html", "result-partial.nc", "verdict.json"]
+    assert sorted(after) == partial
 
 
 def test_nan_in_an_fmu_is_named_with_variable_component_and_time(call, gunnerus):

@@ -8,7 +8,7 @@ import pytest
 from shipcosim.series import read_table
 
 QUIT = "import ctypes; ctypes.CDLL(None).exit(0)"
-PARTIAL = ["result-partial.csv", "result-partial.html", "result-partial.nc"]
+PARTIAL = ["result-partial.csv", "result-partial.html", "result-partial.nc", "verdict.json"]
 
 
 def test_results_are_the_same_and_the_exit_code_is_that_of_the_expectations(call, project):

@@ -105,3 +105,20 @@ def test_the_page_is_a_step_of_the_whole(steps, monkeypatch):
     with shown_progress(steps) as show:
         show(LAST_STEP)
     assert "50%" in console.export_text()
+
+
+def test_long_work_is_a_line_each_tenth_where_no_terminal_is(clock, capsys):
+    say = progress.tenths(Console(stderr=True, soft_wrap=True), "gust", clock)
+    for done in range(1, 101):
+        clock.now += 0.5
+        say(done, 100, "12 x real time")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "gust: 10 % after 5 s, 12 x real time" and len(lines) == 9
+
+
+def test_short_work_needs_no_lines(clock, capsys):
+    say = progress.tenths(Console(stderr=True), "gust", clock)
+    for done in range(1, 101):
+        clock.now += 0.01
+        say(done, 100)
+    assert capsys.readouterr().err == ""

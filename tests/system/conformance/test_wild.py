@@ -11,7 +11,7 @@ from conformance.test_features import assert_closed_form
 import shipcosim as sc
 from shipcosim.cli.commands.check import check
 from shipcosim.cli.commands.simulate import simulate
-from shipcosim.cli.exits import FAILED
+from shipcosim.cli.outcomes.exits import FAILED
 from shipcosim.errors import ShipcosimError
 from shipcosim.ssp import check_system, read_system
 

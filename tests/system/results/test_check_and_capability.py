@@ -86,6 +86,7 @@ def test_out_of_a_run_keeps_the_earlier_one(tmp_path):
         "result.csv",
         "report.html",
         "predictions.csv",
+        "verdict.json",
     }
     sc.run("gust", stop_time=0.1, out=tmp_path / "gust", force=True)
     assert not (tmp_path / "gust-2").exists()

@@ -47,6 +47,7 @@ def test_out_gets_what_the_command_writes(empty):
         "result.csv",
         "report.html",
         "predictions.csv",
+        "verdict.json",
     }
     assert sc.read_table("results/gust/result.nc").equals(found.table)
 

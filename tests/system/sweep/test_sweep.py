@@ -37,6 +37,7 @@ def test_a_study_gives_a_row_a_run_in_the_order_of_its_factors(project):
         "runs.parquet",
         "study.json",
         "summary.csv",
+        "verdict.json",
     ]
     assert pandas.read_csv("out/runs.csv")["highest"].tolist() == found.runs["highest"].tolist()
 

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
+from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.outcomes.exits import Conclusion
 
 
 def calibrate(
@@ -27,12 +27,12 @@ def calibrate(
             help="Folder of the results. [default: results/calibrated-SYSTEM]",
         ),
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print reference.json instead of a summary.")
-    ] = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Fit a ship's numbers to logs in which she is known to be well: her own parameter set, and a reference.
 
     Leaves calibrated.ssv, reference.json and report.html. `shipcosim diagnose LOG --reference DIR` then says what has
@@ -51,6 +51,4 @@ def calibrate(
     folder = out or Path("results") / f"calibrated-{ship.name}"
     with shown_progress(steps_of(logs)) as progress:
         found = calibrate_ship(logs, ship, channels, effects, progress, out=folder, force=force)
-    print_calibration(found, folder, as_json)
-    if found.refusals:
-        raise typer.Exit(FAILED)
+    return Conclusion(ship.name, found, lambda: print_calibration(found, folder), folder)

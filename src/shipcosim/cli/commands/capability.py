@@ -5,7 +5,8 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Force, Out
+from shipcosim.cli.options import AsJson, Debug, Force, Junit, Out, Quiet
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
 
@@ -43,12 +44,12 @@ def capability(
         ),
     ] = None,
     out: Out = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the numbers as JSON instead of a summary.")
-    ] = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Static DP capability of a ship: the weather that her thrusters balance, intact and after each single failure.
 
     By the formulae of DNV-ST-0111 Level 1, and by the simulator's own models. Leaves report.html, capability.csv and
@@ -65,4 +66,4 @@ def capability(
     found = capability_of(system, parameters=parameters or (), ship=ship, failures=groups)
     folder = out or Path("results") / f"capability-{found.vessel.name}"
     found.save(folder, force=force)
-    print_capability(found, folder, as_json)
+    return Conclusion(found.vessel.name, found, lambda: print_capability(found, folder), folder)

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Debug, ReportAsJson, Strict
+from shipcosim.cli.options import AsJson, Debug, Junit, Quiet, Strict
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
 
@@ -32,9 +32,11 @@ def check(
         ),
     ] = None,
     strict: Strict = False,
-    as_json: ReportAsJson = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Validate files: schema, then meaning. Loads no binary and runs nothing. Of an FMU it lists the variables,
     of a ship file what is estimated.
 
@@ -43,14 +45,7 @@ def check(
     Example: shipcosim check build/fmus/vessel.fmu scenarios/four_corner.toml
     """
     from shipcosim.calls.systems import check as check_files
-    from shipcosim.cli.console import print_estimates, print_report, print_variables
+    from shipcosim.cli.console import print_report
 
     checked = check_files(files, channels=channels, hosts=hosts or (), strict=strict)
-    print_report(checked, as_json)
-    if not as_json:
-        for variables in checked.variables.values():
-            print_variables(variables)
-        for estimates in checked.estimates.values():
-            print_estimates(estimates)
-    if not checked.passed:
-        raise typer.Exit(FAILED)
+    return Conclusion("check", checked, lambda: print_report(checked))

@@ -4,19 +4,21 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.exits import FAILED
 from shipcosim.cli.options import (
+    AsJson,
     Components,
     Debug,
     Fmus,
+    Junit,
     OspEvents,
     Parameters,
-    ReportAsJson,
+    Quiet,
     ScenariosStepSize,
     ScenariosStopTime,
     Strict,
     SystemOrScenario,
 )
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.terminal import say
 
 
@@ -41,9 +43,11 @@ def compare(
         ),
     ] = False,
     strict: Strict = False,
-    as_json: ReportAsJson = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Run on every engine that is installed, and on ours with half the step; show by how much each signal differs.
 
     Example: shipcosim compare four_corner --stop-time 60
@@ -70,6 +74,4 @@ def compare(
             progress=progress,
         )
     print_problems(comparison.flaws)
-    print_comparison(comparison, as_json)
-    if not comparison.agree:
-        raise typer.Exit(FAILED)
+    return Conclusion(comparison.name, comparison, lambda: print_comparison(comparison))

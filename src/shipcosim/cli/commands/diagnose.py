@@ -5,8 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
-from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
+from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
 
@@ -34,12 +34,12 @@ def diagnose(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Folder of the results. [default: results/DATA]"),
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print diagnosis.json instead of a summary.")
-    ] = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Say what a simulation gets wrong of a measured log, and why: causes by name, with size and probability.
 
     Leaves diagnosis.json and report.html; where a cause in the model was named extended.ssp and extended.ssv. Exit
@@ -62,12 +62,7 @@ def diagnose(
     if len(data) > 1:
         with shown_progress(steps_of(data)) as progress:
             joint = diagnose_logs(data, system, progress=progress, **asked)
-        print_joint(joint, folder, as_json)
-        verdict = joint.verdict
-    else:
-        with shown_progress(STEPS) as progress:
-            diagnosis = diagnose_logs(data[0], system, progress=progress, **asked)
-        print_diagnosis(diagnosis, folder, as_json)
-        verdict = diagnosis.verdict
-    if verdict != "consistent":
-        raise typer.Exit(FAILED)
+        return Conclusion(f"{len(data)} logs", joint, lambda: print_joint(joint, folder), folder)
+    with shown_progress(STEPS) as progress:
+        diagnosis = diagnose_logs(data[0], system, progress=progress, **asked)
+    return Conclusion(data[0].name, diagnosis, lambda: print_diagnosis(diagnosis, folder), folder)

@@ -15,7 +15,7 @@ def init(
     ],
     debug: Debug = False,
 ) -> None:
-    """Lay out a project of your own that runs as it is: system, scenarios, parameter set, test, notebook.
+    """Lay out a project of your own that runs as it is: system, scenarios, parameter set, CI, notebook.
 
     Example: shipcosim init my-project
     """

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import Channels, Debug, Force, time_option
+from shipcosim.cli.outcomes.exits import Conclusion
 
 
 def replay(
@@ -52,7 +53,7 @@ def replay(
     ] = None,
     force: Force = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Draw a log and what a system makes of it, before and after a diagnosis: track, heading and speeds, errors.
 
     The system is started again and again from the measured state and driven by what the log says of its thrusters.
@@ -69,4 +70,4 @@ def replay(
     with progress_of(f"replaying {log.name}") as progress:
         asked = {"parameters": parameters or [], "horizon": horizon, "out": folder, "force": force}
         replayed = replay_log(log, system, before, channels, progress=progress, **asked)
-    print_replay(replayed, folder)
+    return Conclusion(log.name, replayed, lambda: print_replay(replayed, folder), folder)

@@ -1,33 +1,36 @@
 """The command `shipcosim run`."""
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from shipcosim import library
 from shipcosim.cli.options import (
+    AsJson,
     Components,
     Debug,
     Engine,
+    Every,
     Fmus,
     Force,
     From,
     Isolate,
+    Junit,
     Out,
     Parameters,
+    Quiet,
+    Realtime,
+    Record,
     Settings,
     Store,
     Strict,
     Timeout,
     Until,
 )
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 from shipcosim.errors import error_at
-
-if TYPE_CHECKING:
-    from shipcosim.calls.runs import PreparedRun
 
 
 def run(
@@ -46,19 +49,26 @@ def run(
     components: Components = None,
     fmus: Fmus = None,
     until: Until = None,
+    record: Record = None,
+    every: Every = None,
     store: Store = None,
     resume: From = None,
     isolate: Isolate = False,
     timeout: Timeout = None,
+    realtime: Realtime = None,
     strict: Strict = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
-    """Run a scenario and check what it expects. Leaves result.nc, result.csv, report.html and, where something
-    predicts, predictions.csv in results/SCENARIO.
+) -> Conclusion:
+    """Run a scenario and check what it expects. Leaves result.nc, result.csv, report.html, verdict.json and, where
+    something predicts, predictions.csv in results/SCENARIO.
 
     A part of a run is checked for what is expected within it. The scenarios of a folder are run one after another;
-    report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it.
+    report.html in results/FOLDER is a table of all of them, and the results of each are in a folder beside it. Of a
+    project's folder all scenarios are run.
     Earlier results are kept in results/SCENARIO-1, -2, ... unless --force is given.
 
     --parameters takes sets that were made for another system too, as extended.ssv of a diagnosis: what the scenario's
@@ -68,7 +78,7 @@ def run(
     """
     from shipcosim.calls.runs import prepare_run
     from shipcosim.cli.requests import isolation, parsed_components, parsed_settings
-    from shipcosim.cli.runs import exit_if_failed, run_and_print
+    from shipcosim.cli.runs import concluded, prepare_folder, run_folder
 
     asked = {
         "parameters": parameters or [],
@@ -76,44 +86,18 @@ def run(
         "strict": strict,
         "engine": engine,
         "until": until,
-    }
-    asked |= {
+        "resume": resume,
+        "realtime": realtime,
+        "record": record or (),
+        "output_interval": every,
         "set": parsed_settings(settings or []),
         "components": parsed_components(components or ()),
     }
-    asked |= {"resume": resume, **isolation(isolate, timeout)}
+    asked |= isolation(isolate, timeout)
     if files := library.scenarios(scenario):
         if store or resume:
-            found = (
-                "This is a folder of scenarios: there is no one state to store or to go on from."
-            )
+            found = "This is a folder of scenarios: it has no one state to store or to go on from."
             raise error_at(scenario, found, "Name one scenario, or leave out --store and --from.")
-        name = files[0].resolve().parent.name
-        prepared = [prepare_run(file, **asked) for file in files]
-        _run_all(prepared, out or Path("results") / name, name, force)
-        return
+        return run_folder(prepare_folder(files, asked), Path(scenario).resolve().name, out, force)
     prepared = prepare_run(scenario, store=store, **asked)
-    exit_if_failed(run_and_print(prepared, out or Path("results") / prepared.scenario.name, force))
-
-
-def _run_all(prepared: "Sequence[PreparedRun]", out: Path, name: str, force: bool) -> None:
-    """Run scenarios one after another, and write the table of all of them."""
-    from shipcosim.cli.console import print_overview
-    from shipcosim.cli.exits import FAILED
-    from shipcosim.cli.runs import run_and_print
-    from shipcosim.report import ScenarioRow, digest, overview_outcome, write_overview
-    from shipcosim.staging import set_aside
-
-    rows = []
-    set_aside(out, ["report.html", *(one.scenario.name for one in prepared)], force=force)
-    for planned in prepared:
-        happening = planned.scenario
-        result = run_and_print(planned, out / happening.name, force)
-        page = f"{happening.name}/report.html"
-        outcome = digest(result.table, result.expectations)
-        rows.append(ScenarioRow(happening.name, happening.description, page, outcome))
-    page = out / "report.html"
-    write_overview(rows, page, title=f"Scenarios of {name}")
-    print_overview(overview_outcome(rows), [(row.name, row.outcome) for row in rows], page)
-    if overview_outcome(rows).kind == "failed":
-        raise typer.Exit(FAILED)
+    return concluded(prepared, out or Path("results") / prepared.scenario.name, force)

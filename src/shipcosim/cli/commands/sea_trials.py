@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.exits import FAILED
-from shipcosim.cli.options import Channels, Debug, Effects, Force, Ship
+from shipcosim.cli.options import AsJson, Channels, Debug, Effects, Force, Junit, Quiet, Ship
+from shipcosim.cli.outcomes.exits import Conclusion
 
 
 def sea_trials(
@@ -28,12 +28,12 @@ def sea_trials(
             "--out", metavar="DIR", help="Folder of the results. Default: results/DATA-sea-trials."
         ),
     ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print sea_trials.json instead of a summary.")
-    ] = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Say what a simulation gets wrong of a ship's manoeuvring trials: straight runs, turning circles, zig-zags.
 
     By features that need no clock: steady speed, rate and drift, time and speed over heading. Causes are fitted on
@@ -53,6 +53,4 @@ def sea_trials(
         found = study_trials(
             data, system, channels, effects, progress, orders=orders, out=folder, force=force
         )
-    print_study(found, folder, as_json)
-    if found.verdict != "consistent":
-        raise typer.Exit(FAILED)
+    return Conclusion(data.name, found, lambda: print_study(found, folder), folder)

@@ -6,15 +6,21 @@ from typing import Annotated
 import typer
 
 from shipcosim.cli.options import (
+    AsJson,
     Components,
     Debug,
     Engine,
+    Every,
     Force,
     From,
     Isolate,
+    Junit,
     OspEvents,
     Out,
     Parameters,
+    Quiet,
+    Realtime,
+    Record,
     Settings,
     Store,
     Strict,
@@ -24,6 +30,7 @@ from shipcosim.cli.options import (
     Until,
     time_option,
 )
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of
 
 System = Annotated[
@@ -76,15 +83,21 @@ def simulate(
     components: Components = None,
     events: OspEvents = None,
     until: Until = None,
+    record: Record = None,
+    every: Every = None,
     store: Store = None,
     resume: From = None,
     isolate: Isolate = False,
     timeout: Timeout = None,
+    realtime: Realtime = None,
     strict: Strict = False,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
-    """Run a system, anybody's FMUs. Leaves result.nc, result.csv and report.html in results/SSP, and
+) -> Conclusion:
+    """Run a system, anybody's FMUs. Leaves result.nc, result.csv, report.html and verdict.json in results/SSP, and
     predictions.csv where something predicts.
 
     Running an FMU runs its author's code: run only what you trust. `shipcosim check` runs nothing.
@@ -93,34 +106,27 @@ def simulate(
     """
     from shipcosim.calls.runs import prepare_simulation
     from shipcosim.cli.requests import isolation, parsed_components, parsed_settings
-    from shipcosim.cli.runs import exit_if_failed, run_and_print
+    from shipcosim.cli.runs import concluded
     from shipcosim.series import read_table
 
     table = None if inputs is None else read_table(inputs)
-    feeding = {
-        "inputs": table,
-        "interpolate": interpolate or (),
-        "max_gap": max_gap,
-        "start_time": start_time,
-    }
-    carried_out = {
-        "engine": engine,
-        "until": until,
-        "store": store,
-        "resume": resume,
-        **isolation(isolate, timeout),
-    }
+    feeding = {"inputs": table, "interpolate": interpolate or (), "max_gap": max_gap}
+    carried_out = {"engine": engine, "until": until, "store": store, "resume": resume}
+    carried_out |= {"realtime": realtime, **isolation(isolate, timeout)}
     prepared = prepare_simulation(
         ssp,
         events,
         stop_time=stop_time,
         step_size=step_size,
+        record=record or (),
+        output_interval=every,
         set=parsed_settings(settings or []),
         parameters=parameters or [],
         components=parsed_components(components or ()),
         strict=strict,
+        start_time=start_time,
         **feeding,
         **carried_out,
     )
     default = Path("results") / Path(ssp.partition("#")[0]).resolve().stem
-    exit_if_failed(run_and_print(prepared, out or default, force))
+    return concluded(prepared, out or default, force)

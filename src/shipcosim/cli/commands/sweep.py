@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from shipcosim.cli.options import Debug, Force, Out, Settings
+from shipcosim.cli.options import AsJson, Debug, Force, Junit, Out, Quiet, Settings
+from shipcosim.cli.outcomes.exits import Conclusion
 from shipcosim.cli.start.completion import names_of, words_of
 
 Number = Annotated[
@@ -70,11 +71,14 @@ def sweep(
     number: Number = None,
     serve: Serve = False,
     port: Port = None,
+    as_json: AsJson = False,
+    junit: Junit = None,
+    quiet: Quiet = False,
     force: Force = False,
     debug: Debug = False,
-) -> None:
+) -> Conclusion:
     """Run a study: a scenario many times, with other weather, events, parameters. Leaves runs.parquet, a row a run,
-    runs.csv, summary.csv, study.json and report.html in results/STUDY.
+    runs.csv, summary.csv, study.json, verdict.json and report.html in results/STUDY.
 
     It goes on where it was interrupted: runs that are done are on disk. A run that fails is a row with its error. A
     study that has changed starts anew; earlier results are kept in results/STUDY-1, -2, ... unless --force is given,
@@ -85,23 +89,23 @@ def sweep(
     Example: shipcosim sweep wind_limits --runs-at-most 8
     """
     from shipcosim.calls.studies import PlannedStudy
-    from shipcosim.cli.exits import FAILED
     from shipcosim.cli.requests import parsed_settings
-    from shipcosim.cli.runs import exit_if_failed, run_and_print
+    from shipcosim.cli.runs import print_run, run_with_progress
     from shipcosim.cli.studies.runs import serve as show
-    from shipcosim.cli.studies.sweeping import sweep_and_print
+    from shipcosim.cli.studies.sweeping import print_study, sweep_with_progress
 
     planned = PlannedStudy(study, out=out, engine=engine, set=parsed_settings(settings or []))
     if number is not None:
         again = planned.run_again(
-            number, lambda prepared, folder: run_and_print(prepared, folder, force=True)
+            number, lambda prepared, folder: run_with_progress(prepared, folder, force=True)
         )
-        exit_if_failed(again)
-        return
-    swept = sweep_and_print(
+        folder = planned.folder / f"run-{number}"
+        return Conclusion(again.name, again, lambda: print_run(again, folder), folder)
+    swept = sweep_with_progress(
         planned, scheduler=scheduler, workers=workers, at_most=at_most, force=force
     )
     if serve:
+        print_study(swept)
         show(planned, swept, port or 0)
-    if swept.about["runs"]["failed"]:
-        raise typer.Exit(FAILED)
+    name = planned.plan.study.name
+    return Conclusion(name, swept, lambda: serve or print_study(swept), swept.folder)

@@ -4,6 +4,7 @@ import json
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, distribution
 from importlib.resources import files
 from pathlib import Path
 from string import Template
@@ -65,7 +66,7 @@ def write_new(folder: Path, new: Mapping[str, str | bytes]) -> list[Path]:
 
 
 def project_files(name: str) -> Files:
-    """A project that runs as it is: a system, two scenarios, a parameter set, a test, a notebook."""
+    """A project that runs as it is: a system, two scenarios, a parameter set, a job for CI, a notebook."""
 
     def held(name: str, description: str, parameters: str) -> str:
         return _filled(
@@ -79,10 +80,32 @@ def project_files(name: str) -> Files:
         f"ssp/{SHIP}/resources/loaded.ssv": _filled("set.ssv", system=SHIP),
         "scenarios/hold_position.toml": held("hold_position", HELD, ""),
         "scenarios/loaded.toml": held("loaded", f"{HELD}, with cargo on deck", LOADED),
-        "tests/test_scenarios.py": _filled("test_scenarios.py"),
-        ".github/workflows/scenarios.yml": _filled("workflow.yml"),
+        ".github/workflows/scenarios.yml": _filled("workflow.yml", **origin_of_package()),
         "first_run.ipynb": notebook(_filled("notebook.md")),
     }
+
+
+def origin_of_package() -> dict[str, str]:
+    """What pip installs in CI, and a comment on it: the repository that this package was installed from, else a wheel.
+
+    pip notes where it has a package from in direct_url.json (PEP 610).
+    """
+    try:
+        noted = json.loads(distribution("shipcosim").read_text("direct_url.json") or "{}")
+    except PackageNotFoundError:
+        noted = {}
+    if "vcs_info" in noted:
+        url, version = noted["url"], noted["vcs_info"]
+        source = f"git+{url}@{version['commit_id']}"
+        comment = "This is the repository that shipcosim was installed from here."
+    else:
+        source = "--find-links wheels shipcosim"
+        comment = (
+            "shipcosim is taken from a wheel in this project, or from PyPI once it is there. Put the wheel there once:\n"
+            "      #   pip wheel --no-deps --wheel-dir wheels FOLDER_OF_YOUR_CLONE_OF_SHIPCOSIM\n"
+            "      # A repository does as well: pip install pytest git+https://HOST/OWNER/shipcosim"
+        )
+    return {"source": source, "comment": f"      # {comment}"}
 
 
 def fmu_files(name: str) -> Files:

@@ -10,7 +10,7 @@ BEGIN = """
 Begin with:
   shipcosim run four_corner         a ship in DP moves in a square of 20 m; makes a page
   shipcosim diagnose gunnerus_log   what a simulation gets wrong of a measured log, and why
-  shipcosim init my-project         a project of your own: system, scenario, test, notebook
+  shipcosim init my-project         a project of your own: system, scenarios, CI, notebook
   shipcosim list                    everything that is there, a line each
 """
 
@@ -20,7 +20,7 @@ def overview() -> str:
     project = library.project_of()
     shipped = library.shipped()
     lines = []
-    for kind in library.KINDS:
+    for kind, heading in zip(library.KINDS, LISTED, strict=False):
         paths = library.names(kind)
         own = [
             name
@@ -32,7 +32,7 @@ def overview() -> str:
             if found:
                 first = sorted(found, key=lambda name: "/" in name)[:4]
                 shown = ", ".join(first) + (", ..." if len(found) > 4 else "")
-                lines.append((f"{kind}s", f"{len(found):>3} {where + ':':<11}{shown}"))
+                lines.append((heading, f"{len(found):>3} {where + ':':<11}{shown}"))
     return f"{BEGIN}\nWhat is there:\n" + "\n".join(f"  {kind:<11}{text}" for kind, text in lines)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from shipcosim.cli.console import shown_path
-from shipcosim.cli.runs import run_and_print
+from shipcosim.cli.runs import print_run, run_with_progress
 from shipcosim.cli.terminal import make_console
 
 if TYPE_CHECKING:
@@ -33,9 +33,10 @@ def serve(study: PlannedStudy, swept: StudyResult, port: int = 0) -> None:
     from shipcosim.report.study.server import study_server
 
     def simulate(number: int) -> bool:
-        return run_and_print(
-            study.prepare(number), swept.folder / f"run-{number}", force=True
-        ).passed
+        folder = swept.folder / f"run-{number}"
+        result = run_with_progress(study.prepare(number), folder, force=True)
+        print_run(result, folder)
+        return result.passed
 
     numbers = [int(number) for number in swept.runs["run"]]
     server = study_server(swept.folder, numbers, simulate, port)

@@ -4,29 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import typer
 from rich.console import Console
 from rich.text import Text
 
 from shipcosim.cli.console import say_page, shown_path
-from shipcosim.cli.exits import INTERRUPTED
+from shipcosim.cli.outcomes.exits import INTERRUPTED
+from shipcosim.cli.progress import tenths
+from shipcosim.cli.tables import print_table
 from shipcosim.cli.terminal import make_console, say
 from shipcosim.sweep import Plan, Swept
-from shipcosim.sweep.summary import RANGE
 
 if TYPE_CHECKING:
+    import pandas
+
     from shipcosim.calls.studies import PlannedStudy
     from shipcosim.results.study import StudyResult
 
 SHOWN = 20  # rows of the summary on the terminal
 MOST_IMPORTANT = 10  # parameters of each quantity on the terminal
+ENDS = ("", "_low", "_high")  # of an index and its interval
 
 
-def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
-    """Run what is not done of a study and say how it went.
+def sweep_with_progress(study: PlannedStudy, **options: Any) -> StudyResult:
+    """Run what is not done of a study, with a progress bar.
 
     Parameters
     ----------
@@ -41,13 +44,11 @@ def sweep_and_print(study: PlannedStudy, **options: Any) -> StudyResult:
     """
     with _progress(study.plan) as progress:
         try:
-            swept = study.run(progress=progress, **options)
+            return study.run(progress=progress, **options)
         except KeyboardInterrupt:
             kept = shown_path(study.folder)
             say(f"Interrupted. What is done is kept in {kept}; the same command goes on.", err=True)
             raise typer.Exit(INTERRUPTED) from None
-    _say(swept)
-    return swept
 
 
 @contextmanager
@@ -80,6 +81,7 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
         task = bar.add_task("", total=len(plan), pace="")
         first = []
         said = []
+        say_tenth = tenths(console, plan.study.name)
 
         def report(done: int, total: int) -> None:
             elapsed = bar.tasks[0].elapsed or 0.0
@@ -88,6 +90,7 @@ def _progress(plan: Plan) -> Iterator[Callable[[int, int], None]]:
             rate = (done - first[0][0]) / (elapsed - first[0][1]) if elapsed > first[0][1] else 0.0
             pace = f"{rate:.1f} runs/s, {rate * each:,.0f} ship-s/s" if rate else ""
             bar.update(task, completed=done, total=total, pace=pace)
+            say_tenth(done, total, pace)
             if rate and not said and elapsed - first[0][1] > 2.0 and done < total:
                 said.append(done)
                 left = total - done
@@ -105,16 +108,11 @@ def _time(seconds: float) -> str:
     return f"{seconds:.0f} s"
 
 
-def _say(swept: Swept) -> None:
+def print_study(swept: Swept) -> None:
     """The summary, errors, and where the page is."""
     console = make_console(soft_wrap=True)
     if 0 < len(swept.summary) <= SHOWN:
-        # What is known of a value that not every case was run for takes its place.
-        shown = swept.summary.copy()
-        for name in [name for name in shown if str(name).endswith(RANGE)]:
-            shown[str(name).removesuffix(RANGE)] = shown.pop(name)
-        text = shown.to_string(index=False, na_rep="", float_format=_number)
-        console.print(text, markup=False)
+        _print_frame(console, swept, swept.summary)
     if "indices" in swept.tables:
         _say_indices(console, swept)
     if "pareto" in swept.tables.get("trials", ()):  # not where no trial is done yet
@@ -138,9 +136,12 @@ def _say(swept: Swept) -> None:
     say_page(console, swept.folder / "report.html")
 
 
-def _number(value: float) -> str:
-    """A number of the summary; what no run reached is infinite."""
-    return "never in the run" if value == inf else f"{value:.4g}"
+def _print_frame(console: Console, swept: Swept, frame: pandas.DataFrame) -> None:
+    """A table as the page has it: in units to read, with intervals in the cells of their values."""
+    from shipcosim.report.study import columns_of, summary_table
+
+    table = summary_table(columns_of(frame, swept.about["columns"]))
+    print_table(console, table.rows, table.head)
 
 
 def _say_indices(console: Console, swept: Swept) -> None:
@@ -157,12 +158,9 @@ def _say_indices(console: Console, swept: Swept) -> None:
         )
         more = f", {MOST_IMPORTANT} of {len(part)} parameters" if len(part) > MOST_IMPORTANT else ""
         console.print(f"Sobol indices of {of}{more}:", markup=False)
-        shown = part.head(MOST_IMPORTANT)
-        columns = {"parameter": shown["parameter"].tolist()}
-        for name in ("total", "first_order"):
-            ends = zip(*(shown[f"{name}{end}"] for end in ("", "_low", "_high")), strict=True)
-            columns[name] = [f"{value:.2f} ({low:.2f} to {high:.2f})" for value, low, high in ends]
-        console.print(type(shown)(columns).to_string(index=False), markup=False)
+        names = [f"{name}{end}" for name in ("total", "first_order") for end in ENDS]
+        shown = part.head(MOST_IMPORTANT)[["parameter", *names]].round(2)
+        _print_frame(console, swept, cast("pandas.DataFrame", shown))
 
 
 def _say_trials(console: Console, swept: Swept) -> None:
@@ -184,7 +182,6 @@ def _say_trials(console: Console, swept: Swept) -> None:
         if swept.plan.samples
         else []
     )
-    text = type(trials)({name: [*shown[name], *ours[name]] for name in columns})
-    console.print(
-        text.to_string(index=False, float_format=lambda value: f"{value:.4g}"), markup=False
+    _print_frame(
+        console, swept, type(trials)({name: [*shown[name], *ours[name]] for name in columns})
     )

@@ -7,6 +7,7 @@ it from this step on; an output from what this step puts out.
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
+from time import perf_counter, sleep
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -68,6 +69,30 @@ def event_actions(
             arguments = [] if change.action == "reset" else [change.value]
             actions[change.step].append(partial(getattr(modifiers, change.action), row, *arguments))
     return dict(actions)
+
+
+def add_pace(actions: dict[int, list[Callable[[], None]]], grid: TimeGrid, realtime: float) -> None:
+    """Have each step wait until its time has come on the clock.
+
+    Parameters
+    ----------
+    actions : dict of int to list of callable
+        By the step before which they are due; those of the waiting are added.
+    grid : TimeGrid
+    realtime : float
+        Seconds of the run in a second of the clock. A run that is late catches up.
+    """
+    begin = 0.0
+
+    def wait(step: int) -> None:
+        nonlocal begin
+        # The clock starts with the first step: loading the FMUs is no part of the run.
+        begin = begin or perf_counter()
+        due = begin + (grid.times[step] - grid.times[grid.first]) / realtime
+        sleep(max(due - perf_counter(), 0.0))
+
+    for step in range(grid.first, grid.last):
+        actions.setdefault(step, []).append(partial(wait, step))
 
 
 def modifiers_of(end: End, plan: Plan, exchanges: Mapping[str, Exchange]) -> tuple[Modifiers, int]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from shipcosim.cosim.master.algorithm import Ended, Failure, Master
 from shipcosim.cosim.master.compiled import CompiledMaster
-from shipcosim.cosim.master.events import event_actions, external_values
+from shipcosim.cosim.master.events import add_pace, event_actions, external_values
 from shipcosim.cosim.master.groups import couple, exchanged_at_steps, groups_of, inner_connections
 from shipcosim.cosim.master.inputs import digest, input_values
 from shipcosim.cosim.master.instantiate import (
@@ -141,6 +141,7 @@ class Simulation:
         order = options.order
         inputs = options.inputs
         self._engine = options.engine
+        self._realtime = options.realtime
         if order not in ORDERS:
             raise ShipcosimError(
                 f"There is no order of exchange '{order}'. {suggestion(order, ORDERS)}"
@@ -210,6 +211,8 @@ class Simulation:
                 )
                 master.resume(grid.first)
             actions = event_actions(self._scenario, self._plan, exchanges, grid)
+            if self._realtime is not None:
+                add_pace(actions, grid, self._realtime)
             master.run(grid, actions, self._external, self._recorders, progress)
         # An FMU may end the run: the rows until then are the result.
         except Ended as end:

@@ -155,5 +155,7 @@ def _claim(expect: Expectation, unit: str, factor: float) -> str:
         return f"{expect.subject}: {target}\u00a0±\u00a0{factor * expect.within:.3g}\u00a0{unit}".rstrip()
     # Limits to one or both sides.
     limits = {"≥": expect.at_least, "≤": expect.at_most}
-    claims = ", ".join(f"{sign} {text(v)} {unit}" for sign, v in limits.items() if v is not None)
+    claims = ", ".join(
+        f"{sign} {text(v)}\u00a0{unit}" for sign, v in limits.items() if v is not None
+    )
     return f"{expect.subject} {claims}".rstrip()

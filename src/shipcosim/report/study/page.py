@@ -17,7 +17,16 @@ from shipcosim.report.theme import palette
 from shipcosim.report.theme.figures import evenly
 from shipcosim.report.theme.packing import most_rows, packed_series
 from shipcosim.report.theme.pages import render as render_template
-from shipcosim.report.theme.views import Figure, Figures, JsonObject, KeyFigure, Link, Page, Table
+from shipcosim.report.theme.views import (
+    Figure,
+    Figures,
+    JsonObject,
+    KeyFigure,
+    Link,
+    Outcome,
+    Page,
+    Table,
+)
 
 BYTES_FOR_RUNS = 800_000  # of a page that shall stay below 1.6 MB
 EXACT = 1e9  # steps of the numbers of runs
@@ -101,6 +110,12 @@ def render(tables: StudyTables) -> str:
     return render_template("study/templates/study.html.jinja", page_of(tables))
 
 
+def outcome_of(tables: StudyTables) -> Outcome:
+    """Result of a study in one sentence, without its views."""
+    said = tables.about.get("columns", ())
+    return words.outcome(tables, columns_of(tables.runs, said), columns_of(tables.summary, said))
+
+
 def page_of(tables: StudyTables) -> StudyPage:
     """Contents of the page of a study."""
     # Columns with units and roles, as the study describes them.
@@ -135,7 +150,7 @@ def page_of(tables: StudyTables) -> StudyPage:
         figures=drawn,
         undrawn=undrawn,
         quantities=words.quantities_table(runs),
-        summary=_summary(summary),
+        summary=summary_table(summary),
         thinned=(len(rows), len(tables.runs)) if len(rows) < len(tables.runs) else None,
         errors=errors[: words.MOST_ERRORS],
         choices=_choices(runs),
@@ -266,8 +281,8 @@ def _level(column: Column, level: float) -> str:
     return column.text(level) if column.labels else signed(level, 6)
 
 
-def _summary(columns: Columns) -> Table:
-    """The summary as texts; at most its first rows."""
+def summary_table(columns: Columns) -> Table:
+    """Columns as texts in units to read, each interval in the cell of its value; at most the first rows."""
     # Ends of intervals are shown in the cell of their value.
     ends = {f"{name}_{end}" for name in columns for end in ("low", "high")}
     shown = [column for name, column in columns.items() if name not in ends]

@@ -210,10 +210,14 @@ def signed(value: float, digits: int = 4) -> str:
 
     Examples
     --------
-    >>> signed(-0.25), signed(1234567.0)
-    ('−0.25', '1.235e+06')
+    >>> signed(-0.25), signed(10_000.0), signed(1234567.0)
+    ('−0.25', '10000', '1.235e+06')
     """
-    return f"{value:.{digits}g}".replace("-", "−").replace("e−", "e-")
+    text = f"{value:.{digits}g}"
+    # Python writes powers of ten from as many digits on as are asked for: 1e+04 is no number that people read.
+    if 1.0 <= abs(value) < 1e6:
+        text = f"{float(text):.10g}"
+    return text.replace("-", "−").replace("e−", "e-")
 
 
 def columns_of(frame: DataFrame, said: Iterable[Mapping[str, Any]]) -> dict[str, Column]:

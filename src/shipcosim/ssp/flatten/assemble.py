@@ -1,6 +1,6 @@
 """From a package to a system ready to run: flatten, set values, check."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from os import PathLike
 
@@ -104,7 +104,6 @@ def _system(tree: Hierarchy, structure: Structure, file: str, findings: Findings
     for component in components.values():
         for found in resized(component):
             findings.error(component.name, found, RESIZE)
-    remark_unconnected(components, connections, findings)
     findings.problems += alias_remarks(components, connections)
     # With errors the rest cannot be relied on; the components suffice for further messages.
     name = structure.name or structure.system.name
@@ -188,28 +187,3 @@ def _check_names(tree: Hierarchy, findings: Findings) -> None:
             elif key.name in signals:
                 found = f"A connector of the system is called as the variable {key.name}."
                 findings.error(port.place, found, "Rename it.")
-
-
-def remark_unconnected(
-    components: Mapping[str, Component], connections: Iterable[Connection], findings: Findings
-) -> None:
-    """Add a remark for each component with inputs that nothing feeds.
-
-    Parameters
-    ----------
-    components : mapping of str to Component
-        By full name.
-    connections : iterable of Connection
-        All of the system.
-    findings : Findings
-        Takes what is wrong.
-    """
-    connected = {connection.target for connection in connections}
-    for component in components.values():
-        free = [
-            name for name in component.fmu.named("input") if (component.name, name) not in connected
-        ]
-        if free:
-            findings.remark(
-                component.name, f"Unconnected inputs keep their start value: {', '.join(free)}."
-            )

@@ -104,18 +104,17 @@ def _problem(system: System, loop: AlgebraicLoop, kind: str, does: str) -> Probl
         found += f" {loop.others} more connections belong to it."
     found += f" {does}"
     if loop.silent:
-        found += f" Not said by their FMUs, and so taken to be so: {', '.join(loop.silent)}."
+        found += f" These FMUs do not declare it, so it is assumed: {', '.join(loop.silent)}."
     return Problem(f"{system.file}: {', '.join(loop.components)}", found, _remedy(loop), "remark")
 
 
 def _remedy(loop: AlgebraicLoop) -> str:
-    says = 'over a step, which its FMU says in its ModelStructure (dependencies="")'
-    if len(loop.breaking) > 1:
-        return f"Broken where one of these holds its outputs {says}: {', '.join(loop.breaking)}."
+    delay = 'delay outputs by a step and declare that in ModelStructure (dependencies="")'
     if loop.breaking:
-        return f"Broken where {loop.breaking[0]} holds its outputs {says}."
-    more = "" if len(loop.components) > MOST_TRIED else " One alone does not do it."
-    return f"Broken where enough of them hold theirs {says}.{more}"
+        return f"To break the loop, one of these FMUs must {delay}: {', '.join(loop.breaking)}."
+    # Of a large loop it is not known whether one would be enough.
+    several = "FMUs of it" if len(loop.components) > MOST_TRIED else "several of these FMUs"
+    return f"To break the loop, {several} must {delay}."
 
 
 def _inside(name: str, links: list[Edge], stated: Mapping[str, frozenset[str]]) -> Iterator[Edge]:

@@ -10,7 +10,7 @@ from os import PathLike
 from pathlib import Path
 
 from shipcosim.ssp.flatten.array_sizes import resized, sizes_wanted
-from shipcosim.ssp.flatten.assemble import components_of, parameter_sets, remark_unconnected
+from shipcosim.ssp.flatten.assemble import components_of, parameter_sets
 from shipcosim.ssp.flatten.bindings import apply_set
 from shipcosim.ssp.flatten.hierarchy import Hierarchy, Swapped
 from shipcosim.ssp.flatten.own_steps import with_whole_steps
@@ -118,7 +118,6 @@ def _system(
     components = with_whole_steps(
         components_of(tree, settings), experiment.step_size, findings, as_libcosim=True
     )
-    remark_unconnected(components, connections, findings)
     findings.problems += alias_remarks(components, connections)
     return System(
         name=Path(document.file).resolve().parent.name,

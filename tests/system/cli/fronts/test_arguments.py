@@ -26,8 +26,9 @@ OTHER_NAMES = {
     "failure": "failures",
     "ssp": "system",
     "data": "log",
+    "every": "output_interval",
 }
-OF_THE_TERMINAL = {"debug", "as_json", "number", "serve", "port"}
+OF_THE_TERMINAL = {"debug", "as_json", "number", "serve", "port", "junit", "quiet"}
 """How a command prints, and what it does beside its call: `StudyResult.run(number)` is another call."""
 
 

@@ -226,7 +226,7 @@ def test_the_page_says_the_cause_its_sizes_and_the_errors_of_each_log(lost, tmp_
         "extended.ssv",
     ):
         assert (text in page) is (text != "starboard" or "starboard.thrust_loss" in page)
-    print_joint(found, tmp_path, as_json=False)
+    print_joint(found, tmp_path)
     said = capsys.readouterr().out
     assert "NAMED" in said and "Causes in common" in said and "report.html" in said
 

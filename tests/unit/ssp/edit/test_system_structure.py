@@ -5,7 +5,7 @@ import pickle
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import new, read, read_system, write_ssv
+from shipcosim.ssp import check_system, new, read, read_system, write_ssv
 from shipcosim.ssp.edit.write import parameter
 
 ITEMS = '<Item name="off" value="1"/><Item name="on" value="2"/>'
@@ -355,7 +355,8 @@ def test_what_is_removed_takes_its_connections_values_and_fmu_along(system, tmp_
     assert dict(system.parameters) == {"thruster.gain": 2.0}
     assert not (tmp_path / "written/resources/hull.fmu").exists()
     assert "hull.mass" not in (tmp_path / "written/resources/ship.ssv").read_text(encoding="utf-8")
-    assert after.remarks and not any("hull" in remark.found for remark in after.remarks)
+    found = check_system(tmp_path / "written")
+    assert found and not any("hull" in problem.found for problem in found)
 
 
 def test_connections_and_values_follow_a_new_name(system, tmp_path):

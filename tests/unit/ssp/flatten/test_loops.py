@@ -137,8 +137,8 @@ def test_check_prints_the_loop_as_a_remark_with_what_breaks_it(part, system, sho
     (problem,) = [p for p in check_system(shop.folder) if "loop" in p.found]
     assert problem.severity == "remark" and problem.where == f"{shop.folder}: a, b"
     assert "a.y -> b.u" in problem.found and "b.y -> a.u" in problem.found
-    assert "delays by one step" in problem.found and "taken to be so: b." in problem.found
-    assert problem.remedy.startswith("Broken where one of these holds its outputs over a step")
+    assert "delays by one step" in problem.found and "so it is assumed: b." in problem.found
+    assert problem.remedy.startswith("To break the loop, one of these FMUs must delay outputs")
     assert problem.remedy.endswith(": a, b.")
 
 

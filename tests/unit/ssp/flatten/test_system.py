@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 from shipcosim.errors import ShipcosimError
-from shipcosim.ssp import pack, read_system, with_values
+from shipcosim.ssp import check_system, pack, read_system, with_values
 
 MODES = """
 <SimpleType name="Mode"><Enumeration><Item name="off" value="1"/><Item name="on" value="2"/></Enumeration></SimpleType>
@@ -226,11 +226,16 @@ def test_a_connectors_unit_counts_between_connectors_and_the_fmus_at_the_fmu(sho
     )
 
 
-def test_unconnected_inputs_are_a_remark(shop):
+def test_all_unconnected_inputs_are_one_remark_with_their_places(shop):
     shop.fmu("two", "input u Real m", "input w Real m")
-    shop.ssd(shop.component("b", "two"))
-    (remark,) = shop.read().remarks
-    assert (remark.where, remark.found) == ("b", "Unconnected inputs keep their start value: u, w.")
+    shop.fmu("one", "input v Real m")
+    elements = (
+        shop.component(name, fmu) for name, fmu in (("a", "two"), ("b", "two"), ("c", "one"))
+    )
+    shop.ssd("".join(elements))
+    (remark,) = [one for one in check_system(shop.folder) if "inputs" in one.found]
+    assert remark.severity == "remark"
+    assert remark.found == "Unconnected inputs keep their start values. a, b: u, w; c: v."
 
 
 def test_a_connector_that_is_only_in_the_fmu_is_a_remark(shop):

@@ -1,0 +1,1 @@
+"""How commands end: exit codes, JSON, JUnit, the summary of a step on GitHub. One way for all commands."""

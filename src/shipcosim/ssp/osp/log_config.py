@@ -1,0 +1,58 @@
+"""Reader of LogConfig.xml, in which libcosim is told what to record."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+from shipcosim.errors import Problem, ShipcosimError, raise_errors
+from shipcosim.ssp.xml.document import Findings, local, read_document
+
+
+class LogConfig(NamedTuple):
+    """What libcosim would record.
+
+    Attributes
+    ----------
+    signals : tuple of str
+        ``simulator.variable``, or ``simulator.*`` where all of a simulator is recorded.
+    steps : int
+        Steps from one row to the next: the smallest decimation factor, as our table has one time for all signals.
+    """
+
+    signals: tuple[str, ...]
+    steps: int
+
+
+def read_log_config(path: str | PathLike[str]) -> LogConfig:
+    """Read a LogConfig.xml.
+
+    Raises
+    ------
+    ShipcosimError
+        If it is none, with all that is wrong.
+    """
+    findings = Findings()
+    document = read_document(Path(path), str(path), findings)
+    raise_errors(findings.problems)
+    assert document is not None
+    if local(document.root) != "simulators":
+        remedy = "Its root is <simulators>, with a <simulator> and its <variable>s for each that is recorded."
+        raise ShipcosimError(Problem(str(path), "This is no LogConfig.xml.", remedy))
+
+    signals = []
+    steps = []
+    for simulator in document.root:
+        if local(simulator) != "simulator":
+            continue
+        name = simulator.get("name", "")
+        variables = [one.get("name", "") for one in simulator if local(one) == "variable"]
+        signals += [f"{name}.{variable}" for variable in variables or ["*"]]
+        factor = simulator.get("decimationFactor", "1")
+        if not factor.isascii() or not factor.isdecimal() or int(factor) < 1:
+            where = f"{path}, line {simulator.sourceline}: {name}"
+            found = f"decimationFactor = '{factor}' is no number of steps."
+            raise ShipcosimError(Problem(where, found, "Right would be a whole number from 1 on."))
+        steps.append(int(factor))
+    return LogConfig(tuple(signals), min(steps, default=1))
