@@ -40,6 +40,7 @@ from shipcosim.diagnose.comparison.thresholds import (
     OPPOSITE,
     PLAINLY_WRONG,
     RIVAL,
+    SURELY_BRAKES,
     SURELY_CAUSED,
     SURELY_WRONG,
     TOLD,
@@ -117,8 +118,8 @@ class _Weighed:
         )
 
     def brakes_more_than(self, other: _Weighed) -> bool:
-        """Whether by this reading the thrusters brake the craft, and more than by the other."""
-        return self.drives < min(-BRAKES, other.drives)
+        """Whether by this reading the thrusters surely brake the craft, and more than by the other."""
+        return self.drives < min(-SURELY_BRAKES, other.drives)
 
     def is_as(self, other: _Weighed) -> bool:
         """Whether they do the same but for the number of changes."""

@@ -92,6 +92,9 @@ UNLIKELIER = 5.0
 BRAKES = 0.1
 """Correlation of commanded loads with the motion below which, by the labels, the thrusters brake the craft. As labelled
 all of eleven logs of a boat with exchanged sides lie below 0, nine of them below -0.1."""
+SURELY_BRAKES = 0.5
+"""The same, from which on a reading cannot be right. A heading that is kept is braked a little: right readings of drawn
+craft reach -0.31 (tests/bench/craft, seeds 7000 to 7049), both thrusters of a boat reversed -0.9."""
 OPPOSITE = 4.0
 """Standard deviations by which a gain is surely positive, or surely negative. Assumed."""
 LEAST_GAIN = 0.1
