@@ -16,10 +16,10 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import typer
 from pydantic import BaseModel
 from pydantic_core import PydanticUndefined
-from shipcosim.cli.exits import EXIT_CODES
 
 import shipcosim
 from shipcosim import library
+from shipcosim.cli.outcomes.exits import EXIT_CODES
 from shipcosim.diagnose.hypotheses.catalogue import read_catalogue
 from shipcosim.diagnose.hypotheses.cause import (
     Cause,
@@ -30,7 +30,7 @@ from shipcosim.diagnose.hypotheses.cause import (
 from shipcosim.diagnose.log.channels import Channel
 from shipcosim.diagnose.log.files.file_layout import FileLayout
 from shipcosim.diagnose.log.roles import _THRUSTER, ROLES
-from shipcosim.scenario.model import Event, Expectation, Scenario
+from shipcosim.scenario.model import Event, Expectation, Record, Scenario
 from shipcosim.ships import file as ship_file
 from shipcosim.ships.given import Given
 from shipcosim.sweep import study_model
@@ -74,7 +74,7 @@ FMUS = {
 }
 """FMUs by what they are for."""
 RECORDS = {
-    "scenario": [Scenario, Event, Expectation],
+    "scenario": [Scenario, Record, Event, Expectation],
     "study": [
         study_model.Study,
         study_model.Factor,
@@ -108,6 +108,7 @@ HEADINGS = {
     "Scenario": "The file",
     "Event": "`[[events]]`",
     "Expectation": "`[[expect]]`",
+    "Record": "`[record]`",
     "Study": "The file",
     "Factor": "`[[factor]]`",
     "Case": "`[[factor.case]]`",

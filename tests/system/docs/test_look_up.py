@@ -5,7 +5,7 @@ import re
 import pytest
 
 import shipcosim
-from shipcosim.cli.exits import EXIT_CODES
+from shipcosim.cli.outcomes.exits import EXIT_CODES
 from shipcosim.diagnose.finding import Finding
 from shipcosim.diagnose.result import Diagnosis
 
