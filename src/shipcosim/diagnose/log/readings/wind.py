@@ -86,7 +86,7 @@ class WindRelations:
 def _at(fit, factor):
     """Log-likelihood with the factor that a reading says, give or take what wind sensors are off."""
     likelihood, found, variance = fit
-    # Sensors of wind are off by some per cent; this widens the variance of the factor.
+    # Wind sensors follow the velocity to about a fifth only, which widens the variance.
     wide = variance + (WIND_SCALE * abs(factor)) ** 2
     return likelihood - 0.5 * abs(found - factor) ** 2 / wide - math.log(wide / variance)
 
