@@ -42,7 +42,7 @@ def in_stretches(log: xarray.Dataset, length: float) -> xarray.Dataset:
     xarray.Dataset
         Itself where it is not long.
     """
-    # Number of rows that give the most averaged ones; a shorter log is used as it is.
+    # Rows that average to the largest number allowed. A shorter log is used as it is.
     time = log["time"].values
     most = MOST_ROWS * rows_averaged(length, time[1] - time[0])
     if time.size <= most:

@@ -113,7 +113,7 @@ def _loads_of(
 ) -> Load:
     unit = model.parts[name]
     (n, azimuth) = units[name]
-    # A tunnel has no state in the replay of logged speeds.
+    # The state of a tunnel thruster follows from its logged speed alone.
     if isinstance(unit, TunnelParameters):
         *_, surge, sway, yaw = tunnel_loads(tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
         return surge, sway, yaw

@@ -231,7 +231,7 @@ class DpController:
         # Yaw moments are scaled to forces by a quarter of the length.
         scale = np.array([1.0, 1.0, 4.0 / self.model.length])
         ease = np.stack(np.broadcast_arrays(*eases), axis=-2)
-        # Weighted, regularised pseudo-inverse: W Bt (B W^2 Bt + eps I)^-1.
+        # Weighted pseudo-inverse of the allocation matrix, with a small damping term.
         Bt = ease * scale * np.stack(np.broadcast_arrays(*columns), axis=-2)
         return ease * scale * (Bt @ np.linalg.inv(np.swapaxes(Bt, -1, -2) @ Bt + 1e-2 * np.eye(3)))
 
