@@ -135,9 +135,9 @@ def velocity_frame(first: str, second: str) -> Mislabel:
 
 
 def _from_degrees(log):
-    # Local plane about the first fix: degrees times metres per degree of the ellipsoid. The
-    # longitude is wrapped, for tracks over the date line.
     """Positions in m about the first fix, from degrees of latitude and longitude; WGS 84."""
+    # Local plane about the first fix: degrees times metres per degree of the
+    # ellipsoid. The longitude is wrapped, for tracks over the date line.
     known = np.flatnonzero(np.isfinite(log["north"]) & np.isfinite(log["east"]))
     first = known[0] if len(known) else 0
     meridian, parallel = metres_per_degree(log["north"][first])

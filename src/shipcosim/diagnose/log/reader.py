@@ -313,7 +313,7 @@ def _local_position(source, signals, said):
             found = f"is {values[row]:g} in row {row + 2}, beyond {limit:g} deg, in {int(beyond.sum())} rows."
             remedy = 'A unit can be said: unit = "ddmm.mmmm", "rad" or "1e-7 deg".'
             raise error_at(f"{source}, {name}", found, remedy)
-    # A receiver without a fix may report 0, 0; a whole log there is taken as a simulation's.
+    # A receiver without a fix may report 0, 0. A log that is there throughout is kept.
     lost = np.any([np.abs(v) > _FARTHEST[n] for n, v in degrees.items()], axis=0)
     nowhere = (degrees["latitude"] == 0.0) & (degrees["longitude"] == 0.0)
     if nowhere.all():
@@ -325,7 +325,7 @@ def _local_position(source, signals, said):
         if rows.any():
             said.append(f"{int(rows.sum())} row{'s' * int(rows.sum() > 1)} with {why}: left empty.")
     values = [np.where(lost | nowhere, np.nan, degrees[name]) for name in LARGEST]
-    # Plane tangent to the ellipsoid at the first fix; east by the parallel of that latitude.
+    # Local plane about the first fix; east by the length of a degree at its latitude.
     fixed = np.flatnonzero(np.isfinite(values[0]) & np.isfinite(values[1]))
     if not len(fixed):
         raise error_at(f"{source}, latitude", "has no row with a longitude.", "A fix needs both.")

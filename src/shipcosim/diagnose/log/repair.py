@@ -54,8 +54,8 @@ def repaired(log: xarray.Dataset, findings: Sequence[Finding] = ()) -> xarray.Da
     channels = {
         str(name): np.array(variable.values, float) for name, variable in log.data_vars.items()
     }
-    # Correct labels and cut out what is no measurement, in logged time: the segments are given in
-    # it.
+    # Correct labels and cut out what is no measurement,
+    # in logged time: the segments are given in it.
     channels = _put_right(logged, channels, findings)
     # Even grid over the true time; no value across a hole.
     _check_span(time, step)
@@ -128,8 +128,8 @@ def _true_time(logged, base, findings, step):
     for finding in findings:
         for segment in finding.segments if finding.cause == "clock" else ():
             here = inside(logged[1:], [segment]) & inside(logged[:-1], [segment])
-            # True duration of the segment, rounded to whole steps, so that later rows fall on the
-            # grid.
+            # True duration of the segment, rounded to whole
+            # steps, so that later rows fall on the grid.
             lasts = finding.parameters["rate"].estimate * np.diff(base)[here].sum()
             rates[here] *= (
                 finding.parameters["rate"].estimate
@@ -142,8 +142,8 @@ def _true_time(logged, base, findings, step):
 
 
 def _put_right(time, channels, findings):
-    # Mistakes of the whole log first, then those of segments.
     """Channels with labels put right, then with outliers and all that is no measurement cut out."""
+    # Mistakes of the whole log first, then those of segments.
     channels = read_anew({"time": time, **channels}, findings) | {"time": time}
     for finding in findings:
         mislabel = mislabel_of(finding)
@@ -157,8 +157,8 @@ def _put_right(time, channels, findings):
 
 
 def without_findings(log: dict, findings: Sequence[Finding]) -> dict:
-    # Outliers are found anew, as the caller may have corrected units.
     """A log without outliers, and without what findings say of their segments and channels."""
+    # Outliers are found anew, as the caller may have corrected units.
     bad_rows = list(outliers(log).items())
     for finding in findings:
         here = inside(log["time"], finding.segments)

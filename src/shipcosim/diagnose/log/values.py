@@ -68,8 +68,8 @@ def values_of(
     # Positions as text, in minutes or with a hemisphere.
     if name in LARGEST and (found := _position(channel, column, stated, name, log)) is not None:
         return found[0], "deg", found[1]
-    # Plain numbers: a map replaces unit and factor; otherwise convert from the stated unit to the
-    # role's.
+    # Plain numbers: a map replaces unit and factor;
+    # otherwise convert from the stated unit to the role's.
     values = _numbers(log, column)
     if channel.map is not None:
         role = role_of(name)
@@ -149,8 +149,8 @@ def _is_number(text):
 def _time(channel, column, stated, log, form):
     """Times in seconds and what is to be said."""
     values = log.values[column]
-    # Texts and time stamps: read dates and clock times, with the date from its own column if there
-    # is one.
+    # Texts and time stamps: read dates and clock times,
+    # with the date from its own column if there is one.
     if values.dtype.kind == "M":
         values = np.array([None if np.isnat(v) else str(v) for v in values], object)
     if values.dtype.kind == "O":
@@ -172,16 +172,16 @@ def _time(channel, column, stated, log, form):
         return numbers / EPOCHS[epoch], said
     factor, zero = conversion(unit or "s", "s")
     times = factor * numbers + (zero or -0.0)
-    # A guessed unit is checked by the distance of rows; then midnight or the end of a week is
-    # passed.
+    # A guessed unit is checked by the distance of rows;
+    # then midnight or the end of a week is passed.
     if not unit:
         _check_steps(column, times)
     return _past_the_end(times)
 
 
 def _check_steps(column, times):
-    # Median of the positive steps: repeated times and steps back say nothing of the unit.
     """Raise ShipcosimError where rows would be so close or far apart that the numbers can hardly be seconds."""
+    # Median of the positive steps: repeated times and steps back say nothing of the unit.
     steps = np.diff(finite(times))
     step = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
     if _STEPS[0] <= step <= _STEPS[1]:
@@ -211,8 +211,8 @@ def _without_summer_time(times):
 
 def _past_the_end(times):
     """Seconds of the day, or of the week of GPS, that go on past its end, and what is to be said."""
-    # The clock must fall by nearly a whole period, from near its end to near its start, at each
-    # fall.
+    # The clock must fall by nearly a whole period, from
+    # near its end to near its start, at each fall.
     known = finite(times)
     for period, name in _PERIODS.items():
         falls = np.flatnonzero(np.diff(known) < -0.9 * period)
@@ -251,8 +251,8 @@ def _of_clock(numbers):
 
 def _position(channel, column, stated, name, log):
     """Degrees of latitude or longitude that are not plain numbers; None for those."""
-    # Formats by precedence: texts, whole numbers of autopilots, degrees and minutes, plain degrees
-    # with a hemisphere.
+    # Formats by precedence: texts, whole numbers of autopilots,
+    # degrees and minutes, plain degrees with a hemisphere.
     values = log.values[column]
     said = []
     if values.dtype.kind == "O":

@@ -72,8 +72,8 @@ def clock_by_response(problem: IdentificationProblem) -> Finding | None:
     gain, finding = _most_likely(_blocks(problem, edges, known))
     if finding is None:
         return None
-    # The likeliest single cause is the rival. The clock must explain more, and all aspects of the
-    # motion must agree on its rate.
+    # The likeliest single cause is the rival. The clock must explain
+    # more, and all aspects of the motion must agree on its rate.
     rival, hypothesis, values = screened(problem, fitted(problem))[0]
     if gain < rival + OVER_CAUSE or not _all_aspects_agree(problem, finding, known):
         return None
@@ -104,8 +104,8 @@ def _all_aspects_agree(problem, finding, known):
     # Rate of each aspect by least squares, with its covariance.
     covariance = np.linalg.pinv(inner)
     rates = covariance @ match
-    # Chi-square test of equal rates, with some allowance for model error; their common mean costs
-    # one degree of freedom.
+    # Chi-square test of equal rates, with some allowance for
+    # model error; their common mean costs one degree of freedom.
     apart = ASPECT_APART * (finding.parameters["rate"].estimate - 1.0)
     weight = np.linalg.inv(covariance + apart**2 * np.eye(len(ASPECTS)))
     rest = rates - weight.sum(axis=0) @ rates / weight.sum()
@@ -127,8 +127,8 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
     # The repaired log runs in true time, so the segments are converted to it.
     inner = np.interp(np.ravel(finding.segments), log["logged_time"].values, log["time"].values)
     blocks = _blocks(problem, np.r_[time[0], inner, time[-1]], problem.known(()))
-    # The blocks inside the segments, every second one, give the remaining rate error by regularised
-    # least squares.
+    # The blocks inside the segments, every second one, give
+    # the remaining rate error by regularised least squares.
     own = np.arange(1, len(inner), 2)
     more = blocks.match[own].sum() / (blocks.gram[np.ix_(own, own)].sum() + CLOCK_SLAB**-2)
     rate = finding.parameters["rate"]
@@ -139,8 +139,8 @@ def with_rate(problem: IdentificationProblem, finding: Finding, log: xarray.Data
 
 def is_testable(problem: IdentificationProblem) -> bool:
     """Whether a typical wrong clock, at any time of the log with even odds, would have gained enough to be seen."""
-    # Expected gain of a typical wrong clock, if its rate error stood in the data: match = rate
-    # times energy.
+    # Expected gain of a typical wrong clock, if its rate
+    # error stood in the data: match = rate times energy.
     blocks = _blocks(problem, _edges(problem), problem.known(()))
     count = len(blocks.edges) - 1
     span = max(int(TYPICAL_SEGMENT / (blocks.edges[1] - blocks.edges[0])), 1)
@@ -173,8 +173,8 @@ def _most_likely(blocks):
     # Greedy search: add the run that gains most together with those that were chosen before.
     for _ in range(MOST_SEGMENTS):
         at = _best(match, energy, allowed)
-        # Both ends of each run are chosen among all edges, which costs two logarithms of their
-        # number.
+        # Both ends of each run are chosen among all edges,
+        # which costs two logarithms of their number.
         nats = nats_of_rate(match[at], energy[at]) - cost * (1 + len(runs))
         if nats < gain + CLOCK_GAIN * (not runs) or np.isneginf(nats):
             break
@@ -183,7 +183,8 @@ def _most_likely(blocks):
         # Posterior mean and standard deviation of the rate error that is common to the runs.
         value = match[at] / (energy[at] + CLOCK_SLAB**-2)
         std = (energy[at] + CLOCK_SLAB**-2) ** -0.5
-        # Condition on this run: match and energy of every other one are now those of both together.
+        # Runs of one clock have a common rate: match and energy
+        # of every other run are now those of both together.
         match = match[at] + match
         energy = energy[at] + energy + 2.0 * blocks.with_run(*at)
         # Further runs may not overlap this one.
@@ -215,8 +216,7 @@ def _best(match, energy, allowed):
 def _blocks(problem, edges, columns: list[Regressor]):
     """The blocks of a log, from its innovations with a column for each; what other columns can explain is theirs."""
     count = len(edges) - 1
-    # A block's regressor is the motion in its steps. The negative sign makes it a correction of the
-    # prediction.
+    # A block's regressor is what the ship moves in its steps: an error of the rate scales it.
     moved = _moved(problem)
     place = np.clip(
         np.searchsorted(edges, problem.record.time[:-1], side="right") - 1, 0, count - 1

@@ -58,8 +58,8 @@ def with_right_navigation(found: Identification) -> Identification:
     candidates = relabelled(found.log, found.faults, found.problem)
     if not candidates:
         return found
-    # Fit each candidate, with the best single cause, and keep the likeliest that gains enough over
-    # the log as it is. The density makes units comparable.
+    # Fit each candidate, with the best single cause, and keep the likeliest that
+    # gains enough over the log as it is. The density makes units comparable.
     best = found
     enough = explain(found.problem, most=1)[0].score + FAULT
     for candidate in candidates:
@@ -110,8 +110,8 @@ def _with_right_wind_label(found, place):
     fault, right = _with_settled_segment(
         replace(as_logged, problem=problem), mislabel_of(fault), fault
     )
-    # A fault throughout of which only a segment is left needs evidence from the ship, else it is
-    # dropped.
+    # A fault throughout of which only a segment is left
+    # needs evidence from the ship, else it is dropped.
     shrunk = fault.segments and not found.faults[place].segments
     if shrunk and not _is_told_by_the_ship(right.problem, as_logged.repaired):
         problem = identification_problem(as_logged.repaired, found.ship, found.causes)

@@ -64,8 +64,8 @@ def suspected_inputs(
     # Log-likelihood of each row as logged, as the reference.
     base = _by_row(problem, problem.record)
     found = []
-    # For each mislabel the gain of each row if it is undone everywhere, and the segment of largest
-    # sum.
+    # For each mislabel the gain of each row if it is
+    # undone everywhere, and the segment of largest sum.
     for mislabel in _mislabels(log, problem.model):
         gain = _by_row(problem, record_of(with_label(log, mislabel), problem.model)) - base
         total, finding = where_best(gain, mislabel, problem.record)
@@ -246,8 +246,8 @@ def _by_row(problem, record):
     theta = evidence(inner_products(linear, problem.noise, record).products, np.ones(len(columns)))[
         1
     ]
-    # Whitened innovations give the Gaussian log-likelihood of each row. The prior's cost is spread
-    # evenly.
+    # Whitened innovations give the Gaussian log-likelihood
+    # of each row. The prior's cost is spread evenly.
     left = innovations(explained(linear, theta), problem.noise, record)
     return -0.5 * (
         (left.white[..., 0] ** 2).sum(-1) + left.log_determinant + (theta**2).sum() / linear.rows

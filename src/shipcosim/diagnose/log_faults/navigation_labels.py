@@ -83,8 +83,8 @@ def relabelled(
     # With several such faults, or none and clear kinematics, the response of the ship adds nothing.
     if len(found) > 1 or (not found and _is_clear(plain)):
         return []
-    # Under a wrong label the fitted process noise is too large and hides it: limit it to a share of
-    # its first guess.
+    # Under a wrong label the fitted process noise is too large
+    # and hides it: limit it to a share of its first guess.
     if found:
         calm = CALM_JOLT * first_noise(problem.record, problem.model.length).jolt
         problem = replace(
@@ -103,8 +103,8 @@ def relabelled(
         for one in found
     )
     tried = _likely(gains, problem.record, max(LABEL_GAIN, so_far + BETTER_LABEL))
-    # Units change the density of the data; correct for the factors of the faults at hand and of the
-    # candidates.
+    # Units change the density of the data; correct for the
+    # factors of the faults at hand and of the candidates.
     less = sum(_density(one, problem) for one in found)
     return [Relabelled((*others, one), _density(one, problem) - less) for one in tried]
 
@@ -145,8 +145,8 @@ def _is_clear(plain):
 
 def _gain(plain, label, problem):
     """Log-likelihood of each row with a label put right, as a density of what was logged."""
-    # Noise belongs to the logged channels: scale it with the unit, or exchange it with the
-    # channels.
+    # Noise belongs to the logged channels: scale it
+    # with the unit, or exchange it with the channels.
     places = [CHANNELS.index(role) for role in label.channels]
     noise = problem.noise
     white = np.array(noise.white)

@@ -74,8 +74,8 @@ def moving_average(series: np.ndarray, rows: int) -> np.ndarray:
 
 
 def _convolved(series, weights, beyond, ends, axis):
-    # Pad the ends, so that the result is as long as the series, and convolve each series along the
-    # last axis.
+    # Pad the ends, so that the result is as long as the
+    # series, and convolve each series along the last axis.
     last = np.moveaxis(np.asarray(series, float), axis, -1)
     padded = np.pad(last, [(0, 0)] * (last.ndim - 1) + [beyond], mode=_PADDED[ends])
     flat = padded.reshape(-1, padded.shape[-1])

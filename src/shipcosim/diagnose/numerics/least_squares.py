@@ -48,8 +48,8 @@ def least_squares(
     free = ~bound
     found = _solution(triangle, target, free)
     for _ in range(_ROUNDS * count):
-        # Negative gradient at the bounded coefficients. Where it is positive, freeing the
-        # coefficient lowers the residual.
+        # Negative gradient at the bounded coefficients. Where it
+        # is positive, freeing the coefficient lowers the residual.
         pull = np.where(free, -np.inf, triangle.T @ (target - triangle @ found))
         best = int(np.argmax(pull))
         if not pull[best] > least:
@@ -66,8 +66,8 @@ def _feasible(triangle, target, found, free, bound):
         below = free & bound & (wanted <= 0.0)
         if not below.any():
             return wanted
-        # Go towards the unbounded solution until the first coefficient reaches 0, and fix those
-        # that did.
+        # Go towards the unbounded solution until the first
+        # coefficient reaches 0, and fix those that did.
         share = np.min(found[below] / np.maximum(found[below] - wanted[below], 1e-300))
         found = found + share * (wanted - found)
         stopped = below & (found <= 1e-15 * np.abs(found).max())

@@ -52,8 +52,8 @@ def _slopes(step, slope):
         return np.concatenate(
             [slope[:1] - bend * step[:1], slope[:1] + bend * step[:1], slope[1:] + bend * step[1:]]
         )
-    # Continuity of the second derivative at each inner row gives a tridiagonal system for the
-    # derivatives.
+    # Continuity of the second derivative at each inner
+    # row gives a tridiagonal system for the derivatives.
     before = step[:-1]
     after = step[1:]
     lower = after.copy()

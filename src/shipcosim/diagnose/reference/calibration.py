@@ -139,8 +139,8 @@ def causes_beside(found: Calibration) -> dict[str, float]:
     # Allow causes in the ship, which the calibration excluded.
     every = replace(found.logs, is_well=False)
     suspects = {}
-    # Try beside the calibrated tolerances and beside the stated ones, as wide tolerances can hide a
-    # cause.
+    # Try beside the calibrated tolerances and beside the
+    # stated ones, as wide tolerances can hide a cause.
     for scale in dict.fromkeys((found.scale, 1.0)):
         fit = partial(fitted_jointly, scale=scale, about_all=True)
         without = (
@@ -188,8 +188,8 @@ def likeliest_scale(fit: JointFit, scale: float = 1.0) -> float:
             for s in SCALES
         ]
     )
-    # The smallest scale within the margin of the best, so that tolerances are not widened without
-    # need.
+    # The smallest scale within the margin of the best,
+    # so that tolerances are not widened without need.
     near = np.flatnonzero(scores > scores.max() - WIDER)
     return SCALES[near[0]]
 
@@ -215,8 +215,8 @@ def numbers_of(fit: JointFit) -> tuple[list[str], np.ndarray, np.ndarray, np.nda
     sizes = np.array([[fit.columns[i].changes.get(name, 0.0) for i in wanted] for name in names])
     # Covariance of the columns' θ by how differently the parts of the logs pull at them, (p, p) array.
     moves = _pulls(fit) @ fit.covariance
-    # Posterior covariance plus a sandwich term: how differently the parts of the logs pull, doubled
-    # for another day.
+    # Posterior covariance plus a sandwich term: how differently
+    # the parts of the logs pull, doubled for another day.
     spread = (fit.covariance + 2.0 * (moves.T @ moves))[np.ix_(wanted, wanted)]
     return names, np.sqrt((sizes**2).sum(1)), sizes @ fit.theta[wanted], sizes @ spread @ sizes.T
 
@@ -226,8 +226,8 @@ def dispersion_of(fit: JointFit) -> float:
     # Pull of each part, and its information about each column.
     pulls = _pulls(fit)
     known = np.stack([np.diag(part)[1:] for part in fit.products.blocks])
-    # Mean of squared pulls over their expected variance, weighted by information, with a limit for
-    # each part.
+    # Mean of squared pulls over their expected variance,
+    # weighted by information, with a limit for each part.
     told = np.minimum(known * np.array([column.prior for column in fit.columns]) ** 2, MOST_WEIGHT)
     return float((told * pulls**2 / np.maximum(known, 1e-12)).sum() / told.sum())
 
@@ -263,8 +263,8 @@ def reference_of(
     -------
     Reference
     """
-    # Estimates and covariance of the ship's numbers; the covariance is stored as deviations and
-    # correlations.
+    # Estimates and covariance of the ship's numbers; the
+    # covariance is stored as deviations and correlations.
     names, tolerances, moved, covariance = numbers_of(found.fit)
     std = np.sqrt(np.diag(covariance))
     correlation = np.clip(covariance / np.outer(std, std), -1.0, 1.0)

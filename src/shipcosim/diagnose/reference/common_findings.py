@@ -46,8 +46,8 @@ def common_faults(faults: Mapping[str, Sequence[Finding]]) -> list[Shared[Findin
     faults : mapping of str to sequence of Finding
         By name of the log.
     """
-    # Group faults of the whole log that agree in cause, channels and wording, whatever their
-    # numbers.
+    # Group faults of the whole log that agree in cause,
+    # channels and wording, whatever their numbers.
     by_key: dict[tuple, dict[str, Finding]] = {}
     for name, own in faults.items():
         for fault in own:
@@ -237,8 +237,8 @@ def _ranging(same: Sequence[Discrepancy], logs: int) -> Discrepancy:
     numbers = list(zip(*(_NUMBER.findall(one.what) for one in same), strict=True))
     ranges = iter([_range(texts) for texts in numbers])
     what = _NUMBER.sub(lambda _: next(ranges), same[0].what)
-    # Weighted mean if all sizes have a standard deviation, else the plain one; a log without it has
-    # a share of 0.
+    # Weighted mean if all sizes have a standard deviation,
+    # else the plain one; a log without it has a share of 0.
     values = np.array([one.estimate for one in same])
     stds = np.array([one.std for one in same])
     mean = float(values.mean())

@@ -89,8 +89,8 @@ def sizes_without(
     logs: SeveralLogs, name: str, hypotheses: Sequence[Hypothesis], values: Mapping[str, float]
 ) -> list[Finding]:
     """Causes in the ship with their sizes by all logs but one, as findings."""
-    # Fit the causes to the other logs alone, each with its own weather, and return those in the
-    # ship.
+    # Fit the causes to the other logs alone, each with
+    # its own weather, and return those in the ship.
     others = SeveralLogs(
         {other: problem for other, problem in logs.problems.items() if other != name}
     )
@@ -207,8 +207,8 @@ def _log_errors(
     progress: Callable[[str, int, int], None],
 ) -> LogErrors | None:
     """The errors of one log; None where no stretch of it is whole."""
-    # Predict by co-simulation. If it fails, at least the errors of the unchanged system, by the
-    # array model.
+    # Predict by co-simulation. If it fails, at least the
+    # errors of the unchanged system, by the array model.
     remark = ""
     try:
         tracks = _cosimulated(log, given, causes, progress)

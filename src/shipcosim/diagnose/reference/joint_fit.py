@@ -94,8 +94,8 @@ def fitted_jointly(
     }
     # Common columns for numbers of the ship, separate ones for those of a day.
     layout, common = _layout(logs, hypotheses, columns)
-    # Gauss-Newton: linearise each log about its own motion, solve for all logs together, and
-    # repeat.
+    # Gauss-Newton: linearise each log about its own
+    # motion, solve for all logs together, and repeat.
     for _ in range(rounds):
         found = {
             name: linearised(
@@ -141,8 +141,8 @@ def _layout(
     known = {}
     companions = []
     named = {}
-    # The columns of a log are its known numbers, then companions of its causes, then their
-    # parameters.
+    # The columns of a log are its known numbers, then
+    # companions of its causes, then their parameters.
     for name in logs.problems:
         pairs = logs.all_within(name, hypotheses)
         turned = [f"{one.label}, {k}" for one, _ in pairs for k in range(len(one.parameters))]

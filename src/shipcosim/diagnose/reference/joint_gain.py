@@ -70,8 +70,8 @@ def joint_gain(errors: Mapping[str, LogErrors]) -> dict[str, Any] | None:
     drawn = _roots(
         np.mean([resampled_sums(of, rng) / of.shape[1] for of in squares.values()], axis=0)
     )
-    # Share of the explainable error: from before to the noise floor. It is not defined if both are
-    # equal.
+    # Share of the explainable error: from before to the
+    # noise floor. It is not defined if both are equal.
     share = share_explained(before, after, floor)
     some = bool(np.isfinite(share))
     return {

@@ -89,8 +89,8 @@ def _unmodelled(logs: SeveralLogs, fit: JointFit) -> dict[str, float]:
     kinds = (kind for kind in each[0] if kind not in own)
     found = {}
     for kind in kinds:
-        # Either one log shows the error, at the cost of choosing this log, or all show the same
-        # kind.
+        # Either one log shows the error, at the cost of
+        # choosing this log, or all show the same kind.
         values = [gains[kind] for gains in each]
         found[kind] = max(max(values) - float(np.log(len(values))), sum(values))
     return found | own

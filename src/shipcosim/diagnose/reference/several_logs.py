@@ -60,8 +60,8 @@ class SeveralLogs:
     @cached_property
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """Causes in the ship once, those of the day for each log."""
-        # Causes in the ship are the same hypothesis in all logs; those of the day exist once for
-        # each log.
+        # Causes in the ship are the same hypothesis in all
+        # logs; those of the day exist once for each log.
         ship = {}
         day = []
         for name, problem in self.problems.items():

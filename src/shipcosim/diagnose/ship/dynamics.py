@@ -39,8 +39,8 @@ def current_at(time: Arithmetic, model: ShipModel) -> tuple[Arithmetic, Arithmet
     share = share_of(time, model.span)
     north = water.current_north + water.trend_north * share
     east = water.current_east + water.trend_east * share
-    # A current that varies in speed and direction comes on top, from its values at the first and
-    # last row.
+    # A current that varies in speed and direction comes
+    # on top, from its values at the first and last row.
     ends = (water.north_start, water.east_start, water.north_end, water.east_end)
     if any(ends):
         speed, to = varying_current(time, *ends, time_start=first, time_end=last)
@@ -96,8 +96,8 @@ def loads(
     def kept(name, load):
         return _kept_at_hull(name, load, u_r, inputs, model)
 
-    # Thrusters of this project, then third-party FMUs by their surrogates. Loads of equal parts are
-    # taken over.
+    # Thrusters of this project, then third-party FMUs by
+    # their surrogates. Loads of equal parts are taken over.
     for name in [
         name for name in parts if isinstance(parts[name], (AzimuthParameters, TunnelParameters))
     ]:
@@ -177,8 +177,8 @@ def _wind_loads(motion: Motion, inputs: Inputs, model: ShipModel) -> Load:
     direction = inputs.wind_from
     if speed is None or direction is None:
         raise ValueError("the log has no wind")
-    # Wind over ground becomes apparent by the motion of the ship. Wind comes from its direction,
-    # hence the signs.
+    # Wind over ground becomes apparent by the motion of the
+    # ship. Wind comes from its direction, hence the signs.
     if model.wind_is_true:
         north = -speed * cos(direction)
         east = -speed * sin(direction)
@@ -235,8 +235,8 @@ def _accelerations(
     u_dot, v_dot, r_dot = accelerations(
         motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"]
     )
-    # A steady current turns in body axes: its rate there is -r x current, which is added for the
-    # velocity over ground.
+    # A steady current turns in body axes: its rate there is -r
+    # x current, which is added for the velocity over ground.
     return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
 
 

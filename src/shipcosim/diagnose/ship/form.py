@@ -155,8 +155,8 @@ def form_sizes(
     # Coefficients of the hull, and the level of the wind load.
     found |= {f"{vessel}.{name}": size for name, size in _hull_sizes(hull).items() if size > 0.0}
     found[f"{vessel}.wind_load_scale"] = WIND_LEVEL
-    # Tunnel thrusters lose thrust with speed; others by thrust deduction, and by direction if they
-    # turn.
+    # Tunnel thrusters lose thrust with speed; others by
+    # thrust deduction, and by direction if they turn.
     for name in drives:
         if isinstance(parts[name], TunnelParameters):
             found[f"{name}.speed_loss"] = SPEED_LOSS * _OF_LENGTH / hull.length
@@ -229,8 +229,8 @@ def _hull_sizes(hull: HullParameters) -> dict[str, float]:
     )
     half = 0.5 * hull.length
     strength = _strength(hull)
-    # Quadratic damping at this speed, as linear damping: in surge by its coefficient, in sway and
-    # yaw by strips.
+    # Quadratic damping at this speed, as linear damping: in
+    # surge by its coefficient, in sway and yaw by strips.
     found["X_u"] += LINEAR * speed * abs(hull.X_uu)
     found["Y_v"] += LINEAR * side * strength * hull.length
     found["N_r"] += LINEAR * side / half * strength * half**4 / 2.0

@@ -102,8 +102,8 @@ class Record:
 
     def substeps(self, model: ShipModel) -> int:
         """Number of integration steps from row to row; more than one for a small or stiff ship."""
-        # Steps short enough for the size of the ship and for its fastest response, as a power of
-        # two.
+        # Steps short enough for the size of the ship and
+        # for its fastest response, as a power of two.
         rows = self.step * max(
             1.0 / (_ONE_STEP * np.sqrt(model.length)), self.rate / _RATE_OF_A_STEP
         )
@@ -114,8 +114,8 @@ class Record:
 
         Late channels are taken that much later; where the navigation is late, all others are taken earlier.
         """
-        # Shift the inputs by the lags of their channels. A late navigation means that the inputs
-        # act earlier.
+        # Shift the inputs by the lags of their channels. A
+        # late navigation means that the inputs act earlier.
         lags = model.parts["instruments"]
         late = share * self.step - lags.navigation_lag
         behind = self._places(late + lags.thruster_lag, steps)
@@ -223,8 +223,8 @@ def _driven(log: xarray.Dataset, model: ShipModel, measured: np.ndarray) -> Reco
     time = log["time"].values.astype(float)
     remarks = []
     units = {}
-    # A step is known if all inputs are measured at both of its ends, away from holes between
-    # stretches.
+    # A step is known if all inputs are measured at both
+    # of its ends, away from holes between stretches.
     known = np.ones(rows, bool)
     for name in model.thrusters:
         units[name], whole = _unit(log, name, model, rows, remarks)
@@ -278,8 +278,8 @@ def _check_length(log: xarray.Dataset, model: ShipModel, motion: Motion) -> None
     """Raise ShipcosimError for a log that is too short for what its ship does, or has too few rows."""
     rows = log.sizes["time"]
     span = float(log["time"][-1] - log["time"][0])
-    # The response of ships scales with the root of their length, and so does the shortest useful
-    # log.
+    # The response of ships scales with the root of
+    # their length, and so does the shortest useful log.
     least = _SHORTEST * np.sqrt(model.length)
     if span < least or rows < _FEWEST_ROWS:
         # The slowest response is only for the message.
@@ -308,8 +308,8 @@ def _thinned(record: Record, rows: int, model: ShipModel) -> Record:
         count = np.isfinite(whole).sum(1)
         return np.where(count > 0, np.nansum(whole, axis=1) / np.maximum(count, 1), np.nan)
 
-    # Thrust and wind load go with the squared speed, so its mean must be kept: the root of the mean
-    # signed square.
+    # Thrust and wind load go with the squared speed, so its
+    # mean must be kept: the root of the mean signed square.
     def of_squares(series):
         push = mean(series * np.abs(series))
         return np.sign(push) * np.sqrt(np.abs(push))

@@ -41,8 +41,8 @@ class QuadraticThrust(NamedTuple):
         # Unit vectors of the load along the thrust and across it, with their moments x Fy - y Fx.
         c = np.cos(self.axis + azimuth)
         s = np.sin(self.axis + azimuth)
-        # Quadratic law T = c n |n|, with the coefficient of the direction of rotation, and its
-        # slope 2 c |n|.
+        # Quadratic law T = c n |n|, with the coefficient of
+        # the direction of rotation, and its slope 2 c |n|.
         share = np.where(rpm >= 0.0, self.ahead, self.astern)
         along = (c, s, self.x * s - self.y * c)
         across = (-s, c, self.x * c + self.y * s)
@@ -133,8 +133,8 @@ class Surrogate:
 
     def _at(self, time: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
         """`about` and `rest` at some times."""
-        # Interpolate linearly between the times of the co-simulation, and keep the result for the
-        # next call.
+        # Interpolate linearly between the times of the
+        # co-simulation, and keep the result for the next call.
         asked = np.asarray(time, float).tobytes()
         found = self.met.get(asked)
         if found is None:

@@ -87,8 +87,8 @@ def with_surrogates(model: ShipModel, record: Record, motion: Motion) -> ShipMod
 
 def _fits(surrogate: Surrogate, record: Record, units: Mapping[str, np.ndarray]) -> bool:
     """True if a surrogate was built for these times and similar inputs."""
-    # The record must lie in the times of the surrogate, and its drives must differ little from
-    # those it was built with.
+    # The record must lie in the times of the surrogate, and its
+    # drives must differ little from those it was built with.
     inside = surrogate.rows[0] <= record.time[0] and record.time[-1] <= surrogate.rows[-1] + 1e-6
     clock = without_holes(surrogate.rows, record.time)
     near = {
@@ -170,8 +170,8 @@ def _runs(name: str, one: ThirdPartyFmu, given: Mapping[str, np.ndarray]) -> Ite
 
 def _fine(time: np.ndarray, runs: int, step: float) -> np.ndarray:
     """Times of the run: a quarter of the rows' step or the system's own, coarser where there are many copies."""
-    # Step: a quarter of a row, not below the system's, and coarser if all copies together take too
-    # many steps.
+    # Step: a quarter of a row, not below the system's, and
+    # coarser if all copies together take too many steps.
     row = time[1] - time[0]
     span = time[-1] - time[0]
     wanted = max(0.25 * row, step, min(row, runs * span / _MOST_STEPS))
@@ -293,12 +293,12 @@ def fitted_thrust(
     scale = square @ square
     if scale == 0.0:
         return QuadraticThrust()
-    # A fixed thruster's axis is the direction of its mean force; a turning one's follows the
-    # azimuth.
+    # A fixed thruster's axis is the direction of its
+    # mean force; a turning one's follows the azimuth.
     axis = 0.0 if turns else float(np.arctan2(load[1] @ square, load[0] @ square))
     along = np.cos(axis + azimuth) * load[0] + np.sin(axis + azimuth) * load[1]
-    # Least-squares coefficient of the force along the axis, then for each sense of rotation with
-    # enough data.
+    # Least-squares coefficient of the force along the axis,
+    # then for each sense of rotation with enough data.
     both = along @ square / scale
     ways = [square * where for where in (rpm > 0.0, rpm < 0.0)]
     ahead, astern = (

@@ -116,8 +116,8 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
     idle = []
     unclear = []
     drives = {kind: [] for kind in DRIVES}
-    # Sort the inputs: fed by the motion of the ship, by a drive of a thruster, or by nothing that a
-    # log has.
+    # Sort the inputs: fed by the motion of the ship, by a
+    # drive of a thruster, or by nothing that a log has.
     for variable, feeding in into.items():
         if all(
             c.source[0] == ship and c.source[1] in MOTION and c.mapping is None for c in feeding
@@ -127,11 +127,11 @@ def third_party_fmu_of(system: System, name: str, ship: str) -> ThirdPartyFmu:
             drives[kind].append(feeding[0])
         else:
             idle.append(variable)
-    # Speed has precedence over thrust: a log has one of them.
+    # With a speed the FMU needs no commanded thrust, which keeps its start value.
     if drives["rpm"]:
         idle += [c.target[1] for c in drives.pop("thrust")]
-    # Of several candidates for a drive, the one that is named for this thruster; else it is unclear
-    # which.
+    # Of several candidates for a drive, the one that is
+    # named for this thruster; else it is unclear which.
     for kind, candidates in drives.items():
         named = [c for c in candidates if c.source[1] == f"{name}_{kind}"] or candidates
         one_source = len({c.source for c in named}) == 1
@@ -174,8 +174,8 @@ def _unit(system: System, connection: Connection) -> str | None:
 def _drive(system: System, kind: str, connection: Connection) -> Link:
     """The link from a log to an input, through the system where one of its inputs feeds it."""
     unit = _unit(system, connection)
-    # Convert from the unit of the log to that of the input, then apply the connection's own factor
-    # and offset.
+    # Convert from the unit of the log to that of the input,
+    # then apply the connection's own factor and offset.
     per, offset = (1.0, 0.0) if unit in (None, "", "1") else conversion(DRIVES[kind], unit)
     if connection.source[0] is not None:
         return Link(kind, connection.target[1], per, offset)

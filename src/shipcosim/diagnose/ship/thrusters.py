@@ -56,8 +56,8 @@ def dp_thruster_of(model: ShipModel, name: str) -> DpThruster:
     DpThruster
     """
     unit = model.parts[name]
-    # Third-party thrusters by the fitted quadratic law. Its coefficients are per rpm^2, those here
-    # per (rev/s)^2.
+    # Third-party thrusters by the fitted quadratic law. Its
+    # coefficients are per rpm^2, those here per (rev/s)^2.
     if name in model.third_party:
         surrogate = model.third_party[name].built_surrogate
         pointed = "azimuth" in model.drives(name)
@@ -117,8 +117,8 @@ def _loads_of(
     if isinstance(unit, TunnelParameters):
         *_, surge, sway, yaw = tunnel_loads(tunnel_replay(n, tunnel=unit), u_r, tunnel=unit)
         return surge, sway, yaw
-    # An azimuth thruster may stand in the slipstream of its neighbour, whose speed and direction
-    # are needed then.
+    # An azimuth thruster may stand in the slipstream of its
+    # neighbour, whose speed and direction are needed then.
     state = azimuth_given(n, azimuth, unit=unit)
     neighbour = model.neighbours.get(name)
     extra = {}
@@ -187,8 +187,8 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     dict of str to float
         [rad]
     """
-    # It turns if its direction is connected, or if nothing drives it, and its azimuth rate is not
-    # 0.
+    # It turns if its direction is connected, or if
+    # nothing drives it, and its azimuth rate is not 0.
     fed = {connection.target for connection in system.connections}
     found = {}
     for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:
@@ -230,8 +230,8 @@ def with_thrust(model: ShipModel, ratio: float, std: float) -> ShipModel:
     -------
     ShipModel
     """
-    # The loss follows from 1 - loss_new = ratio (1 - loss_old); tolerance and standard deviation
-    # add up as squares.
+    # The loss follows from 1 - loss_new = ratio (1 - loss_old);
+    # tolerance and standard deviation add up as squares.
     paths = thrust_numbers(model)
     values = {path: 1.0 - ratio * (1.0 - model.get(path)) for path in paths}
     known = {path: float(np.hypot(model.tolerances.get(path, 0.0), std)) for path in paths}

@@ -75,8 +75,8 @@ def kept_on_track(
     rates = Motion(*np.zeros((6, count)))
     rows = []
     units = {name: [] for name in ships.thrusters}
-    # At each row: controller, first-order response of the thrusters, then integration over the
-    # step.
+    # At each row: controller, first-order response of
+    # the thrusters, then integration over the step.
     for k in range(n):
         rows.append(ship)
         load, integral = dp.load(ship, Motion(*(value[..., k] for value in track)), integral)
@@ -186,8 +186,8 @@ class DpController:
         dy = want.y - ship.y
         error = np.stack([c * dx + s * dy, c * dy - s * dx, want.psi - ship.psi])
         rate = np.stack([want.u - ship.u, want.v - ship.v, want.r - ship.r])
-        # PID law tau = M (w^2 e + 2 zeta w e_dot + integral), limited to what a ship can be asked
-        # for.
+        # PID law tau = M (w^2 e + 2 zeta w e_dot +
+        # integral), limited to what a ship can be asked for.
         w = self.frequency
         integral = integral + self.h * _INTEGRAL * w * w * w * error
         wanted = self.mass[:, None] * (w * w * error + 2.0 * _DAMPING * w * rate + integral)
@@ -214,14 +214,14 @@ class DpController:
         (..., k, 3) array
             For k forces, in the order of the thrusters.
         """
-        # Columns of the allocation matrix: unit force along each thruster and, if it turns, across
-        # it.
+        # Columns of the allocation matrix: unit force
+        # along each thruster and, if it turns, across it.
         columns = []
         eases = []
         for name, unit in self.thrusters.items():
             angle = unit.axis + (azimuths[name] if unit.pointed else 0.0 * azimuths[name])
-            # Thrusters that are held or without thrust take no part; turning is less readily used
-            # than speed.
+            # Thrusters that are held or without thrust take no
+            # part; turning is less readily used than speed.
             alone = held.get(name, False) if unit.ahead else True
             for i in range(self._forces(name)):
                 c = np.cos(angle + 0.5 * np.pi * i)

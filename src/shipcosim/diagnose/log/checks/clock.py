@@ -69,8 +69,8 @@ class _Side:
         )
 
     def _columns(self, first, last):
-        # Rows from the start of the first segment until the filter has forgotten the last one.
         """Columns of some segments that are near each other, from a row on."""
+        # Rows from the start of the first segment until the filter has forgotten the last one.
         time = self.motion.time
         axes = self.rest.shape[1]
         begin = max(int(np.searchsorted(time, first.min(), side="right")) - 1, 0)
@@ -88,9 +88,9 @@ class _Side:
         return begin * axes, whitener(ways).reshape(-1, first.size)
 
     def match(self, columns):
-        # Project out a scale error of the velocity in the whole log, by the regularised least-
-        # squares solution.
         """Match of columns with the rest, beside the scale of the whole log, (k,)."""
+        # Project out a scale error of the velocity in the
+        # whole log, by the regularised least-squares solution.
         scale = self.scale.ravel()
         rest = self.rest.ravel()
         shared = columns.with_series(scale) / self._scale_energy()
@@ -139,8 +139,8 @@ def wrong_clock(log: dict) -> list[Finding]:
     sides = [side for side in sides if is_clear(side.motion, side.whitener)]
     if not sides:
         return []
-    # Divide the log into blocks, with one whitened regressor for each. A run of blocks is the sum
-    # of theirs.
+    # Divide the log into blocks, with one whitened regressor
+    # for each. A run of blocks is the sum of theirs.
     edges = _block_edges(sides)
     blocks = [side.column(edges[:-1], edges[1:]) for side in sides]
     gram = sum(side.gram(columns) for side, columns in zip(sides, blocks, strict=True))
@@ -172,8 +172,8 @@ def _side(motion):
     # Innovations of the level, clipped against outliers.
     whitener = filter_for(motion)[0]
     rest = np.clip(whitener(motion.level), -CLOCK_CLIP, CLOCK_CLIP)
-    # The way that a wrong clock adds, from the smoothed velocity: its noise would correlate with
-    # the level.
+    # The way that a wrong clock adds, from the smoothed
+    # velocity: its noise would correlate with the level.
     way = motion.way(motion.slow(motion.velocity))
     # A filter of gain K forgets a factor 1 - K in each row; the sum counts it in nats.
     forgotten = np.cumsum(-np.log(np.maximum(1.0 - whitener.gains, np.exp(-_FORGOTTEN))))
@@ -196,8 +196,8 @@ def _best(sides, blocks, gram, edges):
     match = np.sum([side.match(c) for side, c in zip(sides, blocks, strict=True)], axis=0)
     span = differences(np.arange(count + 1))
     nats, value, _ = _evidence(*sums_of_runs(match, gram))
-    # Exclude runs that are too short, too long for part of a log, or off by less than the
-    # tolerance.
+    # Exclude runs that are too short, too long for
+    # part of a log, or off by less than the tolerance.
     nats[
         (span < FEWEST_BLOCKS) | (span > LARGEST_SHARE * count) | (np.abs(value) < CLOCK_TOLERANCE)
     ] = -np.inf
@@ -216,8 +216,8 @@ def differences(values: np.ndarray) -> np.ndarray:
 
 def sums_of_runs(match: np.ndarray, gram: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Match and energy of all runs of blocks from an edge (row) to another (column)."""
-    # With the double cumulated sum G of the Gram matrix, the energy of blocks i to j is G_ii + G_jj
-    # - G_ij - G_ji.
+    # With the double cumulated sum G of the Gram matrix, the
+    # energy of blocks i to j is G_ii + G_jj - G_ij - G_ji.
     grams = np.pad(np.cumsum(np.cumsum(gram, axis=0), axis=1), ((1, 0), (1, 0)))
     own = np.diag(grams)
     return (

@@ -79,8 +79,8 @@ def _in_parts(table, stated):
     if labels and not is_as_labelled(right, stated):
         labels = []
         right = table
-    # A wrong clock can look like a wrong label. Where both were found at one place, the label is
-    # dropped and the clock is estimated again.
+    # A wrong clock can look like a wrong label. Where both were found at
+    # one place, the label is dropped and the clock is estimated again.
     clock = wrong_clock(right)
     kept = [label for label in labels if not _is_the_clock(label, clock, table["time"])]
     if len(kept) < len(labels):

@@ -88,8 +88,8 @@ def position_motion(log: dict) -> Motion | None:
     rows = complete_rows(log, roles)
     if len(rows) < 30:
         return None
-    # Turn the velocity from body to earth axes, and keep the share of each channel: a wrong label
-    # changes only its share.
+    # Turn the velocity from body to earth axes, and keep the
+    # share of each channel: a wrong label changes only its share.
     north, east, surge, sway, heading = (log[role][rows] for role in roles)
     cosine = np.cos(np.radians(heading))
     sine = np.sin(np.radians(heading))
@@ -134,8 +134,8 @@ def after_gaps(time: np.ndarray, longest: float = LONGEST_BRIDGE) -> np.ndarray:
 
 def _jumps(seen):
     """Rows at which a position leaps and stays there: another reference, rows lost, channels exchanged."""
-    # A leap differs from the median of its neighbours by more than the usual scatter and their
-    # range.
+    # A leap differs from the median of its neighbours
+    # by more than the usual scatter and their range.
     change = np.diff(seen, axis=0, prepend=seen[:1])
     leap = np.zeros(len(seen), bool)
     for axis in range(seen.shape[1]):
@@ -161,8 +161,8 @@ class Filter:
 
     def __call__(self, levels: np.ndarray) -> np.ndarray:
         """Innovations of levels (n, ...) in units of their standard deviation; 0 where a row starts anew."""
-        # The level that the filter predicts follows a linear recursion. It is solved for all rows
-        # at once as a bidiagonal system.
+        # The level that the filter predicts follows a linear recursion.
+        # It is solved for all rows at once as a bidiagonal system.
         flat = levels.reshape(len(levels), -1)
         driven = np.vstack([flat[:1], self.gains[:-1, None] * flat[:-1]])
         before = np.append(
@@ -212,14 +212,14 @@ def filters(time: np.ndarray, starts: np.ndarray) -> list[Filter]:
     variance = np.ones(len(RATIOS))
     gains = np.ones((len(steps), len(RATIOS)))
     scale = np.ones((len(steps), len(RATIOS)))
-    # Riccati recursion of the scalar Kalman filter, in units of the measurement noise, for all
-    # ratios at once.
+    # Riccati recursion of the scalar Kalman filter, in units
+    # of the measurement noise, for all ratios at once.
     for row, (step, anew) in enumerate(zip(steps.tolist(), starts.tolist(), strict=True)):
         if row == 0 or anew:
             variance = np.ones(len(RATIOS))
             continue
-        # Innovation variance: prior variance, wander over the step, and measurement noise of 1. The
-        # posterior variance equals the gain.
+        # Innovation variance: prior variance, wander over the step, and
+        # measurement noise of 1. The posterior variance equals the gain.
         total = variance + ratios * step + 1.0
         variance = np.minimum(1.0 - 1.0 / total, 1.0 - 1e-9)
         gains[row], scale[row] = variance, total
@@ -248,8 +248,8 @@ def whiteness(white: np.ndarray) -> float:
 
 def _togetherness(white):
     tame = np.clip(white, -4.0, 4.0)  # a part may have few rows
-    # Integrated autocorrelation time: 1 + 2 times the sum of the correlations; correlated rows
-    # count less.
+    # Integrated autocorrelation time: 1 + 2 times the sum
+    # of the correlations; correlated rows count less.
     lags = range(1, min(WHITENESS_LAGS + 1, len(white)))
     power = np.mean(tame**2) + 1e-12
     together = [np.mean(tame[lag:] * tame[:-lag]) / power for lag in lags]
@@ -262,7 +262,9 @@ def is_clear(motion: Motion, whitener: Filter, segment: Segment | None = None) -
     moving = whitener.gains < 1.0
     inner = slice(None) if segment is None else (time >= segment[0]) & (time <= segment[1])
     slow = motion.slow(motion.velocity)[inner]
+    # Noise of the velocity per unit of time, from gain and innovations of the filter.
     gain = np.median(whitener.gains[moving])
     std = whitener.std * np.median(whitener.scale[moving])
     wander = (gain * std) ** 2 / np.median(np.diff(time))
+    # A Gaussian kernel of width T leaves 1 / (2 sqrt(pi) T) of the density of white noise.
     return bool(np.mean(slow**2) > CLEAR_MOTION**2 * wander / (2.0 * np.sqrt(np.pi) * SLOW_MOTION))

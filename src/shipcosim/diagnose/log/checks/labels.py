@@ -61,8 +61,8 @@ def mislabelled(log: dict) -> tuple[list[Finding], dict]:
         `time` [s] and roles in their units, NaN where not to be used; headings without jumps.
     """
     found = []
-    # Heading before position, since velocities are turned by it. Each comparison can have two
-    # mislabelled segments.
+    # Heading before position, since velocities are turned by
+    # it. Each comparison can have two mislabelled segments.
     for motion_of, labels in ((heading_motion, HEADING_LABELS), (position_motion, POSITION_LABELS)):
         for _ in range(2):
             finding = _best(log, motion_of, labels)
@@ -86,8 +86,8 @@ def _best(log, motion_of, labels):
     filters = filter_for(plain, levels)
     likely = np.stack([_log_likelihood(f, levels[:, :, k]) for k, f in enumerate(filters)], axis=1)
     hypotheses = []
-    # For each label the segment in which undoing it gains most, divided by the correlation of the
-    # innovations.
+    # For each label the segment in which undoing it gains
+    # most, divided by the correlation of the innovations.
     for number, label in enumerate(labels, start=1):
         gain, segment = best_segment(plain.time, likely[:, number] - likely[:, 0])
         rough = whiteness(in_segment(filters[number](levels[:, :, number]), plain.time, segment))
@@ -101,8 +101,8 @@ def _best(log, motion_of, labels):
         return None
     best = max(hypotheses, key=lambda hypothesis: hypothesis.gain)
     whitener = filters[1 + labels.index(best.mislabel)]
-    # A unit changes the noise as well: if it is the same outside the segment, the whole log is in
-    # that unit.
+    # A unit changes the noise as well: if it is the same
+    # outside the segment, the whole log is in that unit.
     if best.mislabel.scale is not None and _is_alike(log, best):
         best = replace(best, segment=None)
     return _finding(_refined(log, motion_of, whitener, best), best, hypotheses)
@@ -165,8 +165,8 @@ def _explains(plain: Motion, other: Motion, whitener: Filter, hypothesis) -> boo
     # Slopes of the observed on the reported motion, with the label undone and as logged.
     under = _slopes(other, channels, whitener, hypothesis.segment)
     given = _slopes(plain, channels, whitener, hypothesis.segment)
-    # Units need slopes close to 1, and motion well above the noise, which attenuates slopes. Signs
-    # and swaps need only the right sign and size.
+    # Units need slopes close to 1, and motion well above the noise, which
+    # attenuates slopes. Signs and swaps need only the right sign and size.
     lowest, highest = (1.0 - LABEL_SLOPE_NEAR, 1.0 + LABEL_SLOPE_NEAR) if is_unit else (0.3, 1.7)
     if is_unit and not is_clear(other, whitener, hypothesis.segment):
         return False
@@ -220,8 +220,8 @@ def _refined(log, motion_of, whitener, best):
             if 0 <= k < len(log["time"]) and (k < ends[1] if end == 0 else k > ends[0])
         ]
         segments = [log["time"][[k, ends[1]] if end == 0 else [ends[0], k]] for k in places]
-        # Cost of each place: squared innovations with the label undone there, and a penalty for
-        # each leap that is left.
+        # Cost of each place: squared innovations with the label
+        # undone there, and a penalty for each leap that is left.
         tried = [motion_of(undone(log, best.mislabel, [one])) for one in segments]
         white = np.clip(
             whitener(np.stack([one.level for one in tried], axis=2)), -LABEL_CLIP, LABEL_CLIP

@@ -190,8 +190,8 @@ def _flat_runs(log, roles):
     for first, last in runs(np.all(np.isnan(values), axis=1)):
         if time[last - 1] - time[first] >= SHORTEST_GAP and last - first >= FEWEST_GAP_ROWS:
             yield _Run(first, last - 1, roles, NO_VALUES)
-    # Second differences below the channels' resolution mark straight or held values. A row before
-    # an empty one is left open.
+    # Second differences below the channels' resolution mark straight
+    # or held values. A channel without values there does not count.
     bends = np.column_stack([_bend(log[role], role) for role in roles])
     limits = [_straight(log[role], role) for role in roles]
     straight = ((bends <= limits) | np.isinf(bends)).all(axis=1) & np.isfinite(bends).any(axis=1)
@@ -357,8 +357,8 @@ def _long_way(time, heading, a, b, tolerance, faster):
     """
     n = len(a)
     between = len(heading) - len(a) - 1
-    # Both ends are near each other across north, but far apart as numbers, farther than the craft
-    # can turn.
+    # Both ends are near each other across north, but far
+    # apart as numbers, farther than the craft can turn.
     crossing = (
         (np.abs(b - a) > 180.0)
         & (np.abs(wrap_series(b - a)) < 45.0)

@@ -61,16 +61,16 @@ def mislabelled_wind(log: dict) -> list[Finding]:
     if len(rows) < 100:
         return []
     time, speed, wind_from, heading, surge, sway = (log[role][rows] for role in ("time", *ROLES))
-    # Velocity over ground, and the wind over north and east with the direction as labelled,
-    # mirrored, or from north.
+    # Velocity over ground, and the wind over north and east
+    # with the direction as labelled, mirrored, or from north.
     velocity = (surge + 1j * sway) * np.exp(1j * np.radians(heading))
     angles = {BOW: wind_from + heading, MIRRORED: heading - wind_from, NORTH: wind_from}
     winds = {name: _axes(speed * np.exp(1j * np.radians(angle))) for name, angle in angles.items()}
     motion = _still(time, _axes(velocity))
     # The wind sensor averages, so compare with the velocity averaged over the same time.
     slow = motion.slow(motion.velocity)
-    # What is left is the wind over ground: a random walk with noise, with its own filter for each
-    # reading.
+    # What is left is the wind over ground: a random walk
+    # with noise, with its own filter for each reading.
     levels = np.stack([wind - slow for wind in winds.values()], axis=2)
     filters = dict(zip(winds, filter_for(motion, levels), strict=True))
     # First how the direction is counted, then unit and frame of the speed in that reading.
@@ -96,8 +96,8 @@ class _Wind(Motion):
 def _frame(time, winds, slow, filters):
     """How the direction is counted, where, and the evidence for it; as labelled where nothing says otherwise."""
     likely = {}
-    # Log-likelihood of each row as apparent wind or as wind over ground, whichever is likelier in
-    # the whole log.
+    # Log-likelihood of each row as apparent wind or as wind
+    # over ground, whichever is likelier in the whole log.
     for name, whitener in filters.items():
         white = [whitener(wind_less) for wind_less in (winds[name] - slow, winds[name])]
         rows = [-0.5 * np.sum(np.clip(w, -LABEL_CLIP, LABEL_CLIP) ** 2, axis=1) for w in white]
@@ -105,8 +105,8 @@ def _frame(time, winds, slow, filters):
             whitener.std * whitener.scale
         )
     best = (BOW, None, 0.0)
-    # Best segment for each other reading. The wind over ground must also be steadier there, as
-    # gusts can mimic evidence.
+    # Best segment for each other reading. The wind over ground
+    # must also be steadier there, as gusts can mimic evidence.
     for name in (MIRRORED, NORTH):
         gain, segment = best_segment(time, likely[name] - likely[BOW])
         rough = whiteness(in_segment(filters[name](winds[name] - slow), time, segment))
@@ -124,8 +124,8 @@ def _steadiness(wind, time, segment):
 
 def _finding(time, wind, smooth, slow, whitener: Filter, frame, segment, gain):
     """The mislabel that the slope on the ship's velocity leaves over."""
-    # Whitened regression of the wind on the ship's velocity: the slope tells apparent wind from
-    # wind over ground.
+    # Whitened regression of the wind on the ship's velocity:
+    # the slope tells apparent wind from wind over ground.
     y = whitener(wind)
     x = whitener(slow)
     if frame == BOW:
@@ -152,18 +152,18 @@ def _unit(time, y, x, smooth, wind, slow):
             axis=1,
         )
         gain, segment = best_segment(time, gains)
-        # Weigh the evidence by the correlation of the residuals; a unit of the whole log needs
-        # more.
+        # Weigh the evidence by the correlation of the
+        # residuals; a unit of the whole log needs more.
         rough = whiteness(in_segment(y - b * x, time, segment))
         if kind == "apparent" or gain / rough < (LABEL_GAIN if segment else WIND_UNIT_GAIN):
             continue
-        # The slope must be near that of the unit, for the wind as logged and smoothed: noise
-        # affects these differently.
+        # The slope must be near that of the unit, for the wind as
+        # logged and smoothed: noise affects these differently.
         slope, std = _slope(in_segment(y, time, segment), in_segment(x, time, segment))
         also, _ = _slope(in_segment(smooth, time, segment), in_segment(x, time, segment))
         near = all(abs(one - b) < max(WIND_SLOPE_NEAR * b, 0.2) for one in (slope, also))
-        # A unit changes the speed by its factor at both ends, and corrected the wind goes on as
-        # beside the segment.
+        # A unit changes the speed by its factor at both ends,
+        # and corrected the wind goes on as beside the segment.
         near &= b == 0.0 or leaps(time, np.hypot(*wind.T), segment, b)
         near &= _goes_on(time, wind - slow, wind / b - slow if b else wind, segment)
         # The slope must be precise, and clearly not 1.

@@ -31,14 +31,14 @@ def silent_rate(log: dict) -> list[Finding]:
     # Resolution of the channel, and second differences as a measure of its noise.
     fine = quantum(rate)
     bends = np.abs(np.diff(rate, n=2, prepend=rate[:2]))
-    # The heading turns, while the rate is below its own resolution in the whole log: wrong unit
-    # throughout.
+    # The heading turns, while the rate is below its own
+    # resolution in the whole log: wrong unit throughout.
     if _is_below_its_resolution(rate, fine) and _turns(motion, None) > 3.0 * np.std(
         motion.slow(rate)
     ):
         return [finding_of(RADIAN, 0.98)] if _signs_turn(motion) else []
-    # Usual noise of the log from its noisier windows; below 3 resolutions it cannot be seen to
-    # fall.
+    # Usual noise of the log from its noisier windows;
+    # below 3 resolutions it cannot be seen to fall.
     windows = np.array_split(bends, max(4, len(bends) // 60))
     usual = float(np.quantile([window.mean() for window in windows], 0.8))
     if usual <= 3.0 * fine:

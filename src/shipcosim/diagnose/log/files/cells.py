@@ -56,8 +56,8 @@ def numbers_of(name: str, cells: Any, decimal: str) -> tuple[np.ndarray, list[st
     grouping = "," if decimal == "." else "."
     plain = text.str.replace("\u2212", "-", regex=False)
     plain = plain.str.replace(r"(?<=[\d.])[dD](?=[+-]?\d+$)", "e", regex=True)
-    # Remove the grouping of thousands only where the whole cell has this form, then put a point for
-    # the decimal sign.
+    # Remove the grouping of thousands only where the whole cell
+    # has this form, then put a point for the decimal sign.
     if decimal == "," or plain.str.contains(",", regex=False).any():
         is_grouped = plain.str.fullmatch(
             rf"[+-]?\d{{1,3}}(?:[{grouping}]\d{{3}})+(?:[{decimal}]\d*)?"

@@ -37,8 +37,8 @@ def text_of_sheet(path: Path, sheet: str | None = None) -> tuple[str, list[str]]
     except ImportError as error:
         remedy = "Install it by `pip install shipcosim[excel]`, or save the sheet as .csv."
         raise error_at(str(path), "workbooks of Excel need openpyxl.", remedy) from error
-    # Check the unpacked size before reading, against archives that are small but unpack to a huge
-    # file.
+    # Check the unpacked size before reading, against
+    # archives that are small but unpack to a huge file.
     try:
         with zipfile.ZipFile(path) as parts:
             size = sum(part.file_size for part in parts.infolist())

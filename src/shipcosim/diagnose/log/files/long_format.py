@@ -149,7 +149,7 @@ def brought_together(
     time, signals and list of str
         Interpolated between a channel's own times, angles the short way round, not across holes; what is to be said.
     """
-    # Does a share of the rows hold most channels? Then the rows belong together.
+    # If more than a few rows hold most of the channels, the log needs no interpolation.
     is_finite = {name: np.isfinite(values) for name, (values, _) in signals.items()}
     there = {name: rows for name, rows in is_finite.items() if rows.any()}
     counts = np.sum(list(there.values()), axis=0) if there else np.zeros(len(time))

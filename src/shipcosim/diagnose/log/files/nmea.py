@@ -305,8 +305,8 @@ def _with_dates(timed: list[tuple[int, Values]]) -> tuple[np.ndarray, list[str]]
         return seconds, said
     days = np.array([timed[k][1]["date"] for k in dated])
     clocks = np.array([timed[k][1]["clock"] for k in dated])
-    # Whole days that are missing at each dated sentence, and at the others by the nearest date in
-    # time.
+    # Whole days that are missing at each dated sentence,
+    # and at the others by the nearest date in time.
     lacking = np.round((DAY * (days - days[0]) + clocks - seconds[dated]) / DAY) * DAY
     every = np.arange(len(timed))
     before = np.maximum(np.searchsorted(dated, every, "right") - 1, 0)

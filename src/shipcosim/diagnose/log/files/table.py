@@ -145,8 +145,8 @@ def _rows(source: str, lines: list[str], layout: Layout) -> tuple[list[str], lis
     comments = sum(1 for line in rest if line.strip()) - len(rows)
     if comments:
         said.append(f"{_count(comments, 'comment line')} between rows left out.")
-    # Many short rows have empty cells at their end; a few odd rows are left out; anything else is
-    # no table.
+    # Many short rows have empty cells at their end; a few
+    # odd rows are left out; anything else is no table.
     rows, counts = _without_last_separator(rows, separator, width)
     bad = counts != width
     if (counts < width).mean() > _FEW and bad.sum() > 1 and not (counts > width).any():
@@ -259,8 +259,8 @@ def _with_decimal_sign(source, frame, rows, separator, form):
         decimal = decimal_of(source, _with_comma(frame[i] for i in texts)) or "."
     if decimal == ".":
         return decimal, frame
-    # With a decimal comma, numbers with a point were read wrongly: read these columns again as
-    # texts.
+    # With a decimal comma, numbers with a point were
+    # read wrongly: read these columns again as texts.
     points = {i: "str" for i in frame if frame[i].dtype.kind == "f"}
     anew = _frame(rows, separator, frame.shape[1], points)
     for i in points:

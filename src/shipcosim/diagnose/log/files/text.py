@@ -55,8 +55,8 @@ def text_of(path: Path, encoding: str | None = None) -> tuple[str, list[str]]:
 
 
 def _encoding_of(content: bytes) -> str:
-    # Byte order mark, then zero bytes of UTF-16, then UTF-8; any other text is in an encoding of
-    # one byte.
+    # Byte order mark, then zero bytes of UTF-16, then
+    # UTF-8; any other text is in an encoding of one byte.
     for mark, name in _MARKS:
         if content.startswith(mark):
             return name

@@ -37,8 +37,8 @@ def time_of(
     ShipcosimError
         If day and month of stamps can be exchanged.
     """
-    # A stamp in two columns is the most precise. Otherwise take the best usable guess, or any
-    # column of texts that are stamps.
+    # A stamp in two columns is the most precise. Otherwise take the
+    # best usable guess, or any column of texts that are stamps.
     if pair := _seconds_and_nanoseconds(log):
         return pair, [replace(g, role="", why=f"'{pair.column}' is the time") for g in guesses]
     usable = [one for guess in guesses if (one := _usable(guess, log, form))]

@@ -62,8 +62,8 @@ def _unit_by(time, rate, change, units):
     told = np.concatenate(([0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * steps)))
     best = 0.0
     ratio = None
-    # Compare changes over several spans: short ones drown in noise, long ones in drift. Keep the
-    # span of highest correlation.
+    # Compare changes over several spans: short ones drown in noise,
+    # long ones in drift. Keep the span of highest correlation.
     for k in _SPANS:
         if len(time) < 4 * k:
             break
@@ -123,8 +123,8 @@ def frame_of_angle(
         way = (north + 1j * east)[rows]
         bow = np.exp(1j * course[rows])
         best = 0.0 + 0.0j
-        # Mean direction of the way made against it, weighted by distance. Its length is near 1 if
-        # the reading follows the course.
+        # Mean direction of the way made against it, weighted by distance.
+        # Its length is near 1 if the reading follows the course.
         for k in _SPANS:
             if len(way) < 4 * k:
                 break

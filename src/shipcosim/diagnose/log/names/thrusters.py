@@ -100,8 +100,8 @@ def thrusters_named(
     >>> thrusters_named(frozenset({"bow"}), ship)[0], thrusters_named(frozenset({"stern"}), ship)[0]
     (['tunnel'], [])
     """
-    # The same place, then one whose words contain the others, then by number, then by what is
-    # usual.
+    # The same place, then one whose words contain the
+    # others, then by number, then by what is usual.
     placed = {name: _place_of(name) for name in thrusters}
     if same := [name for name, words in placed.items() if words == place]:
         return same, "" if len(same) == 1 else "it names several"

@@ -74,8 +74,8 @@ def unit_for(spelling: str, target: str) -> str:
     ('kN', 'parsec')
     """
     spelling = spelling.strip()
-    # A spelling such as ms can stand for several units: take the first that measures the same
-    # quantity.
+    # A spelling such as ms can stand for several units:
+    # take the first that measures the same quantity.
     wanted = spelled_unit(target)
     options = [
         unit

@@ -151,8 +151,8 @@ def _settle_heading(chosen, log, form, motion):
     raw = _values(chosen, "heading", log, form)
     if raw is None or not len(_finite(raw)):
         return
-    # Candidates: degrees, radians unless values are too large, and angles anticlockwise from east
-    # for a yaw.
+    # Candidates: degrees, radians unless values are too
+    # large, and angles anticlockwise from east for a yaw.
     units = {"deg": 1.0, "rad": 180.0 / np.pi}
     if not is_open or np.abs(_finite(raw)).max() > _DEGREES:
         units = {"deg": 1.0}
@@ -231,8 +231,8 @@ def _settle_speed(chosen, role, log, form, motion):
     """Unit of a speed by the positions."""
     raw = log.values[chosen[role].column]
     unit = None
-    # Compare the speed, from both components if these are open, with the distance between
-    # positions.
+    # Compare the speed, from both components if these
+    # are open, with the distance between positions.
     if motion is not None and motion[1] is not None and raw.dtype.kind == "f":
         speed = raw
         if role in ("surge", "sway", "north_velocity", "east_velocity"):

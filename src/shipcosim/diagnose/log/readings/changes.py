@@ -60,8 +60,8 @@ class LogInterpretation:
     @property
     def form(self) -> tuple[str, str]:
         """The form of the velocity in which it is proportional to the change of position."""
-        # Mirroring the position is the same as mirroring velocity and heading instead, so only the
-        # difference between them and the position counts.
+        # Mirroring the position is the same as mirroring velocity and heading
+        # instead, so only the difference between them and the position counts.
         flipped = "position" in self.mirrored
         taken = "mirrored" if ("velocity" in self.mirrored) != flipped else "as is"
         turned = "mirrored" if ("heading" in self.mirrored) != flipped else "body"
@@ -70,8 +70,8 @@ class LogInterpretation:
     @property
     def factor(self) -> complex:
         """Logarithm of the factor between the change of position and that form."""
-        # The change of position is p_dot = w E for velocity w and E = exp(i heading); over the
-        # earth no heading turns it.
+        # The change of position is p_dot = w E for velocity w and
+        # E = exp(i heading); over the earth no heading turns it.
         turning = 1.0 if self.earth else self.heading
         factor = self.time * self.velocity * turning / self.position
         # A mirrored position conjugates the whole equation, and with it the factor.
@@ -88,15 +88,15 @@ class LogInterpretation:
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """
-        # Bring the logged mean course into the axes of this interpretation: mirror it, then turn
-        # it.
+        # Bring the logged mean course into the axes of
+        # this interpretation: mirror it, then turn it.
         flipped = "velocity" in self.mirrored
         mirrored = "heading" in self.mirrored
         course = courses[self.earth, self.earth and (mirrored != flipped)]
         course = course.conjugate() if flipped else course
         turn = complex(self.velocity) * (complex(self.heading).conjugate() if self.earth else 1.0)
-        # Only the angle counts. A free angle of the axes is set to the angle that the positions
-        # show.
+        # Only the angle counts. A free angle of the axes
+        # is set to the angle that the positions show.
         return course * turn / abs(turn) * (cmath.exp(1j * angle) if "axes" in self.free else 1.0)
 
     @property
@@ -211,8 +211,8 @@ def changes(stated: dict[str, str]) -> list[LogMistake]:
 
 
 def _time(stated):
-    # Factors are relative to the unit that is stated, or to seconds. A stated unit is less often
-    # wrong.
+    # Factors are relative to the unit that is stated,
+    # or to seconds. A stated unit is less often wrong.
     own = TIME_COSTS.get(stated or "s", (1.0, 0.0))[0]
     extra = STATED * bool(stated)
     for unit, (factor, cost) in TIME_COSTS.items():

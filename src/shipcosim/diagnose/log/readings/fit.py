@@ -127,8 +127,8 @@ def fitted(
 
 def _rows(count, series):
     """Every so many rows that there are not too many, and that a position of coarse resolution changes between them."""
-    # Limit the cost of long logs. Then thin further while most steps show no change of a coarse
-    # channel.
+    # Limit the cost of long logs. Then thin further while
+    # most steps show no change of a coarse channel.
     stride = max(1, math.ceil(count / MOST_FITTED))
     while (
         count / stride > 4 * FEWEST_FITTED
@@ -162,8 +162,8 @@ def _fits(drafts: list[Filter], pairs, labelled, axes):
         for key, (seen, told) in pairs.items():
             fit = fit_rows(white[:, place[id(seen)]], white[:, place[id(told)]], axes, offset)
             if key not in fits or fit.likelihood > fits[key].likelihood:
-                # White noise of a rate adds up to a random walk. This is the variance that it has
-                # after the whitening, by the median gain of the filter.
+                # White noise of a rate adds up to a random walk. This is the variance
+                # that it has after the whitening, by the median gain of the filter.
                 gain = float(np.median(draft.gains[known]))
                 adds_up = 1.0 / (
                     gain * (2.0 - gain) * np.median(scale) ** 2
@@ -197,8 +197,8 @@ def fit_rows(seen: np.ndarray, told: np.ndarray, axes: int, offset: float) -> Ro
     offset : float
         Of the logarithm of the likelihood, by the whitening.
     """
-    # Iteratively reweighted least squares with Huber weights: outliers count as little as their
-    # distance requires.
+    # Iteratively reweighted least squares with Huber weights:
+    # outliers count as little as their distance requires.
     weights = np.ones(len(told))
     for _ in range(ROBUST_ROUNDS):
         factor = np.vdot(weights * told, seen) / max(np.vdot(weights * told, told).real, 1e-300)
@@ -222,8 +222,8 @@ def _spread(off, axes):
 
 def _likelihood(rest, axes):
     """Logarithm of the likelihood of white rows but for a constant, and their variance; single rows count so much."""
-    # Gaussian likelihood at the estimated variance. Large residuals are clipped, so outliers count
-    # little.
+    # Gaussian likelihood at the estimated variance. Large
+    # residuals are clipped, so outliers count little.
     off = np.abs(rest)
     variance = float(np.mean(np.minimum(off, FIT_CLIP * _spread(off, axes)) ** 2)) / axes + 1e-300
     return -0.5 * axes * len(rest) * math.log(variance), variance
@@ -231,14 +231,14 @@ def _likelihood(rest, axes):
 
 def _relation(fit, evidence, rough):
     """The relation of a fit."""
-    # Standard error: the larger of the jackknife over windows and of that of least squares with the
-    # residuals' correlation.
+    # Standard error: the larger of the jackknife over windows and
+    # of that of least squares with the residuals' correlation.
     windows = np.array_split(np.arange(len(fit.told)), RELATION_WINDOWS)
     energy = np.vdot(fit.told, fit.told).real
     size = max(abs(fit.factor), 1e-300)
     std = max(_jackknife(fit, windows), math.sqrt(rough * fit.variance / energy) / size)
-    # Noise in the regressor attenuates the factor; correct its logarithm, and add the uncertainty
-    # of the correction.
+    # Noise in the regressor attenuates the factor; correct its
+    # logarithm, and add the uncertainty of the correction.
     low, unsure = _too_small(len(fit.told) / (size**2 * energy), fit)
     factor = complex(math.log(size) + low, np.angle(fit.factor))
     return Relation(factor, (math.hypot(std, unsure), std), evidence, _throughout(fit, windows))
@@ -278,8 +278,8 @@ def _throughout(fit, windows):
     # Clip single rows, so that outliers do not count as a part in which the relation fails.
     clip = FIT_CLIP**2 * fit.variance
     seen, rest = (np.minimum(np.abs(one) ** 2, clip) for one in (fit.seen, fit.rest))
-    # Noise level of the calmer windows. Residuals beyond some multiple of it are unexplained
-    # motion.
+    # Noise level of the calmer windows. Residuals
+    # beyond some multiple of it are unexplained motion.
     noise = float(np.quantile([rest[w].mean() for w in windows], CALM_SHARE))
     usual = np.array([NOISIER * noise * len(w) for w in windows])
     left = np.array([rest[w].sum() for w in windows])

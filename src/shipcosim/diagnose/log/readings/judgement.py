@@ -88,8 +88,8 @@ def judged(evidence: Evidence, changes: Sequence[LogMistake]) -> tuple[list[Judg
     tried = list(_combinations(changes))
     scored = [_score(combination, evidence) for combination in tried]
     likely = np.array([*(score for score, _ in scored), best - UNEXPLAINED_COST])
-    # Posterior probabilities: the exponentials of the scores, normalised. The largest is subtracted
-    # first to avoid overflow.
+    # Posterior probabilities: the exponentials of the scores,
+    # normalised. The largest is subtracted first to avoid overflow.
     shares = np.exp(likely - likely.max())
     shares = shares / shares.sum()
     found = [
@@ -137,13 +137,13 @@ def _score(combination, evidence) -> tuple[float, tuple[float, float]]:
     # This heading or position cannot be compared, while another interpretation can: excluded.
     if (evidence.position and relation is None) or (evidence.rate and rate is None):
         return -np.inf, (1.0, 0.0)
-    # Add the log-likelihoods of the relations: wind, position with its angle and course, and yaw
-    # rate.
+    # Add the log-likelihoods of the relations: wind,
+    # position with its angle and course, and yaw rate.
     said = evidence.wind.likelihood(
         reading, off_angle(relation, reading) if relation is not None else 0.0
     )
-    # Deviations of the factors from what the combination predicts, with a wide prior where a factor
-    # is free.
+    # Deviations of the factors from what the combination
+    # predicts, with a wide prior where a factor is free.
     slabs = {change.slab.of: change.slab.std for change in combination if change.slab}
     off = [_off_position(relation, reading, slabs), _off_rate(rate, reading, slabs)]
     if relation is not None:
@@ -175,8 +175,8 @@ def _usual(logged, factor, usual):
 
 
 def _angle(relation, reading):
-    # A free angle has the density of a uniform prior over all directions.
     """Log-density of the angle of a factor that was found."""
+    # A free angle has the density of a uniform prior over all directions.
     if "angle" in reading.free:
         return -math.log(2.0 * math.pi)
     return _log_density(np.array([off_angle(relation, reading)]), relation.std[1], ANGLE_TOLERANCE)[
@@ -188,15 +188,15 @@ def _ahead(relation, reading, courses):
     """Log-density of the direction in which the craft goes against her bow, over that of any: most go ahead."""
     if reading.heading_unit not in courses:
         return 0.0
-    # Mean course relative to the bow. Its length says how constant it is; a changing course says
-    # nothing.
+    # Mean course relative to the bow. Its length says
+    # how constant it is; a changing course says nothing.
     course = reading.course(courses[reading.heading_unit], off_angle(relation, reading))
     if abs(course) < ONE_COURSE:
         return 0.0
     # Circular standard deviation of the course, widened by the usual drift angle.
     spread = math.hypot(DRIFT, math.sqrt(-2.0 * math.log(min(abs(course), 1.0))))
-    # Mixture: most craft go ahead, some astern, the rest in any direction; relative to the uniform
-    # density.
+    # Mixture: most craft go ahead, some astern, the rest
+    # in any direction; relative to the uniform density.
     shares = [
         share
         * 2.0
@@ -246,8 +246,8 @@ def _factors(offs, slab):
     weights = stds**-2 / np.sum(stds**-2)
     centre = float(weights @ [off[0] for off in offs])
     spread = float(np.sum(stds**-2) ** -0.5)
-    # Integrate the joint density over the clock rate on a grid about this estimate; its prior is
-    # normal.
+    # Integrate the joint density over the clock rate on
+    # a grid about this estimate; its prior is normal.
     at = centre + 2.0 * max(stds) * GRID
     log = sum(_one_factor(value - at, std, tolerance, free) for value, std, tolerance, free in offs)
     log = log - 0.5 * (at / slab) ** 2 - math.log(slab * math.sqrt(2.0 * math.pi))
@@ -257,8 +257,8 @@ def _factors(offs, slab):
 
 
 def _one_factor(value, std, tolerance, free):
-    # A free factor has the wide normal density of its prior instead of the tolerance of
-    # instruments.
+    # A free factor has the wide normal density of its
+    # prior instead of the tolerance of instruments.
     value = np.atleast_1d(value)
     if free is not None:
         return -0.5 * (value / free) ** 2 - math.log(free * math.sqrt(2.0 * math.pi))

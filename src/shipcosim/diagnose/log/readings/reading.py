@@ -55,8 +55,8 @@ def misread(log: dict, stated: dict[str, str]) -> list[Finding]:
     evidence = evidence_of(log)
     if not evidence.position and not evidence.rate:
         return []  # what is usual alone says nothing
-    # Posterior of all combinations of mistakes. The angle of a grid is estimated only where
-    # positions were not converted from latitude and longitude.
+    # Posterior of all combinations of mistakes. The angle of a grid is estimated
+    # only where positions were not converted from latitude and longitude.
     readings, unexplained = judged(evidence, changes(stated))
     angle = _angle(readings[0], evidence) if "latitude" not in stated else None
     return (
@@ -120,8 +120,8 @@ def evidence_of(log: dict) -> Evidence:
             metres = POSITION_IN_DEGREES.undo(log)
             positions[True] = metres["north"] + 1j * metres["east"]
         position = position_relations(log, headings, positions)
-        # Size and direction of the velocity: usual values tell readings apart that the relations do
-        # not.
+        # Size and direction of the velocity: usual values
+        # tell readings apart that the relations do not.
         speeds = np.hypot(log["surge"], log["sway"])
         speeds = finite(speeds)
         speed = root_mean_square(speeds) if speeds.size else None
@@ -146,8 +146,8 @@ def _courses(velocity, heading):
     """Mean direction of the velocity against the bow, as `Reading.course` takes it; fast rows count for more."""
     turn = np.exp(1j * np.radians(heading))
     velocity, turn = (one[np.isfinite(velocity) & np.isfinite(turn)] for one in (velocity, turn))
-    # Weights by speed: at low speed the direction is mostly noise. The length is 1 for a constant
-    # direction.
+    # Weights by speed: at low speed the direction is mostly
+    # noise. The length is 1 for a constant direction.
     weights = np.abs(velocity)
     energy = max(float(np.sum(np.abs(velocity) ** 2)), 1e-300)
     # Velocity as logged, and turned back from the earth with the heading as it is or mirrored.
@@ -227,16 +227,16 @@ def _findings(
             )
             rests[rest] = rests.get(rest, 0.0) + one.probability
             rates.setdefault(rest, one.rate[0])
-    # The rest may well be nothing, and is not reported then. If no combination explains the
-    # log, nothing is.
+    # The rest may well be nothing, and is not reported
+    # then. If no combination explains the log, nothing is.
     if unexplained + rests.get((), 0.0) > LEFT_OPEN:
         return found if unexplained < LEFT_OPEN else []
     return [*found, _left_open(rests, rates)]
 
 
 def _with_known_rates(readings):
-    # Likeliest combination for each set of other changes that has a clock of a usual wrong rate.
     """Readings in which a clock of any rate is one of a usual rate, where that explains as much."""
+    # Likeliest combination for each set of other changes that has a clock of a usual wrong rate.
     usual = {
         _beside_clock(one): one for one in reversed(readings) if _clock_of(one) not in (None, CLOCK)
     }

@@ -66,8 +66,8 @@ def position_relations(log: dict, headings: dict, positions: dict) -> dict:
         }
         for position, seen in known_positions.items():
             pairs |= {(heading, position, form): (seen, way) for form, way in ways.items()}
-    # Fit all pairs at once, since they share thinning and whitening, and sort the results by
-    # reading.
+    # Fit all pairs at once, since they share thinning
+    # and whitening, and sort the results by reading.
     found: dict = {}
     labelled = (1.0, False, ("as is", "body"))
     for (heading, position, form), relation in fitted(time, pairs, labelled).items():
@@ -105,8 +105,8 @@ def rate_relations(time: np.ndarray, headings: dict, rate: np.ndarray) -> dict:
             beside = wrap_series(
                 np.diff(heading[rows] - told)
             )  # she can turn by more than half a turn between rows
-            # If the predicted turns are too large for that, and the heading follows them, unwrap
-            # the difference to the prediction instead.
+            # If the predicted turns are too large for that, and the heading
+            # follows them, unwrap the difference to the prediction instead.
             if not _can_be_followed(np.diff(told)) and np.quantile(np.abs(beside), 0.9) < ALONGSIDE:
                 change = np.diff(told) + beside
             pairs[name] = np.r_[0.0, np.cumsum(change)].astype(complex), told.astype(complex)

@@ -54,8 +54,8 @@ class WindRelations:
         angle : float
             By how much the change of position is turned against this reading. [rad]
         """
-        # Factor of the velocity in the relation a E = W + w E, before the turn of the wind's own
-        # frame.
+        # Factor of the velocity in the relation a E = W
+        # + w E, before the turn of the wind's own frame.
         mirrored = "heading" in reading.mirrored
         flipped = "velocity" in reading.mirrored
         told = complex(reading.velocity) * (
@@ -67,8 +67,8 @@ class WindRelations:
             key = (reading.heading_unit, mirrored, seen, (flipped, reading.earth))
             if key not in self.fits:
                 return 0.0
-            # Velocity over the earth, or wind from north, moves the heading's factor to the other
-            # side.
+            # Velocity over the earth, or wind from north,
+            # moves the heading's factor to the other side.
             turned = reading.earth and seen != "north"
             factor = told * (complex(reading.heading).conjugate() if turned else 1.0)
             factor *= complex(reading.heading) if seen == "north" and not reading.earth else 1.0
@@ -77,8 +77,8 @@ class WindRelations:
             ]
             # Factor 0: the wind is logged over ground already.
             said.append(_at(self.fits[key], 0.0) - cost - WIND_LABEL_COST)
-        # Sum the probabilities of all labels of the wind. The floor limits what the wind can say
-        # against a reading.
+        # Sum the probabilities of all labels of the wind. The
+        # floor limits what the wind can say against a reading.
         top = max(said)
         return max(top + math.log(sum(math.exp(one - top) for one in said)), -MOST_OF_WIND)
 
