@@ -66,7 +66,7 @@ def judged_jointly(logs: SeveralLogs) -> JointVerdict:
     """
     # Search sets of causes that explain all logs.
     fits = cast(list[JointFit], explain(logs, fitted=fitted_jointly, screened=screened_jointly))
-    # Without a wind in any log, chance explains more, and the threshold rises.
+    # If a log lacks the wind, chance explains more, and the threshold rises.
     silent = any(problem.record.wind is None for problem in logs.problems.values())
     models = [problem.model for problem in logs.problems.values()]
     usual = max(map(usual_gain, models)) + NULL_GAIN_WITHOUT_WIND * silent

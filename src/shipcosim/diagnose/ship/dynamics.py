@@ -235,8 +235,8 @@ def _accelerations(
     u_dot, v_dot, r_dot = accelerations(
         motion.u - u_c, motion.v - v_c, motion.r, X, Y, N, hull=model.parts["hull"]
     )
-    # A steady current turns in body axes: its rate there is -r
-    # x current, which is added for the velocity over ground.
+    # A steady current turns in body axes. Its rate there, (r
+    # v_c, -r u_c), is added for the velocity over ground.
     return u_dot + motion.r * v_c, v_dot - motion.r * u_c, r_dot
 
 

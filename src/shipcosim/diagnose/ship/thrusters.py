@@ -187,8 +187,8 @@ def fixed_of(system: System, parts: Mapping[str, Any]) -> dict[str, float]:
     dict of str to float
         [rad]
     """
-    # It turns if its direction is connected, or if
-    # nothing drives it, and its azimuth rate is not 0.
+    # A thruster turns if its direction is connected, or
+    # if nothing drives it, and its azimuth rate is not 0.
     fed = {connection.target for connection in system.connections}
     found = {}
     for name in [name for name, part in parts.items() if isinstance(part, AzimuthParameters)]:

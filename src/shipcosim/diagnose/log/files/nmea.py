@@ -258,7 +258,7 @@ def _told(read: _Read) -> list[str]:
 
 def _times(source: str, read: _Read) -> tuple[np.ndarray, list[str]]:
     """Time of each sentence that was read, NaN where it is not known, and what is to be said. [s]"""
-    # Stamps before the sentences are the time of reception, which all sentences have.
+    # Stamps before the sentences are the time of reception, if nearly all sentences have one.
     stamped = [read.stamps[number] for number, *_ in read.sentences]
     if sum(map(bool, stamped)) > _ENOUGH * len(stamped):
         texts = np.array([stamp or None for stamp in stamped], object)

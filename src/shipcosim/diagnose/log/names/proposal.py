@@ -94,7 +94,7 @@ def propose(
     _by_convention_of_ros(chosen, log)
     settled(chosen, log, form)
     left += _of_one_kind(chosen, log)
-    # Columns that no channel uses keep the reason of their last guess.
+    # Columns that no channel uses keep the reason of their first guess.
     taken = {name for guess in chosen.values() for name in guess.channel.columns}
     unused = {guess.column: guess for guess in reversed(left) if guess.column not in taken}
     order = list(log.values)
