@@ -71,7 +71,7 @@ def joint_gain(errors: Mapping[str, LogErrors]) -> dict[str, Any] | None:
         np.mean([resampled_sums(of, rng) / of.shape[1] for of in squares.values()], axis=0)
     )
     # Share of the explainable error: from before to the
-    # noise floor. It is not defined if both are equal.
+    # noise floor. It is not defined if both nearly agree.
     share = share_explained(before, after, floor)
     some = bool(np.isfinite(share))
     return {
